@@ -73,8 +73,9 @@ def sample(process: int) -> Sample:
 def judged(name: str, taken: list[Sample]) -> Row:
     """Return the row of a process: how it grew once it had settled, and whether too much.
 
-    The median of the slopes between all pairs of samples (Theil and Sen): one step, as when the
-    process takes another piece of memory from the system, makes no growth of it.
+    The median of the slopes between all pairs of samples (Theil and Sen). One step, as when the
+    process takes another piece of memory from the system, does not count unless it comes about
+    halfway.
     """
     row = Row(f"growth of {name}", len(taken))
     settled = taken[int(_SETTLED * len(taken)) :]

@@ -170,7 +170,7 @@ class LocalizationConfig(Frozen):
     """Above it a pose is searched around, as one that was told is."""
     lost_deviation: Positive = 1.0
     least_beams: AtLeastOne = 30
-    scan_timeout: Positive = 0.8
+    scan_timeout: Positive = 0.9
     search_timeout: Positive = 30.0
     needed_evidence: Annotated[float, Field(gt=0.0, le=12.0)] = 8.0
     calibration: CalibrationConfig = CalibrationConfig()

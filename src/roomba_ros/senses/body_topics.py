@@ -136,10 +136,14 @@ class BodyTopics:
         return readings
 
     def _scan_by(self, stamp: float) -> ScanReading | None:
-        """Return the newest scan that was taken by a time, s, if there is a new one."""
+        """Return the newest scan of which all beams were measured by a time, s, if one is new.
+
+        One without a stamp ends at that time.
+        """
         scan, oldest = self._scans.take(stamp), self._scans.oldest
         if scan is not None:
-            return replace(scan, stamp=scan.stamp or stamp, lidar=self._lidars.of(scan.lidar))
+            taken = scan.stamp or stamp - scan.lidar.sweep
+            return replace(scan, stamp=taken, lidar=self._lidars.of(scan.lidar))
         if oldest is not None and oldest > stamp + self._config.localization.scan_timeout:
             rospy.logwarn_throttle(
                 10.0,

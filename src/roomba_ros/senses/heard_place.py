@@ -25,10 +25,10 @@ from roomba_ros.runtime.subscriptions import subscribe
 
 
 class HeardPlace:
-    """Finds out where the frame of dead reckoning is in the map, by a pose and where that was then.
+    """Finds out where the frame of dead reckoning is in the map, by each pose that is told.
 
-    So a pose that comes late is as good: wheels and gyro tell the way since, as the node reckons
-    that tells the pose.
+    A pose that comes late is as good: it is compared with where the robot was reckoned to be at its
+    stamp. Wheels and gyro tell the way since.
 
     Subscribes: ``pose``, ``localization``.
     """
@@ -129,7 +129,11 @@ class HeardPlace:
         if self._corrected is not None and told.stamp > newest.time:
             # It came before the odometry that it follows from.
             return
-        self._correction = told.pose.compose(self._reckoned_at(told.stamp).inverse())
+        then = self._reckoning.at(told.stamp)
+        if then is None and self._corrected is not None:
+            # It is too old to be compared.
+            return
+        self._correction = told.pose.compose((then or self._reckoning.pose).inverse())
         self._corrected = told
 
     def _reckoned_at(self, stamp: float) -> Pose:

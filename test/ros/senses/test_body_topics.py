@@ -89,6 +89,17 @@ def test_a_scan_comes_once_with_the_first_odometry_that_is_not_older(ros: Lockst
     assert heard.take()[0].scan is None
 
 
+def test_a_scan_without_a_stamp_ends_with_the_odometry_that_it_comes_with(ros: Lockstep) -> None:
+    heard = body("odom", "scan")
+    message = scanned(0.0)
+    message.time_increment = 0.05
+    ros.publish("/scan", message)
+    ros.publish("/odom", moved(10.0))
+    (told,) = heard.take()
+    assert told.scan is not None
+    assert told.scan.stamp == pytest.approx(10.0 - 3 * 0.05)
+
+
 def test_each_has_the_newest_of_all_other_sensors(ros: Lockstep) -> None:
     sensors: tuple[str, ...] = (
         "bumper",

@@ -90,6 +90,15 @@ def test_a_pose_waits_for_the_odometry_that_it_follows_from(ros: Lockstep) -> No
     assert is_at(heard.at(10.3), 7.0, 0.0, 0.0)
 
 
+def test_a_pose_from_before_all_that_is_remembered_changes_nothing(ros: Lockstep) -> None:
+    heard = place()
+    drive(heard, 10.0, 100)
+    ros.publish("/pose", pose_message(14.9, Pose(1.0, 0.0, 0.0), "map"))
+    assert is_at(heard.at(14.95), 1.01, 0.0, 0.0)
+    ros.publish("/pose", pose_message(11.0, Pose(7.0, 0.0, 0.0), "map"))
+    assert is_at(heard.at(14.95), 1.01, 0.0, 0.0)
+
+
 def test_after_the_clock_was_set_back_what_was_driven_before_does_not_count(
     ros: Lockstep,
 ) -> None:

@@ -33,7 +33,7 @@ _MOST_LINES = 20
 _BINS = np.arange(-20.0, 20.1, 1.0)
 """mm"""
 _ABOVE = 1.3
-"""Height of that axis, by what is drawn: there the legend is."""
+"""The axis is so many times as high as what is drawn: the legend stands above that."""
 
 
 @drawn
@@ -108,12 +108,13 @@ def _draw_errors(
     axes: Axes, measured: NDArray[np.float32], exact: NDArray[np.float32], config: SimulatedLidar
 ) -> None:
     errors = 1000.0 * (measured - exact)[np.isfinite(measured) & np.isfinite(exact)]
-    axes.hist(errors, bins=list(_BINS), density=True, color=BLUE, alpha=0.55, label="measured")
+    share = np.full(len(errors), 1.0 / len(errors))
+    axes.hist(errors, bins=list(_BINS), weights=share, color=BLUE, alpha=0.55, label="measured")
     x = np.linspace(_BINS[0], _BINS[-1], 200)
     met = exact[np.isfinite(exact)]
     sigma = 1000.0 * (config.noise + config.noise_growth * met * met)
     normal = np.exp(-0.5 * (x[:, None] / sigma) ** 2) / (sigma * math.sqrt(2.0 * math.pi))
-    axes.plot(x, normal.mean(axis=1), color=INK, label="of noise by range,\nmet squarely")
+    axes.plot(x, normal.mean(axis=1), color=INK, label="normal, σ by the range,\nif met squarely")
     axes.set(xlabel="error of a range, mm", ylabel="share per mm")
     half, most = np.quantile(np.abs(errors), (0.5, 0.95))
     axes.set_title(f"{len(errors)} ranges: half within\n{half:.1f} mm, 95 % within {most:.0f} mm")

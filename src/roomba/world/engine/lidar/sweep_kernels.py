@@ -66,7 +66,8 @@ def sweep(around: Surroundings, scans: tuple[Floats, Floats, Floats], dt: float)
 def begin_sweep(world: Row, body: Row, numbers: Row, dt: float) -> bool:
     """Begin a sweep if it is time for one.
 
-    Missed stay those before this step, and in a long step those that a newer one has overtaken.
+    Left out are sweeps from before this step and, in a long step, those that a newer one overtakes
+    before it ends: nothing sees them.
     """
     period = numbers.scan_period
     since = min(dt, numbers.sweep_time + numbers.scan_delay + period)
