@@ -37,7 +37,7 @@ def shared_robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]
 
 
 class LongWalk:
-    """A walk of 3 to 5 m from where the robot is, at full speed by now."""
+    """A walk from where the robot is to the farther of two ends, at full speed by now."""
 
     def __init__(self, graph: RosGraph) -> None:
         self.probe, self.walker = Probe(graph), Walker()

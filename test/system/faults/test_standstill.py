@@ -18,7 +18,7 @@ SHOWN_BY_OTHERS = {
     "cleaning, speed node frozen",
     "cleaning, position node killed",
 }
-"""What the same node does for the same cause while another program drives: further cases."""
+"""Left to thorough runs: the same node meets the same cause where another program drives."""
 SPEED = 2.0
 FAST = 5.0
 """Robot seconds per second."""
