@@ -85,6 +85,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/commands/valetudo/": ("unit/commands/valetudo/test_valetudo_commands.py", COMMAND),
     "roomba/commands/warm_up": ("system/test_one_command.py", WARM),
     "roomba/configuration/": ("unit/configuration/test_robot.py", "numbers with their limits"),
+    "roomba/control/curve_kernels": ("unit/control/test_course.py", PART),
     "roomba/control/tracking_kernels": ("unit/control/test_path_tracker.py", PART),
     "roomba/errors": ("unit/world/test_simulator.py", VALUES),
     "roomba/drivers/create2/body": ("realtime/test_create2_body.py", "in real time"),

@@ -83,18 +83,21 @@ class LookingAroundConfig(Frozen):
 class TrackingConfig(Frozen):
     """Following a path exactly, as cleaning does: m, s, rad."""
 
-    sharp_corner: Acute = 0.35
-    off_corner: Positive = 0.0015
+    sharp_corner: Acute = 0.5
+    off_corner: Positive = 0.002
     braking: Positive = 1.8
-    reach: Positive = 0.12
-    heading_gain: Positive = 5.0
+    reach: Positive = 0.06
+    """Length of path over which a slow robot corrects an offset to the side."""
+    reach_time: NotNegative = 0.07
+    """s; a faster one takes in addition what it drives in this time."""
+    heading_gain: Positive = 6.0
     turning_speed: Positive = 4.0
     turning_braking: Ratio = 0.85
     """Share of the body's angular acceleration with which a turn on the spot ends."""
     corner_turning: Positive = 2.0
-    corner_acceleration: Positive = 5.0
-    slowest_corner: Positive = 0.06
-    longest_blend: Positive = 0.10
+    corner_acceleration: Positive = 7.0
+    slowest_corner: Positive = 0.08
+    longest_blend: Positive = 0.05
     """m; so far before and after a soft corner the heading changes at most."""
     aimed: Positive = 0.01
     arrival_tolerance: Positive = 0.003

@@ -1,69 +1,75 @@
-"""A path prepared for driving: its legs, and how fast its corners can be taken."""
+"""A path prepared for driving: its legs, and the curve that rounds off its soft corners."""
 
 from __future__ import annotations
 
-import math
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrap_angles
+from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import TrackingConfig
-from roomba.control.tracking_kernels import Course
+from roomba.control.curve_kernels import BENDING, SAMPLE, SECTION, Course, round_off
 
 Floats = NDArray[np.float64]
+Rows = NDArray[np.void]
 
 SHORTEST_LEG: Final = 1e-4
 """m; points nearer to the one before are left out."""
-_STRAIGHT: Final = 1e-6
-"""rad."""
+_STEP: Final = 0.004
+"""m; at most, between samples of the curve."""
 
 
-def course_of(points: Floats, config: TrackingConfig) -> Course:
+def course_of(points: Floats, config: TrackingConfig, body: BodyConfig) -> Course:
     """Return the course along ``points``, float64 [n, 2], m.
 
-    Soft corners are rounded off: over ``half`` m before and after a corner of a rad the heading
-    changes evenly, which leaves the corner by half * a / 4. Where the curvature changes by k, the
-    drive follows late by the way s, and is aside by k s^2 / 6; with the angular acceleration b it
-    needs s = v^2 k / b. From both follows the speed at which it is aside by ``config.off_corner``.
+    Corners sharper than ``config.sharp_corner`` part it into sections. The curve of a section is at
+    most ``config.off_corner`` from the path.
     """
     legs = np.hypot(*np.diff(points, axis=0).T)
     points = np.ascontiguousarray(points[np.concatenate(([True], legs > SHORTEST_LEG))])
     ways = np.diff(points, axis=0)
-    lengths = np.hypot(ways[:, 0], ways[:, 1])
     headings = np.arctan2(ways[:, 1], ways[:, 0])
-    stations = np.concatenate(([0.0], np.cumsum(lengths)))
-    corners = wrap_angles(np.diff(headings))
-    through, halves = np.zeros(len(points)), np.zeros(len(points))
-    if len(corners):
-        is_soft = np.abs(corners) <= config.sharp_corner
-        halves[1:-1] = np.where(is_soft, _halves(corners, lengths, config), 0.0)
-        through[1:-1] = np.where(is_soft, _speeds(corners, lengths, halves, config), 0.0)
-    return Course(points, headings, stations, through, halves)
+    stations = np.concatenate(([0.0], np.cumsum(np.hypot(ways[:, 0], ways[:, 1]))))
+    turns = np.zeros(len(points))
+    turns[1:-1] = np.abs(wrap_angles(np.diff(headings)))
+    sections = _sections(stations, np.flatnonzero(turns > config.sharp_corner))
+    samples = np.zeros(int(sections["last"][-1]) + 1 if len(sections) else 0, SAMPLE)
+    course = Course(points, stations, sections, samples)
+    _round_off(course, turns, config, body)
+    return course
 
 
-def _halves(corners: Floats, lengths: Floats, config: TrackingConfig) -> Floats:
-    """Return how far before and after each corner the heading changes, m."""
-    wanted = 4.0 * config.off_corner / np.maximum(np.abs(corners), _STRAIGHT)
-    room = 0.5 * np.minimum(lengths[:-1], lengths[1:])
-    halves: Floats = np.minimum(np.minimum(wanted, config.longest_blend), room)
-    return halves
+def _sections(stations: Floats, stops: NDArray[np.intp]) -> Rows:
+    """Return the sections, rows of SECTION, between the path's ends and its stops."""
+    ends = np.concatenate((stops, [len(stations) - 1]))[: max(len(stations) - 1, 0)]
+    begins = np.concatenate(([0], ends[:-1])) if len(ends) else ends
+    sections = np.zeros(len(ends), SECTION)
+    sections["begin"], sections["end"] = stations[begins], stations[ends]
+    sections["leg"], sections["end_leg"] = begins, ends
+    # A straight one is told by its ends.
+    steps = np.ceil((sections["end"] - sections["begin"]) / _STEP).astype(np.int64)
+    steps[ends - begins == 1] = 1
+    sections["last"] = np.cumsum(steps + 1) - 1
+    sections["first"] = sections["last"] - steps
+    return sections
 
 
-def _speeds(corners: Floats, lengths: Floats, halves: Floats, config: TrackingConfig) -> Floats:
-    """Return how fast each corner can be taken, m/s."""
-    curvature = corners / (2.0 * np.maximum(halves[1:-1], SHORTEST_LEG))
-    between = lengths[1:-1] - halves[1:-2] - halves[2:-1]
-    is_joined = between < halves[1:-2] + halves[2:-1]
-    joined = np.where(is_joined, np.abs(np.diff(curvature)), 0.0)
-    before = np.abs(curvature).copy()
-    after = np.abs(curvature).copy()
-    before[1:] = np.where(is_joined, joined, before[1:])
-    after[:-1] = np.where(is_joined, joined, after[:-1])
-    change = np.maximum(np.maximum(before, after), 1e-9)
-    speeds = math.sqrt(config.corner_acceleration) * (6.0 * config.off_corner) ** 0.25
-    ramped = speeds / change**0.75
-    turning = config.corner_turning / np.maximum(np.abs(curvature), 1e-9)
-    slowest: Floats = np.maximum(np.minimum(ramped, turning), config.slowest_corner)
-    return slowest
+def _round_off(course: Course, turns: Floats, config: TrackingConfig, body: BodyConfig) -> None:
+    """Fill in the course's curve; ``turns`` is how much the path turns at each point, rad."""
+    keep = np.zeros(1, BENDING)
+    keep["off_corner"], keep["longest_blend"] = config.off_corner, config.longest_blend
+    keep["turning"] = config.corner_turning
+    keep["turning_acceleration"] = config.corner_acceleration
+    keep["slowest"], keep["fastest"] = config.slowest_corner, body.max_speed
+    keep["acceleration"], keep["braking"] = body.max_acceleration, config.braking
+    round_off(course, turns, np.zeros(len(turns)), np.empty((_room(course, config), 2)), keep)
+
+
+def _room(course: Course, config: TrackingConfig) -> int:
+    """Return for how many samples the longest section needs room, with what is around it."""
+    sections = course.sections
+    steps = sections["last"] - sections["first"]
+    around = np.ceil(config.longest_blend * steps / (sections["end"] - sections["begin"]))
+    return int(np.max(steps + 2 * around + 1, initial=0))

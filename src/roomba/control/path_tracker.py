@@ -28,13 +28,15 @@ class PathTracker:
         period: float,
     ) -> None:
         """Begin at the first point; ``period`` is the time between two ticks, s."""
-        self.course = course_of(points, config)
+        self.course = course_of(points, config, body)
         rows = np.zeros(1, TRACK)
         # The same row twice: numbers are read from the plain one in a tenth of the time.
         self.state, self._row = rows.view(np.recarray), rows[0]
         state = self.state[0]
         state.turning = 1.0
-        state.braking, state.reach, state.gain = config.braking, config.reach, config.heading_gain
+        state.acceleration, state.braking = body.max_acceleration, config.braking
+        state.reach, state.reach_time = config.reach, config.reach_time
+        state.gain = config.heading_gain
         state.turning_speed = min(config.turning_speed, body.max_angular_speed)
         state.turning_braking = config.turning_braking * body.max_angular_acceleration
         state.aimed = config.aimed
@@ -65,11 +67,9 @@ class PathTracker:
     @property
     def along(self) -> float:
         """How far along the path it is, m."""
-        if self.is_done or len(self.course.headings) == 0:
+        if self.is_done or len(self.course.sections) == 0:
             return self.length
-        leg, on_leg = self.leg, float(self._row["along"])
-        first, last = self.course.stations[leg], self.course.stations[leg + 1]
-        return float(min(max(first + on_leg, first), last))
+        return min(max(float(self._row["along"]), 0.0), self.length)
 
     @property
     def left(self) -> float:
@@ -85,12 +85,12 @@ class PathTracker:
 
     @property
     def aside(self) -> float:
-        """How far left of its leg it is, m."""
+        """How far left of its curve it is, m."""
         return float(self._row["aside"])
 
     def off_path(self, pose: Pose) -> float:
         """Return how far a pose is from the leg that it should be on, m."""
-        if len(self.course.headings) == 0:
+        if len(self.course.sections) == 0:
             return pose.distance_to(*self.course.points[0].tolist())
         leg = self.leg
         first, last = self.course.points[leg], self.course.points[leg + 1]

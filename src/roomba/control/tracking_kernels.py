@@ -1,32 +1,34 @@
 """Compiled path tracking: from the robot's place along its path to the twist that keeps it there.
 
-A path is followed leg by leg. Sharp corners are turned on the spot; at soft ones the heading goes
-over from one leg to the next while driving.
+A path is followed section by section. At the sharp corners between them it turns on the spot; in
+each it follows the curve that rounds off the path.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roomba.angles import wrapped
 from roomba.compilation import entry, inner_part
-
-Floats = NDArray[np.float64]
+from roomba.control.curve_kernels import Course
 
 TRACK: Final = np.dtype(
     [
-        ("leg", "i8"),  # that it is on
-        ("turning", "f8"),  # 1 while it turns on the spot towards its leg
+        ("section", "i8"),  # that it is on
+        ("leg", "i8"),  # of the path, as far as it came
+        ("turning", "f8"),  # 1 while it turns on the spot towards its section
         ("done", "f8"),  # 1 at the end of the path
-        ("along", "f8"),  # way on its leg, m
-        ("aside", "f8"),  # left of its leg, m
+        ("along", "f8"),  # how far along the path it is, m
+        ("aside", "f8"),  # left of its curve, m
+        ("speed", "f8"),  # m/s; that the drive has, as far as it is known here
         # what does not change
+        ("acceleration", "f8"),  # m/s2
         ("braking", "f8"),  # m/s2
-        ("reach", "f8"),  # m; being aside it comes back over about this way
+        ("reach", "f8"),  # m; being a little aside it comes back over about this way when slow
+        ("reach_time", "f8"),  # s; and over what it drives in this time in addition
         ("gain", "f8"),  # 1/s; of the heading
         ("turning_speed", "f8"),  # rad/s
         ("turning_braking", "f8"),  # rad/s2
@@ -42,20 +44,10 @@ TRACK: Final = np.dtype(
 """State and numbers of a tracker, one row; a row in a kernel is a pointer."""
 Row = Any
 
-
-class Course(NamedTuple):
-    """A path as kernels know it; see :mod:`.course`.
-
-    ``points`` is [n, 2], m; ``stations`` [n] the way to each, m; ``through`` [n] how fast its
-    corner may be taken, m/s, 0 for those that are turned on the spot; ``halves`` [n] how far before
-    and after a corner the heading changes, m. ``headings`` [n - 1] are those of the legs, rad.
-    """
-
-    points: Floats
-    headings: Floats
-    stations: Floats
-    through: Floats
-    halves: Floats
+_ROUNDS: Final = 2
+"""Of looking for the curve's nearest place: each starts from where the one before ended."""
+_STRIDE: Final = 0.1
+"""m; by so much it moves on a curve at most in each."""
 
 
 @entry
@@ -66,31 +58,57 @@ def track(
 
     ``limit`` is the speed wanted, m/s. Advances ``state``, a row of TRACK.
     """
-    last = course.headings.size - 1
-    while state.done == 0.0:
-        if last < 0:
-            state.done = 1.0
-            break
-        leg = state.leg
-        dx, dy = x - course.points[leg, 0], y - course.points[leg, 1]
-        heading = course.headings[leg]
-        cosine, sine = math.cos(heading), math.sin(heading)
-        state.along, state.aside = dx * cosine + dy * sine, dy * cosine - dx * sine
-        left = course.stations[leg + 1] - course.stations[leg] - state.along
+    while state.done == 0.0 and state.section < course.sections.size:
+        section = course.sections[state.section]
+        heading = locate(state, course, section, x, y)
         error = wrapped(heading - theta)
         if state.turning > 0.0:
             if abs(error) > state.aimed:
+                state.speed = 0.0
                 return 0.0, turn_speed(state, error)
             state.turning = 0.0
-        is_stop = course.through[leg + 1] == 0.0
-        if left > (state.there if is_stop else 0.0):
-            return drive(state, course, error, left, limit)
-        if leg == last:
-            state.done = 1.0
-        else:
-            state.leg = leg + 1
-            state.turning = 1.0 if is_stop else 0.0
+        left = section.end - state.along
+        if left > state.there:
+            return drive(state, course, section, error, left, limit)
+        state.section += 1
+        state.along = section.end
+        if state.section < course.sections.size:
+            state.leg = section.end_leg
+            state.turning = 1.0
+    state.done = 1.0
     return 0.0, 0.0
+
+
+@inner_part
+def locate(state: Row, course: Course, section: Row, x: float, y: float) -> float:
+    """Find the curve's place that is nearest to the robot; return its heading, rad."""
+    step = (section.end - section.begin) / (section.last - section.first)
+    stride = max(step, _STRIDE)
+    along, heading = state.along, 0.0
+    for _ in range(_ROUNDS):
+        base = min(max(along, section.begin), section.end)
+        low, share = between(section, base)
+        before, after = course.samples[low], course.samples[low + 1]
+        heading = before.heading + share * (after.heading - before.heading)
+        dx = x - (before.x + share * (after.x - before.x))
+        dy = y - (before.y + share * (after.y - before.y))
+        cosine, sine = math.cos(heading), math.sin(heading)
+        way = dx * cosine + dy * sine
+        state.aside = dy * cosine - dx * sine
+        along = base + min(max(way, -stride), stride)
+    state.along = max(along, section.begin)
+    while state.leg + 1 < section.end_leg and course.stations[state.leg + 1] <= along:
+        state.leg += 1
+    return heading
+
+
+@inner_part
+def between(section: Row, station: float) -> tuple[int, float]:
+    """Return the sample before a station, m, of a section, and the share of the next one."""
+    steps = section.last - section.first
+    at = steps * (station - section.begin) / (section.end - section.begin)
+    low = int(min(max(at, 0.0), steps - 1.0))
+    return section.first + low, min(max(at - low, 0.0), 1.0)
 
 
 @inner_part
@@ -105,45 +123,48 @@ def turn_speed(state: Row, error: float) -> float:
 
 @inner_part
 def drive(
-    state: Row, course: Course, error: float, left: float, limit: float
+    state: Row, course: Course, section: Row, error: float, left: float, limit: float
 ) -> tuple[float, float]:
-    """Return the twist along the leg: as fast as the corners ahead allow, back to the line."""
-    speed = min(limit, corner_limit(state, course, left, limit))
-    bend, _ = blended(state, course, left, 0.0)
-    if abs(error + bend) > state.askew:
+    """Return the twist along the curve: as fast as what is ahead allows, back to the line."""
+    if abs(error) > state.askew:
         # Pushed aside: it aims first.
-        state.turning = 1.0
+        state.turning, state.speed = 1.0, 0.0
         return 0.0, turn_speed(state, error)
+    late = state.late * state.period * state.speed
+    speed = min(limit, speed_at(course, section, state.along + late))
+    speed = min(speed, arriving_speed(state, left))
+    answer(state, speed)
     # Drives answer late: what it has to turn by then.
-    _, curvature = blended(state, course, left, state.turning_delay * speed)
-    back = -math.atan(state.aside / state.reach)
-    turn = speed * curvature + state.gain * wrapped(error + bend + back)
+    low, share = between(section, state.along + state.turning_delay * state.speed)
+    before, after = course.samples[low].curvature, course.samples[low + 1].curvature
+    curvature = before + share * (after - before)
+    reach = state.reach + state.reach_time * speed + abs(state.aside)
+    back = -math.atan(state.aside / reach)
+    turn = state.speed * curvature + state.gain * wrapped(error + back)
     return speed, min(max(turn, -state.turning_speed), state.turning_speed)
 
 
 @inner_part
-def corner_limit(state: Row, course: Course, left: float, limit: float) -> float:
-    """Return the fastest speed, m/s, from which it can brake for all corners ahead."""
-    last = course.headings.size - 1
-    speed: float = limit
-    horizon = limit * limit / (2.0 * state.braking) + 2.0 * limit * state.period
-    leg, ahead = state.leg, left
-    if state.leg > 0 and state.along < course.halves[leg]:
-        # Still in the corner behind.
-        speed = min(speed, max(course.through[leg], 4.0 * state.slowest))
-    while ahead <= horizon:
-        through = course.through[leg + 1]
-        if through == 0.0:
-            nearly: float = max(ahead, 0.0) / (2.2 * state.period)
-            stopping: float = max(min(speed, stopping_speed(state, ahead), nearly), state.slowest)
-            return stopping
-        way = max(ahead - course.halves[leg + 1] - speed * state.period, 0.0)
-        speed = min(speed, math.sqrt(through * through + 2.0 * state.braking * way))
-        leg += 1
-        if leg > last:
-            break
-        ahead += course.stations[leg + 1] - course.stations[leg]
-    return speed
+def speed_at(course: Course, section: Row, station: float) -> float:
+    """Return the fastest speed at a station of a section, m/s."""
+    low, share = between(section, station)
+    before, after = course.samples[low].speed, course.samples[low + 1].speed
+    return float(before + share * (after - before))
+
+
+@inner_part
+def arriving_speed(state: Row, left: float) -> float:
+    """Return the speed, m/s, with which it stands after the ``left`` m of its section."""
+    nearly = left / (2.2 * state.period)
+    return float(max(min(stopping_speed(state, left), nearly), state.slowest))
+
+
+@inner_part
+def answer(state: Row, speed: float) -> None:
+    """Note the speed that the drive has a tick after it was told ``speed``, m/s."""
+    least = state.speed - state.braking * state.period
+    most = state.speed + state.acceleration * state.period
+    state.speed = min(max(speed, least), most)
 
 
 @inner_part
@@ -155,23 +176,3 @@ def stopping_speed(state: Row, way: float) -> float:
     late, braking = state.late * state.period, state.braking
     speed: float = braking * (math.sqrt(late * late + 2.0 * max(way, 0.0) / braking) - late)
     return speed
-
-
-@inner_part
-def blended(state: Row, course: Course, left: float, lead: float) -> tuple[float, float]:
-    """Return by how much the wanted heading differs from the leg's, rad, and the curvature, 1/m.
-
-    It is looked up ``lead`` m ahead.
-    """
-    leg = state.leg
-    half = course.halves[leg + 1]
-    if half > 0.0 and left - lead < half:
-        corner = wrapped(course.headings[leg + 1] - course.headings[leg])
-        share = min(0.5 * (1.0 - (left - lead) / half), 1.0)
-        return corner * share, corner / (2.0 * half) if share < 1.0 else 0.0
-    half = course.halves[leg]
-    after = state.along + lead
-    if half > 0.0 and after < half:
-        corner = wrapped(course.headings[leg] - course.headings[leg - 1])
-        return -corner * 0.5 * (1.0 - after / half), corner / (2.0 * half)
-    return 0.0, 0.0

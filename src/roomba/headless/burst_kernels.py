@@ -136,11 +136,13 @@ def wanted(burst: Any, drive: Drive, x: float, y: float, theta: float) -> tuple[
     if not burst.drives:
         return 0.0, 0.0, False
     tracker: Any = drive.state[0]
-    leg, turning, along, aside = tracker.leg, tracker.turning, tracker.along, tracker.aside
+    section, leg, turning = tracker.section, tracker.leg, tracker.turning
+    along, aside, speed = tracker.along, tracker.aside, tracker.speed
     linear, angular = track(tracker, drive.course, x, y, theta, burst.limit)
     if tracker.done > 0.0:
-        tracker.leg, tracker.turning, tracker.done = leg, turning, 0.0
-        tracker.along, tracker.aside = along, aside
+        tracker.section, tracker.leg, tracker.turning = section, leg, turning
+        tracker.along, tracker.aside, tracker.speed = along, aside, speed
+        tracker.done = 0.0
         return 0.0, 0.0, True
     return linear, angular, False
 

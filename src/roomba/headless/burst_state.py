@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.control.tracking_kernels import Course
+from roomba.control.curve_kernels import Course
 from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.reckoned_path import ReckonedPath

@@ -1,4 +1,4 @@
-"""A path made ready: its legs, and how fast its corners may be taken."""
+"""A path made ready: its sections, its curve, and how fast that may be driven."""
 
 from __future__ import annotations
 
@@ -7,17 +7,23 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.configuration.loops import TrackingConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.control.course import SHORTEST_LEG, course_of
+from roomba.control.curve_kernels import Course
 
-CONFIG = TrackingConfig()
+BODY, CONFIG = RobotConfig().body, RobotConfig().tracking
+ROUNDING = 1e-9
+
+Legs = list[tuple[float, float]]
+Floats = NDArray[np.float64]
 
 
-def path(*legs: tuple[float, float]) -> NDArray[np.float64]:
+def path(*legs: tuple[float, float]) -> Floats:
     """Return the points along legs: how much it turns before each, rad, and its length, m."""
     headings = itertools.accumulate(turn for turn, _ in legs)
     ways = [
@@ -26,93 +32,151 @@ def path(*legs: tuple[float, float]) -> NDArray[np.float64]:
     return np.concatenate((np.zeros((1, 2)), np.cumsum(np.array(ways), axis=0)))
 
 
-legs = st.lists(
-    st.tuples(st.floats(-math.pi, math.pi), st.floats(0.001, 2.0)), min_size=1, max_size=12
-)
+def course(*legs: tuple[float, float]) -> Course:
+    return course_of(path(*legs), CONFIG, BODY)
 
 
-@given(legs)
-def test_legs_and_stations_are_those_of_the_path(legs: list[tuple[float, float]]) -> None:
-    points = path(*legs)
-    course = course_of(points, CONFIG)
-    assert course.points == pytest.approx(points)
-    assert np.diff(course.stations) == pytest.approx([way for _, way in legs])
-    assert course.stations[0] == 0.0
-    turns = [turn for turn, _ in legs]
-    off = course.headings - np.cumsum(turns)
-    assert np.cos(off) == pytest.approx(1.0)
-    for name in ("through", "halves"):
-        values = getattr(course, name)
-        assert values.shape == (len(points),)
-        assert (values >= 0.0).all()
-        # It begins and ends standing.
-        assert values[0] == values[-1] == 0.0
+def curve(course: Course, section: int = 0) -> NDArray[np.void]:
+    """Return the samples of a section."""
+    row = course.sections[section]
+    samples: NDArray[np.void] = course.samples[row["first"] : row["last"] + 1]
+    return samples
 
 
-@given(legs)
-def test_sharp_corners_are_stops_and_soft_ones_are_not(legs: list[tuple[float, float]]) -> None:
-    course = course_of(path(*legs), CONFIG)
-    for index, (turn, _) in enumerate(legs[1:], start=1):
+def places(samples: NDArray[np.void]) -> Floats:
+    return np.column_stack((samples["x"], samples["y"]))
+
+
+lengths = st.floats(0.001, 1.0)
+any_legs = st.lists(st.tuples(st.floats(-math.pi, math.pi), lengths), min_size=1, max_size=12)
+soft_legs = st.lists(st.tuples(st.floats(-0.49, 0.49), lengths), min_size=2, max_size=12)
+
+
+@given(any_legs)
+def test_points_and_stations_are_those_of_the_path(legs: Legs) -> None:
+    made = course(*legs)
+    assert made.points == pytest.approx(path(*legs))
+    assert made.stations[0] == 0.0
+    assert np.diff(made.stations) == pytest.approx([way for _, way in legs])
+
+
+@given(any_legs)
+def test_sections_end_at_sharp_corners_and_nowhere_else(legs: Legs) -> None:
+    made = course(*legs)
+    sharp = [0]
+    for leg, (turn, _) in enumerate(legs[1:], start=1):
         if abs(abs(turn) - CONFIG.sharp_corner) < 1e-6:
-            continue
-        is_soft = abs(turn) < CONFIG.sharp_corner
-        assert (course.through[index] > 0.0) == is_soft
-        assert (course.halves[index] > 0.0) == is_soft
-        if is_soft:
-            assert course.through[index] >= CONFIG.slowest_corner
+            return  # Rounding tells on which side it is.
+        if abs(turn) > CONFIG.sharp_corner:
+            sharp.append(leg)
+    assert made.sections["leg"].tolist() == sharp
+    assert made.sections["end_leg"].tolist() == [*sharp[1:], len(legs)]
+    assert made.sections["begin"] == pytest.approx(made.stations[sharp])
+    assert made.sections["end"] == pytest.approx(made.stations[made.sections["end_leg"]])
+    assert len(made.samples) == made.sections["last"][-1] + 1
+    assert (made.sections["first"][1:] == made.sections["last"][:-1] + 1).all()
 
 
-@given(legs)
-def test_rounded_corners_stay_near_and_never_overlap(legs: list[tuple[float, float]]) -> None:
-    course = course_of(path(*legs), CONFIG)
-    ways = np.diff(course.stations)
-    assert (course.halves[:-1] + course.halves[1:] <= ways + 1e-9).all()
-    turns = np.array([turn for turn, _ in legs[1:]])
-    # An even change of heading over half a m before and after leaves a corner of a by a * half / 4.
-    left = np.abs(turns) * course.halves[1:-1] / 4.0
-    assert (left <= CONFIG.off_corner + 1e-12).all()
+@given(any_legs)
+def test_the_curve_stays_near_its_path_from_end_to_end(legs: Legs) -> None:
+    made = course(*legs)
+    for row, section in enumerate(made.sections):
+        points = made.points[section["leg"] : section["end_leg"] + 1]
+        found = places(curve(made, row))
+        off = shapely.distance(shapely.LineString(points), shapely.points(found))
+        assert off.max() <= CONFIG.off_corner + ROUNDING
+        # Corners between two samples lie beside the curve, too.
+        off = shapely.distance(shapely.LineString(found), shapely.points(points))
+        assert off.max() <= CONFIG.off_corner + 0.25 * 0.004
+        for end in (0, -1):
+            assert np.hypot(*(found[end] - points[end])) <= CONFIG.off_corner + ROUNDING
+
+
+def test_a_straight_section_is_told_by_its_ends() -> None:
+    made = course((0.3, 2.0), (2.0, 1.0))
+    assert len(made.samples) == 4
+    assert curve(made)["heading"] == pytest.approx(0.3)
+    assert curve(made, 1)["heading"] == pytest.approx(2.3)
+    assert (made.samples["curvature"] == 0.0).all()
+    assert made.samples["speed"] == pytest.approx(BODY.max_speed)
+
+
+@given(soft_legs)
+def test_headings_and_curvature_are_those_of_the_places(legs: Legs) -> None:
+    samples = curve(course(*legs))
+    found, step = places(samples), np.hypot(*np.diff(places(samples), axis=0).T)
+    between = np.unwrap(np.arctan2(*np.diff(found, axis=0).T[::-1]))
+    middle = 0.5 * (between[:-1] + between[1:])
+    off = np.abs(samples["heading"][1:-1] - middle)
+    assert np.abs(np.cos(off)) == pytest.approx(1.0, abs=1e-4)
+    assert (np.abs(np.diff(samples["heading"])) < CONFIG.sharp_corner).all()
+    # All that the headings turn is what the curvature says.
+    turned = samples["heading"][-1] - samples["heading"][0]
+    bent = np.sum(0.5 * (samples["curvature"][1:] + samples["curvature"][:-1]) * step)
+    assert bent == pytest.approx(turned, abs=0.02 + 0.1 * abs(turned))
+
+
+@given(soft_legs)
+def test_speeds_are_what_drive_and_brakes_can_do(legs: Legs) -> None:
+    made = course(*legs)
+    samples, section = curve(made), made.sections[0]
+    step = (section["end"] - section["begin"]) / (len(samples) - 1)
+    speeds = samples["speed"]
+    assert (speeds >= CONFIG.slowest_corner - ROUNDING).all()
+    assert (speeds <= BODY.max_speed + ROUNDING).all()
+    energy = np.diff(speeds**2) / (2.0 * step)
+    assert energy.max(initial=0.0) <= BODY.max_acceleration + ROUNDING
+    assert energy.min(initial=0.0) >= -CONFIG.braking - ROUNDING
+    is_free = speeds > CONFIG.slowest_corner + ROUNDING
+    turning = speeds * np.abs(samples["curvature"])
+    assert (turning[is_free] <= CONFIG.corner_turning + ROUNDING).all()
+    change = np.abs(samples["curvature"][2:] - samples["curvature"][:-2]) / (2.0 * step)
+    faster = (speeds[1:-1] ** 2 * change)[is_free[1:-1]]
+    assert (faster <= CONFIG.corner_acceleration + 1e-6).all()
+
+
+@given(st.floats(0.05, 0.3))
+def test_a_corner_by_itself_is_as_wide_as_it_may_be(turn: float) -> None:
+    samples = curve(course((0.0, 1.0), (turn, 1.0)))
+    half = min(6.0 * CONFIG.off_corner / turn, CONFIG.longest_blend)
+    bent = np.flatnonzero(np.abs(samples["curvature"]) > 1e-6) * 2.0 / (len(samples) - 1)
+    assert bent.min() == pytest.approx(1.0 - half, abs=0.012)
+    assert bent.max() == pytest.approx(1.0 + half, abs=0.012)
+    nearest = np.hypot(*(places(samples) - (1.0, 0.0)).T).min()
+    assert nearest == pytest.approx(turn * half / 6.0, abs=2e-4)
 
 
 def test_the_softer_a_corner_the_faster() -> None:
     speeds = [
-        float(course_of(path((0.0, 1.0), (turn, 1.0)), CONFIG).through[1])
+        float(curve(course((0.0, 1.0), (turn, 1.0)))["speed"].min())
         for turn in (0.05, 0.1, 0.2, 0.3)
     ]
     assert speeds == sorted(speeds, reverse=True)
     assert speeds[0] > 0.3
-    assert speeds[-1] < speeds[0]
+    assert speeds[-1] < 0.2
 
 
-@given(st.floats(0.02, 0.34), st.floats(0.02, 1.0))
-def test_the_turning_speed_in_a_corner_is_within_its_limit(turn: float, way: float) -> None:
-    course = course_of(path((0.0, way), (turn, way)), CONFIG)
-    curvature = turn / (2.0 * course.halves[1])
-    turning = course.through[1] * curvature
-    assert turning <= CONFIG.corner_turning + 1e-9 or course.through[1] == CONFIG.slowest_corner
-
-
-def test_corners_close_together_count_for_how_the_curvature_changes() -> None:
-    def speed(second: float) -> float:
-        course = course_of(path((0.0, 1.0), (0.2, 0.03), (second, 1.0)), CONFIG)
-        return float(course.through[1])
-
-    # To the other side it changes twice as much.
-    assert speed(-0.2) < speed(0.2)
-    assert speed(0.2) >= float(course_of(path((0.0, 1.0), (0.2, 0.03)), CONFIG).through[1])
+def test_an_arc_of_short_legs_is_an_arc() -> None:
+    # As around the corner of a wall, 0.17 m from it; legs of grid paths are not of one length.
+    around = np.cumsum(np.tile([0.11, 0.15, 0.19, 0.13], 3))
+    points = 0.17 * np.column_stack((np.sin(around), 1.0 - np.cos(around)))
+    samples = curve(course_of(points, CONFIG, BODY))
+    middle = samples[len(samples) // 4 : 3 * len(samples) // 4]
+    assert middle["curvature"] == pytest.approx(1.0 / 0.17, rel=0.15)
+    assert middle["speed"].min() > 0.25
 
 
 def test_points_that_are_nearly_the_same_are_one() -> None:
     points = np.array([(0.0, 0.0), (1.0, 0.0), (1.0 + 0.5 * SHORTEST_LEG, 0.0), (2.0, 0.0)])
-    course = course_of(points, CONFIG)
-    assert len(course.points) == 3
-    assert course.stations[-1] == pytest.approx(2.0)
-    assert len(course_of(points[:1], CONFIG).headings) == 0
+    made = course_of(points, CONFIG, BODY)
+    assert len(made.points) == 3
+    assert made.stations[-1] == pytest.approx(2.0)
+    assert len(course_of(points[:1], CONFIG, BODY).sections) == 0
 
 
 def test_headings_are_compared_around_the_circle() -> None:
     # From nearly pi to nearly -pi is a soft corner to the left.
-    points = path((math.pi - 0.05, 1.0), (0.1, 1.0))
-    course = course_of(points, CONFIG)
-    assert course.headings[0] > 3.0
-    assert course.headings[1] < -3.0
-    assert course.through[1] > CONFIG.slowest_corner
+    made = course((math.pi - 0.05, 1.0), (0.1, 1.0))
+    assert len(made.sections) == 1
+    headings = made.samples["heading"]
+    assert headings[-1] - headings[0] == pytest.approx(0.1)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import entry, inner_part
-from roomba.control.tracking_kernels import Course
+from roomba.control.curve_kernels import Course
 
 Rows = NDArray[np.void]
 Row = Any
@@ -32,18 +32,17 @@ PROGRESS: Final = np.dtype(
 @inner_part
 def along_of(track: Row, course: Course) -> float:
     """Return how far along its path a tracker, a row of TRACK, is, m."""
-    last = course.stations.size - 1
-    if track.done > 0.0 or course.headings.size == 0:
-        return float(course.stations[last])
-    first, end = course.stations[track.leg], course.stations[track.leg + 1]
-    return float(min(max(first + track.along, first), end))
+    length = course.stations[course.stations.size - 1]
+    if track.done > 0.0 or course.sections.size == 0:
+        return float(length)
+    return float(min(max(track.along, 0.0), length))
 
 
 @inner_part
 def off_path(track: Row, course: Course, x: float, y: float) -> float:
     """Return how far a place is from the leg that a tracker is on, m."""
     first_x, first_y = course.points[0, 0], course.points[0, 1]
-    if course.headings.size == 0:
+    if course.sections.size == 0:
         return math.hypot(x - first_x, y - first_y)
     first_x, first_y = course.points[track.leg, 0], course.points[track.leg, 1]
     way_x = course.points[track.leg + 1, 0] - first_x

@@ -1,0 +1,232 @@
+"""Compiled rounding of a path's soft corners: a curve, how it bends, and how fast it can be driven.
+
+A curve's points are means of the path's points around them, weighted by a triangle. An even bend of
+the path stays an even bend, and a corner becomes one whose curvature rises and falls evenly, as a
+drive can follow it: the curve along which a turning speed changes evenly is a clothoid.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.angles import wrapped
+from roomba.compilation import entry, inner_part
+
+Floats = NDArray[np.float64]
+Row = Any
+"""One row of an array, in a kernel."""
+
+SAMPLE: Final = np.dtype(
+    [
+        ("x", "f8"),  # m
+        ("y", "f8"),  # m
+        ("heading", "f8"),  # rad; without jumps within a section
+        ("curvature", "f8"),  # 1/m; positive to the left
+        ("speed", "f8"),  # m/s; the fastest there
+    ]
+)
+"""A place on the curve."""
+
+SECTION: Final = np.dtype(
+    [
+        ("begin", "f8"),  # m; along the path
+        ("end", "f8"),
+        ("first", "i8"),  # of its samples
+        ("last", "i8"),
+        ("leg", "i8"),  # its first one
+        ("end_leg", "i8"),  # the first one that is no longer of it
+    ]
+)
+"""What is driven in one go: between two corners at which the robot turns on the spot."""
+
+BENDING: Final = np.dtype(
+    [
+        ("off_corner", "f8"),  # m; the curve is not farther from the path
+        ("longest_blend", "f8"),  # m; no mean is taken over more than this to each side
+        ("turning", "f8"),  # rad/s
+        ("turning_acceleration", "f8"),  # rad/s2
+        ("slowest", "f8"),  # m/s; no bend is driven more slowly
+        ("fastest", "f8"),  # m/s
+        ("acceleration", "f8"),  # m/s2
+        ("braking", "f8"),  # m/s2
+    ]
+)
+"""What a curve has to keep, one row."""
+
+_HALVINGS: Final = 10
+_WIDENING: Final = 0.5
+"""By so much of the way from one corner to the next the mean may widen."""
+_NO_TURN: Final = 1e-9
+
+
+class Course(NamedTuple):
+    """A path as kernels know it; see :mod:`.course`.
+
+    ``points`` is [n, 2], m, and ``stations`` [n] the way to each, m. ``sections``, rows of SECTION,
+    are driven one after the other; ``samples``, rows of SAMPLE, are evenly spaced in each.
+    """
+
+    points: Floats
+    stations: Floats
+    sections: Any
+    samples: Any
+
+
+@entry
+def round_off(course: Course, turns: Floats, halves: Floats, raw: Floats, keep: Any) -> None:
+    """Fill in the samples of a course.
+
+    ``turns`` [n] is how much the path turns at each of its points, rad, to either side. ``halves``
+    [n] is room for how far to each side of a corner the mean is taken, m, and ``raw`` for the
+    samples of the longest section and what is straight before and after it. ``keep`` is one row of
+    BENDING.
+    """
+    for section in course.sections:
+        step = (section.end - section.begin) / (section.last - section.first)
+        before = math.ceil(keep[0].longest_blend / step)
+        _widen(course.stations, turns, section, halves, keep[0])
+        _lay_out(course, section, raw, step, before)
+        _average(course, section, halves, raw, step, before)
+        _bend(course.samples, section, step)
+        _limit_speeds(course.samples, section, step, keep[0])
+
+
+@inner_part
+def _widen(stations: Floats, turns: Floats, section: Row, halves: Floats, keep: Row) -> None:
+    """Set how far to each side of the section's corners the mean is taken, m.
+
+    As far as it leaves the path by what it may, and changing slowly from corner to corner.
+    """
+    first, last = section.leg + 1, section.end_leg - 1
+    for at in range(first, last + 1):
+        narrow, wide = 0.0, keep.longest_blend
+        for _ in range(_HALVINGS):
+            half = 0.5 * (narrow + wide)
+            if _off_corner(stations, turns, at, first, last, half) <= keep.off_corner:
+                narrow = half
+            else:
+                wide = half
+        halves[at] = narrow
+    for at in range(first + 1, last + 1):
+        most = halves[at - 1] + _WIDENING * (stations[at] - stations[at - 1])
+        halves[at] = min(halves[at], most)
+    for at in range(last - 1, first - 1, -1):
+        most = halves[at + 1] + _WIDENING * (stations[at + 1] - stations[at])
+        halves[at] = min(halves[at], most)
+
+
+@inner_part
+def _off_corner(
+    stations: Floats, turns: Floats, at: int, first: int, last: int, half: float
+) -> float:
+    """Return how far from a corner the mean over ``half`` m to each side is at most, m.
+
+    A corner of a rad, d m away, contributes a (half - d)^3 / (6 half^2).
+    """
+    off = float(turns[at] * half / 6.0)
+    for way in (-1, 1):
+        other = at + way
+        while first <= other <= last:
+            beyond = half - abs(stations[other] - stations[at])
+            if beyond <= 0.0:
+                break
+            off += turns[other] * beyond * beyond * beyond / (6.0 * half * half)
+            other += way
+    return off
+
+
+@inner_part
+def _lay_out(course: Course, section: Row, raw: Floats, step: float, before: int) -> None:
+    """Write down the path's points at the samples, m, and at as many before and after as told.
+
+    Before and after it the path goes straight on.
+    """
+    points, stations, leg = course.points, course.stations, section.leg
+    for at in range(section.last - section.first + 2 * before + 1):
+        station = section.begin + (at - before) * step
+        while leg + 1 < section.end_leg and stations[leg + 1] <= station:
+            leg += 1
+        share = (station - stations[leg]) / (stations[leg + 1] - stations[leg])
+        for axis in range(2):
+            way = points[leg + 1, axis] - points[leg, axis]
+            raw[at, axis] = points[leg, axis] + share * way
+
+
+@inner_part
+def _average(
+    course: Course, section: Row, halves: Floats, raw: Floats, step: float, before: int
+) -> None:
+    """Set the places of a section's samples to the means of the path around them."""
+    corner = section.leg
+    for at in range(section.last - section.first + 1):
+        station = section.begin + at * step
+        while corner + 1 < section.end_leg and course.stations[corner + 1] <= station:
+            corner += 1
+        half = _half_width(course.stations, section, halves, corner, station) / step
+        x, y, total = raw[before + at, 0], raw[before + at, 1], 1.0
+        for away in range(1, math.ceil(half)):
+            weight = 1.0 - away / half
+            x += weight * (raw[before + at - away, 0] + raw[before + at + away, 0])
+            y += weight * (raw[before + at - away, 1] + raw[before + at + away, 1])
+            total += 2.0 * weight
+        sample = course.samples[section.first + at]
+        sample.x, sample.y = x / total, y / total
+
+
+@inner_part
+def _half_width(
+    stations: Floats, section: Row, halves: Floats, corner: int, station: float
+) -> float:
+    """Return over how many m to each side of a station the mean is taken.
+
+    ``corner`` is the point before it. It is 0 where there is no corner in reach.
+    """
+    has_before, has_after = corner > section.leg, corner + 1 < section.end_leg
+    since, until = station - stations[corner], stations[corner + 1] - station
+    before = halves[corner] if has_before else halves[corner + 1]
+    after = halves[corner + 1] if has_after else halves[corner]
+    half = (until * before + since * after) / (since + until)
+    is_near = (has_before and since < half) or (has_after and until < half)
+    return half if is_near else 0.0
+
+
+@inner_part
+def _bend(samples: Any, section: Row, step: float) -> None:
+    """Fill in the headings and the curvature of a section whose samples have their places."""
+    first, last = section.first, section.last
+    for at in range(first, last + 1):
+        behind, ahead = samples[max(at - 1, first)], samples[min(at + 1, last)]
+        heading = math.atan2(ahead.y - behind.y, ahead.x - behind.x)
+        if at > first:
+            before = samples[at - 1].heading
+            heading = before + wrapped(heading - before)
+        samples[at].heading = heading
+    for at in range(first, last + 1):
+        low, high = max(at - 1, first), min(at + 1, last)
+        turn = samples[high].heading - samples[low].heading
+        samples[at].curvature = turn / ((high - low) * step)
+
+
+@inner_part
+def _limit_speeds(samples: Any, section: Row, step: float, keep: Row) -> None:
+    """Fill in the speeds: of each bend by itself, then from where it can brake and speed up."""
+    first, last = section.first, section.last
+    for at in range(first, last + 1):
+        low, high = max(at - 1, first), min(at + 1, last)
+        change = abs(samples[high].curvature - samples[low].curvature) / ((high - low) * step)
+        # Where the curvature changes by c in a metre, the turning speed does by v^2 c in a second.
+        even = math.sqrt(keep.turning_acceleration / max(change, _NO_TURN))
+        turning = keep.turning / max(abs(samples[at].curvature), _NO_TURN)
+        samples[at].speed = max(min(even, turning, keep.fastest), keep.slowest)
+    for at in range(last - 1, first - 1, -1):
+        after = samples[at + 1].speed
+        reached = math.sqrt(after * after + 2.0 * keep.braking * step)
+        samples[at].speed = min(samples[at].speed, reached)
+    for at in range(first + 1, last + 1):
+        before = samples[at - 1].speed
+        reached = math.sqrt(before * before + 2.0 * keep.acceleration * step)
+        samples[at].speed = min(samples[at].speed, reached)
