@@ -267,14 +267,23 @@ LARGE_FOLDERS = {
 }
 
 
-def modules() -> list[str]:
+@cache
+def modules() -> tuple[str, ...]:
     """Paths under ``src`` without the suffix."""
-    return sorted(
-        path.relative_to(SOURCE).with_suffix("").as_posix()
-        for package in ("roomba", "roomba_ros")
-        for path in (SOURCE / package).rglob("*.py")
-        if path.stem not in ("__init__", "__main__")
+    return tuple(
+        sorted(
+            path.relative_to(SOURCE).with_suffix("").as_posix()
+            for package in ("roomba", "roomba_ros")
+            for path in (SOURCE / package).rglob("*.py")
+            if path.stem not in ("__init__", "__main__")
+        )
     )
+
+
+@cache
+def untested() -> dict[str, str | None]:
+    """Modules without files of their own, each with its line of the table."""
+    return {module: entry_of(module) for module in modules() if not own_test(module).exists()}
 
 
 def own_test(module: str) -> Path:
@@ -320,8 +329,8 @@ def reached_from(path: Path) -> set[Path]:
 def test_every_module_has_a_test_of_its_own_or_a_reason() -> None:
     missing = [
         f"{own_test(module).relative_to(ROOT)} for src/{module}.py"
-        for module in modules()
-        if not own_test(module).exists() and entry_of(module) is None
+        for module, entry in untested().items()
+        if entry is None
     ]
     assert not missing, "expected a test for each module; write, or name with a reason: " + str(
         missing
@@ -329,8 +338,7 @@ def test_every_module_has_a_test_of_its_own_or_a_reason() -> None:
 
 
 def test_no_line_of_the_table_is_needless() -> None:
-    untested = [module for module in modules() if not own_test(module).exists()]
-    assert set(TESTED_BY) == {entry_of(module) for module in untested} - {None}
+    assert set(TESTED_BY) == set(untested().values()) - {None}
 
 
 @pytest.mark.parametrize("entry", sorted(TESTED_BY))
@@ -341,12 +349,8 @@ def test_what_tests_a_module_in_place_of_a_file_of_its_own_loads_it(entry: str) 
     if reason in (NODE, WARM):
         return
     reached = reached_from(TEST / test)
-    untested = [
-        module
-        for module in modules()
-        if entry_of(module) == entry and not own_test(module).exists()
-    ]
-    assert any(SOURCE / f"{module}.py" in reached for module in untested)
+    told_here = [module for module, line in untested().items() if line == entry]
+    assert any(SOURCE / f"{module}.py" in reached for module in told_here)
     if not entry.endswith("/"):
         assert SOURCE / f"{entry}.py" in reached
 
