@@ -16,6 +16,7 @@ import pytest
 from fixtures.homes.worlds import IDEAL
 from fixtures.robots.faulty_robot import FaultyRobot
 from fixtures.robots.missions import FLOOR_TOO_LITTLE, HOME, floor_clean
+from fixtures.thoroughness import core_first
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
@@ -133,7 +134,7 @@ def test_whatever_happens_what_is_promised_holds() -> None:
     run_state_machine_as_test(Faults, settings=SETTINGS)
 
 
-@pytest.mark.parametrize("seed", range(MORE or 3))
+@pytest.mark.parametrize("seed", range(MORE) if MORE else core_first(range(3), {0}))
 def test_killed_anywhere_the_same_floor_is_clean_at_the_end(tmp_path: Path, seed: int) -> None:
     whole = HeadlessMission(HOME, IDEAL, seed=seed).clean()
     random = np.random.default_rng(seed)

@@ -49,6 +49,7 @@ def test_all_that_passes_passes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert ran.passed()
 
 
+@pytest.mark.thorough
 def test_without_a_test_nothing_passed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ran = suite(tmp_path, monkeypatch, it="")
     ran.run_timed()

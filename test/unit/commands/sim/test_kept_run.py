@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures.homes.tiny_home import tiny_home
 
 from roomba.commands.sim.command import main
 from roomba.history.database import History
@@ -65,14 +66,14 @@ def test_what_keeps_a_run_reads_neither_the_camera_nor_the_households_plans() ->
     assert told.stdout == "[]\n"
 
 
-def test_a_run_is_not_kept_on_demand(folder: Path) -> None:
-    assert main(["--home", "studio", "--quiet", "--no-history"]) == 0
+def test_a_run_is_not_kept_on_demand(folder: Path, tmp_path: Path) -> None:
+    assert main(["--home", str(tiny_home(tmp_path)), "--quiet", "--no-history"]) == 0
     assert not folder.exists()
 
 
 def test_a_history_that_cannot_be_used_does_not_spoil_the_run(
-    folder: Path, capsys: pytest.CaptureFixture[str]
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder.write_text("no folder")
-    assert main(["--home", "studio", "--quiet"]) == 0
+    assert main(["--home", str(tiny_home(tmp_path)), "--quiet"]) == 0
     assert "not kept" in capsys.readouterr().err

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from functools import cache
 
 import numpy as np
 import pytest
@@ -78,6 +79,7 @@ def test_it_goes_on_from_what_was_remembered() -> None:
     assert other.spent(1.0, 0.2) == TimeSpent()
 
 
+@cache
 def cleaned(longest_burst: int, request: CleanRequest) -> CleanResult:
     robot = HeadlessMission(HOME, seed=3, longest_burst=longest_burst)
     return robot.clean(request).result
