@@ -139,6 +139,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/mission/phases/dust_bin_kernels": ("unit/mission/phases/test_dust_bin.py", PART),
     "roomba/mission/phases/step": ("unit/mission/phases/test_phases.py", VALUES),
     "roomba/mission/steady": ("unit/headless/test_burst.py", MISSION),
+    "roomba/mission/ticks": ("unit/mission/test_mission.py", MISSION),
     "roomba/mission/transitions": ("unit/mission/test_mission.py", MISSION),
     "roomba/perception/calibration/place_kernels": (
         "unit/perception/localization/test_localizer.py",

@@ -1,25 +1,21 @@
-"""The mission: the robot's behaviour from one command to the next, put together from its parts.
+"""The mission: what others may ask of the robot's behaviour, and know of it.
 
 No clock and no I/O: it gets commands and, 20 times a second, the senses; it returns the wanted
-twist. :mod:`.phases.machine` is the state machine and :mod:`.transitions` goes by it,
-:mod:`.commands` obeys, :mod:`.phases.phases` and :mod:`.phases.at_station` do the work of a phase,
-:mod:`.phases.job` is the present errand, and :mod:`.phases.monitor` notices what comes up in any
-phase.
+twist. It is put together from its parts: :mod:`.phases.machine` is the state machine and
+:mod:`.transitions` goes by it, :mod:`.commands` obeys, :mod:`.ticks` is what is done at each tick,
+and :mod:`.phases.job` is the present errand.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.clock import LONGEST_TICK
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import STANDSTILL, Twist
 from roomba.grid import OccupancyMap
 from roomba.mission.changed_home import ChangedHome
 from roomba.mission.checkpoint import checkpoint_of, remembered, state_after, take_up
@@ -34,36 +30,18 @@ from roomba.mission.driving.retry_policy import RetryPolicy
 from roomba.mission.exploring.exploration import Exploration, ExploreResult
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
-from roomba.mission.phases import phases
 from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.carpet import CarpetSense
-from roomba.mission.phases.cleaning import CleanPhase
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event, MissionState, Phase
 from roomba.mission.phases.monitor import Monitor
-from roomba.mission.phases.step import PhaseStep
-from roomba.mission.steady import Steady, SteadyTicks
+from roomba.mission.steady import Steady
+from roomba.mission.ticks import MissionStep, MissionTicks
 from roomba.mission.transitions import Transitions
-from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.felt_carpets import CarpetVotes
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
 from roomba.vocabulary import RoomWay
-
-
-@dataclass(frozen=True, slots=True)
-class MissionStep:
-    """What is wanted at a tick.
-
-    ``looks_around``: the place must be found before it can go on. ``wants_whole_map``: all that can
-    be seen of a map in the making was seen; it goes on when it is told the whole one. ``empties``:
-    its station is to empty its bin.
-    """
-
-    twist: Twist = STANDSTILL
-    looks_around: bool = False
-    wants_whole_map: bool = False
-    empties: bool = False
 
 
 class Mission:
@@ -85,23 +63,18 @@ class Mission:
         ``max_speed`` is the robot's top speed, m/s, which may be set later; by default the body's.
         """
         config.require_possible(robot.body)
-        self._robot, self._config = robot, config
-        self.max_speed = robot.body.max_speed if max_speed is None else max_speed
+        self._config = config
         self.obstacles = Obstacles(things, robot.walk, robot.body, config.driving)
         self._job = Job(dirt, config, robot.brush.bin_capacity, senses)
         self.ledger = self._job.ledger
         self._drives = Drives(context, robot, config.driving, self.obstacles)
         self.trail = self._drives.trail
-        self.carpet = CarpetSense(robot.brush)
-        self.carpets = CarpetVotes(context.occupancy)
-        """Where it felt carpets, over all runs."""
-        self._retries = RetryPolicy(config.driving.waiting)
-        self._at_station = AtStation(docking, robot)
+        retries = RetryPolicy(config.driving.waiting)
+        at_station = AtStation(docking, robot)
         self._monitor = Monitor(robot.walk, self._drives, self.ledger, senses)
-        self._clean_phase = CleanPhase(self._job, self._drives, self._retries, config.exploring)
         begun = MissionState(Phase.DOCKED if senses.battery.is_docked else Phase.IDLE)
         self._transitions = Transitions(
-            begun, self._job, self._drives, self.obstacles, self._at_station, self._retries
+            begun, self._job, self._drives, self.obstacles, at_station, retries
         )
         self._commands = Commands(
             config,
@@ -110,13 +83,21 @@ class Mission:
             self._job,
             self._drives,
             self.obstacles,
-            self._retries,
+            retries,
         )
         self._home = ChangedHome(self._transitions, self._job, self._drives, self.obstacles)
-        self._steady = SteadyTicks(
-            self._job, self._drives, self._at_station, self._monitor, self._retries
+        self._ticks = MissionTicks(
+            robot,
+            config,
+            self._transitions,
+            self._job,
+            self._drives,
+            at_station,
+            self._monitor,
+            retries,
+            senses,
+            robot.body.max_speed if max_speed is None else max_speed,
         )
-        self._last = senses
 
     # ---------------------------------------------------------------- commands
 
@@ -161,7 +142,7 @@ class Mission:
         ``things`` and ``dirt`` are new ones of that map.
         """
         moved = context.station.compose(self.context.station.inverse())
-        self.carpets = self.carpets.carried_to(context.occupancy, moved)
+        self._ticks.carpets = self.carpets.carried_to(context.occupancy, moved)
         self._home.use_map(context, things, dirt)
 
     def wants_map(self, occupancy: OccupancyMap) -> bool:
@@ -191,7 +172,7 @@ class Mission:
         )
         take_up(found, self._job, senses)
         self._job.look_no_more()
-        self._last = senses
+        self._ticks.last = senses
         is_docked = self._monitor.was_docked = senses.battery.is_docked
         transitions = self._transitions
         transitions.reason = found.message
@@ -210,7 +191,7 @@ class Mission:
     def message(self) -> str:
         """Why it does not do what was asked, and what helps; empty when all is well."""
         if self._monitor.is_astray and self.state.drives:
-            return f"it stands until it knows where it is: {self._last.trouble}"
+            return f"it stands until it knows where it is: {self.last.trouble}"
         return self._transitions.message
 
     @message.setter
@@ -256,16 +237,24 @@ class Mission:
     def driver(self, driver: PathDriver | None) -> None:
         self._drives.driver = driver
 
-    def steady(self, senses: Senses) -> Steady | None:
-        """Return what it does until something comes up; None: a tick decides."""
-        if not 0.0 <= senses.now - self._last.now <= LONGEST_TICK:
-            # A clock that was set changes when all this began.
-            return None
-        if self.context.zones.has_carpets:
-            # Where a drawn carpet ends is looked at tick by tick.
-            return None
-        limit = self.speed_limit(senses)
-        return self._steady.after(senses, self.state.phase, limit, sweeps=self.sweeps)
+    @property
+    def max_speed(self) -> float:
+        """The robot's top speed, m/s."""
+        return self._ticks.max_speed
+
+    @max_speed.setter
+    def max_speed(self, max_speed: float) -> None:
+        self._ticks.max_speed = max_speed
+
+    @property
+    def carpet(self) -> CarpetSense:
+        """Whether its brush is on carpet, by the current of its motor."""
+        return self._ticks.carpet
+
+    @property
+    def carpets(self) -> CarpetVotes:
+        """Where it felt carpets, over all runs."""
+        return self._ticks.carpets
 
     @property
     def is_on_carpet(self) -> bool:
@@ -275,27 +264,21 @@ class Mission:
     @property
     def last(self) -> Senses:
         """What it sensed at the last tick."""
-        return self._last
+        return self._ticks.last
 
     @property
     def last_place(self) -> tuple[float, float]:
         """Where it was at the last tick, m."""
-        return self._last.pose.x, self._last.pose.y
+        return self._ticks.last_place
 
     @property
     def sweeps(self) -> bool:
         """Whether what it drives over counts as cleaned."""
-        return self.cleaning is not None and self.state.drives and not self._job.bin.is_full
+        return self._ticks.sweeps
 
     def speed_limit(self, senses: Senses) -> float:
         """Return how fast it goes now, m/s."""
-        is_exploring = self.state.phase is Phase.EXPLORING
-        config = self._config
-        speed = config.exploring.speed if is_exploring else config.driving.speed
-        speed = min(speed, self.max_speed)
-        if senses.knowledge is Knowledge.ROUGH:
-            return min(speed, self._robot.walk.careful_speed)
-        return speed
+        return self._ticks.speed_limit(senses)
 
     def seconds_to_go(self) -> float:
         """Return about how long the clean still takes, s of robot time; charging left out."""
@@ -311,14 +294,11 @@ class Mission:
 
     def tick(self, senses: Senses) -> MissionStep:
         """Return what is wanted now."""
-        self.carpet.note(senses.brush_current)
-        self._job.account(senses, self._last, sweeps=self.sweeps)
-        self._note_carpet(senses, np.array([self.last_place]))
-        self._count_time(senses, np.array([[senses.pose.x, senses.pose.y]]))
-        self._notice(senses)
-        step = self._act(senses)
-        self._last = senses
-        return step
+        return self._ticks.tick(senses)
+
+    def steady(self, senses: Senses) -> Steady | None:
+        """Return what it does until something comes up; None: a tick decides."""
+        return self._ticks.steady(senses)
 
     def caught_up(self, senses: Senses, places: NDArray[np.float64], way: float) -> None:
         """Go on after steady ticks, the last of which began with these senses.
@@ -326,84 +306,4 @@ class Mission:
         They began at ``places``, float64 [n, 2], m; ``way`` m were driven from the tick before the
         first of them to the last.
         """
-        self._drives.caught_up(senses, places)
-        if self.sweeps:
-            self._job.bin.passed(places)
-        self._note_carpet(senses, places)
-        self.ledger.note(senses, way)
-        self._count_time(senses, places)
-        self._last = senses
-
-    def _note_carpet(self, senses: Senses, places: NDArray[np.float64]) -> None:
-        """Note what floor the brush feels at places, float64 [n, 2], m; one that is not told of
-        feels nothing."""
-        if self.sweeps and senses.brush_current > 0.0:
-            self.carpets.note(places, is_on=self.carpet.is_on)
-
-    def _count_time(self, senses: Senses, places: NDArray[np.float64]) -> None:
-        """Count what the time since the last tick went into; each tick ended at one of ``places``.
-
-        A clock that was set tells nothing.
-        """
-        each = (senses.now - self._last.now) / len(places)
-        if not 0.0 <= each <= LONGEST_TICK:
-            return
-        ways = np.diff(np.vstack((self.last_place, places)), axis=0)
-        waits = self.driver is None and self._retries.is_waiting(senses.now)
-        self._job.times.note(
-            self.state.phase,
-            np.hypot(ways[:, 0], ways[:, 1]),
-            each,
-            self.speed_limit(senses),
-            is_again=self.cleaning is not None and self.cleaning.is_again,
-            stands=self.state.drives and (waits or self._monitor.is_astray),
-        )
-
-    def _notice(self, senses: Senses) -> None:
-        """Find out what happened, and let the machine know."""
-        # Under way to it, docking says when the contact is good, and undocking when it is out.
-        at_station = self.state.phase in (Phase.DOCKING, Phase.UNDOCKING)
-        if self._monitor.contact_changed(senses) and not at_station:
-            event = Event.CONTACT if senses.battery.is_docked else Event.CONTACT_LOST
-            self._transitions.go(event, senses)
-        failure = self._monitor.failure(self.state, senses, self.last_place)
-        if failure is not None:
-            self._transitions.fail(failure.outcome, failure.reason, senses)
-
-    def _act(self, senses: Senses) -> MissionStep:
-        if self._monitor.is_astray and self.state.phase is not Phase.DOCKING:
-            return MissionStep(STANDSTILL, looks_around=self.state.drives)
-        step = self._step(senses)
-        if step.message is not None:
-            self._transitions.reason = step.message
-        if step.event is Event.CONTACT:
-            self._monitor.was_docked = True
-        if step.event is not None:
-            self._transitions.go(step.event, senses)
-        if step.failure is not None:
-            self._transitions.fail(step.failure.outcome, step.failure.reason, senses)
-        return MissionStep(step.twist, wants_whole_map=step.wants_whole_map, empties=step.empties)
-
-    def _step(self, senses: Senses) -> PhaseStep:
-        """Let the present phase say what it wants."""
-        job, drives, limit = self._job, self._drives, self.speed_limit(senses)
-        match self.state.phase:
-            case Phase.UNDOCKING:
-                stand = self._config.exploring.stand_first if self.context.is_growing else 0.0
-                return self._at_station.undock(senses, self.context.station, stand)
-            case Phase.CLEANING:
-                return self._clean_phase.tick(senses, limit)
-            case Phase.EXPLORING:
-                most_stuck = self._config.exploring.most_stuck
-                return phases.explore(job, drives, senses, limit, most_stuck)
-            case Phase.RETURNING:
-                return phases.go_home(drives, self._retries, senses, limit)
-            case Phase.DOCKING:
-                return self._at_station.dock(senses, self.context.station)
-            case Phase.CHARGING:
-                return self._at_station.charge(senses, job, self.context.tool_width)
-            case Phase.EMPTYING:
-                return self._at_station.empty(senses, job)
-            case Phase.BIN_FULL:
-                return PhaseStep(event=None if job.bin.is_full else Event.EMPTIED)
-        return PhaseStep()
+        self._ticks.caught_up(senses, places, way)

@@ -11,8 +11,9 @@ from std_srvs.srv import Trigger
 from roomba.geometry import STANDSTILL
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.inputs.senses import Senses
-from roomba.mission.mission import Mission, MissionStep
+from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Phase
+from roomba.mission.ticks import MissionStep
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.mapped_mission import MappedMission
 from roomba.storage.checkpoint import Checkpoint

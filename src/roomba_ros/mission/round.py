@@ -8,8 +8,9 @@ import rospy
 
 from roomba.geometry import Twist
 from roomba.mission.inputs.senses import Senses
-from roomba.mission.mission import Mission, MissionStep
+from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event
+from roomba.mission.ticks import MissionStep
 from roomba.robot.mapped_mission import fan_of
 from roomba_ros.mission.drive import MissionDrive
 from roomba_ros.mission.goals import Ended

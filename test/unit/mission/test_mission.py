@@ -18,8 +18,9 @@ from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery, Senses
-from roomba.mission.mission import Mission, MissionStep
+from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Errand, Event, Phase
+from roomba.mission.ticks import MissionStep
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.swept.dirt_map import DirtMap

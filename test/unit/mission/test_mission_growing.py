@@ -29,8 +29,8 @@ from roomba.mission.cleaning.request import (
     CleanRequest,
     CleanResult,
 )
-from roomba.mission.mission import MissionStep
 from roomba.mission.phases.machine import Event, Phase
+from roomba.mission.ticks import MissionStep
 from roomba.perception.swept.coverage_bits import SWEPT, TRIED
 from roomba.vocabulary import CleanMode
 
