@@ -17,8 +17,8 @@ BY_FILE: Final = ("--dist", "loadfile", "--no-loadscope-reorder")
 test/conftest.py."""
 TIMED_AT_ONCE: Final = 2
 """Robots whose promises in wall time are tested; a third would break some."""
-WAITING_AT_ONCE: Final = 1
-"""Beside those: what keeps promises in wall time as well, and takes little of a core."""
+WAITING_AT_ONCE: Final = 2
+"""Beside those: what keeps promises in wall time as well, and takes a seventh of a core each."""
 OTHERS_AT_ONCE: Final = 3
 
 

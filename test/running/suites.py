@@ -71,7 +71,7 @@ WAITING: Final = (
     "system/test_create2_line.py",
 )
 """Those of them that wait most of the time, for lines and deadlines: they run beside the others."""
-FIRST: Final = ("conformance",)
+FIRST: Final = ("conformance", "unit/planning", "unit/world")
 """What computes, and begins beside those that are timed: one core is idle then for a while."""
 BY_DEFAULT: Final = tuple(name for name, suite in SUITES.items() if not suite.by_name_only)
 
