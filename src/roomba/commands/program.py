@@ -12,7 +12,13 @@ import sys
 from pathlib import Path
 from typing import Final
 
-from roomba.commands.doctor import Finding, StepState, as_json, as_table, why_not_importable
+from roomba.commands.doctor import (
+    Finding,
+    StepState,
+    as_json,
+    as_table,
+    why_not_all_importable,
+)
 from roomba.commands.spelling import spelled
 
 _COMMANDS: Final = {
@@ -89,7 +95,9 @@ def main(arguments: list[str] | None = None) -> int:
     )
     parser.add_argument("--json", action="store_true", help="for a program to read")
     wanted = parser.parse_args(arguments)
-    findings = [_imported(module) for module in (*_MODULES, *_EXTRAS)]
+    modules = (*_MODULES, *_EXTRAS)
+    reasons = why_not_all_importable(Path(sys.executable), modules, {"PATH": ""})
+    findings = [_imported(module, reason) for module, reason in reasons.items()]
     print(as_json(findings) if wanted.json else as_table(findings))
     return 1 if any(finding.state is StepState.MISSING for finding in findings) else 0
 
@@ -103,8 +111,7 @@ def _usage() -> str:
     return f"usage: roomba COMMAND ...\n\n{kept.replace('./roomba', 'roomba')}\n\n{_ELSEWHERE}"
 
 
-def _imported(module: str) -> Finding:
-    reason = why_not_importable(Path(sys.executable), module, {"PATH": ""})
+def _imported(module: str, reason: str) -> Finding:
     if not reason:
         return Finding(module, StepState.FINE)
     if module in _EXTRAS:

@@ -19,6 +19,7 @@ from roomba.commands.doctor import (
     check_python_on_path,
     check_space,
     findings_of_steps,
+    why_not_all_importable,
     why_not_importable,
 )
 
@@ -104,6 +105,14 @@ def test_reason_why_a_module_does_not_import() -> None:
     python = Path(sys.executable)
     assert why_not_importable(python, "json", {}) == ""
     assert "no_such_module" in why_not_importable(python, "no_such_module", {})
+
+
+def test_of_several_modules_each_has_its_reason() -> None:
+    python = Path(sys.executable)
+    assert why_not_all_importable(python, ("json", "ast"), {}) == {"json": "", "ast": ""}
+    reasons = why_not_all_importable(python, ("json", "no_such_module", "ast"), {})
+    assert "no_such_module" in reasons["no_such_module"]
+    assert reasons["json"] == reasons["ast"] == ""
 
 
 def test_python_that_is_not_there_is_a_reason(tmp_path: Path) -> None:
