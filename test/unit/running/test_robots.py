@@ -38,6 +38,9 @@ def suite(folder: Path, monkeypatch: pytest.MonkeyPatch, **files: str) -> Robots
     for workers in ("TIMED_AT_ONCE", "WAITING_AT_ONCE", "OTHERS_AT_ONCE"):
         monkeypatch.setattr(f"running.robots.{workers}", 0)  # what starts none is quicker
     monkeypatch.setenv("PYTHONPATH", str(Path(robots.__file__).parents[1]))
+    # None of all other plugins that are installed.
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+    monkeypatch.setenv("PYTEST_PLUGINS", "xdist.plugin")
     return Robots(Asked(("ros",)))
 
 

@@ -251,7 +251,7 @@ def test_a_home_of_round_and_slanted_walls_is_cleaned_without_touching_them(turn
     assert run.figures.hits == 0
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_cable_is_felt_and_offered_as_a_zone_where_it_lies(tmp_path: Path) -> None:
     home = tmp_path / "cable"
     shutil.copytree(HOMES / "bay", home)
