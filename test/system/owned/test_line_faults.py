@@ -59,11 +59,13 @@ def stands_in_time(neato: NeatoEnd, body: LineBody) -> None:
 
 
 def test_a_command_lasts_a_tick(body: LineBody) -> None:
-    began, before = time.monotonic(), body.read().time
+    times, before = [time.monotonic()], body.read().time
     for _ in range(20):
         body.act(Command())
-    assert time.monotonic() - began == pytest.approx(1.0, abs=0.06)
-    assert body.read().time - before == pytest.approx(1.0, abs=0.06)
+        times.append(time.monotonic())
+    # On a busy machine one or the other ends late.
+    assert np.median(np.diff(times)) == pytest.approx(0.05, abs=0.005)
+    assert body.read().time - before == pytest.approx(times[-1] - times[0], abs=0.06)
 
 
 def test_unplugged_it_stands_and_plugged_in_it_goes_on(neato: NeatoEnd, body: LineBody) -> None:
