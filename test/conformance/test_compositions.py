@@ -119,7 +119,8 @@ def test_wheels_that_are_a_nanometre_off_lead_along_the_same_path(
         return replace(readings, odometry=replace(odometry, x=odometry.x + off))
 
     monkeypatch.setattr(SimulatedBody, "read", read)
-    assert_same(REFERENCE(case), reference, within=1e-4)
+    # A tenth of what two compositions may differ by.
+    assert_same(REFERENCE(case), reference, within=1e-3)
 
 
 @st.composite
