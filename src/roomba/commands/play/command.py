@@ -49,12 +49,12 @@ def main(arguments: list[str] | None = None) -> int:
             file = wanted.smart_home
             smart_home = None if file is None else switched_on(client, file, _warn)
             bound = listen_at(wanted)
+            _live(wanted, client, bound, source, told, smart_home)
         except RoombaError as error:
             print(f"{PROGRAM}: {error}", file=sys.stderr)
             return 2
         except KeyboardInterrupt:
             return 0
-        _live(wanted, client, bound, source, told, smart_home)
     return 0
 
 

@@ -26,12 +26,12 @@ def main(arguments: list[str] | None = None) -> int:
         figures, recording = _run_of(wanted.run, History(wanted.history or history_folder()))
         robot = RecordedRobot(figures, recording)
         bound = listen_at(wanted)
+        robot.play(is_playing=True)
+        told = f"A recorded run of {figures.source.home!r}. Its page:"
+        serve_page(robot, bound, told, is_opened=wanted.open)
     except RoombaError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return 2
-    robot.play(is_playing=True)
-    told = f"A recorded run of {figures.source.home!r}. Its page:"
-    serve_page(robot, bound, told, is_opened=wanted.open)
     return 0
 
 

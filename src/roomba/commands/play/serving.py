@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import signal
 import socket
 import sys
 
@@ -15,7 +16,7 @@ from roomba.history.recorder import HistoryKeeper
 from roomba.ui.desktop import open_on_desktop
 from roomba.ui.smart_home.switch import Switched
 from roomba.ui.web.app import create_app
-from roomba.ui.web.guard import LOOPBACK
+from roomba.ui.web.guard import LOOPBACK, Guard
 from roomba.ui.web.kept_token import kept_token
 from roomba.ui.web.reach import ALL, addresses_of, guard_for, is_host
 from roomba.ui.web.server import PageServer, listen
@@ -62,9 +63,30 @@ def serve_page(
     household: Household | None = None,
     smart_home: Switched | None = None,
 ) -> None:
-    """Print the address, and serve the page of a robot until Ctrl-C, and its smart home beside."""
+    """Print the address, and serve the page of a robot until Ctrl-C or SIGTERM, and its smart home beside.
+
+    Raises ServerError.
+    """
+    # SIGINT, too: where a shell put it into the background, that is ignored at first.
+    for told_to_end in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(told_to_end, signal.default_int_handler)
     guard = guard_for(kept_token(), bound.getsockname()[0])
     server = PageServer(create_app(robot, guard, keeper, household=household), bound)
+    with contextlib.ExitStack() as until_end, contextlib.suppress(KeyboardInterrupt):
+        until_end.callback(server.stop)
+        # In a thread: Ctrl-C comes here alone, and not to a loop of events that is being made.
+        server.start()
+        _tell(bound, guard, told)
+        if is_opened:
+            open_on_desktop(addresses_of(bound, guard.token)[0])
+        if smart_home is not None:
+            smart_home.start()
+            until_end.callback(smart_home.stop)
+        server.wait()
+
+
+def _tell(bound: socket.socket, guard: Guard, told: str) -> None:
+    """Print where the page is."""
     address, *others = addresses_of(bound, guard.token)
     print(f"{told}\n\n    {address}")
     if others:
@@ -72,14 +94,6 @@ def serve_page(
         print("\n".join(f"    {other}" for other in others))
     print("\nCtrl-C ends it.")
     sys.stdout.flush()
-    if is_opened:
-        open_on_desktop(address)
-    if smart_home is not None:
-        smart_home.start()
-    with contextlib.suppress(KeyboardInterrupt):
-        server.serve()
-    if smart_home is not None:
-        smart_home.stop()
 
 
 def _host(text: str) -> str:

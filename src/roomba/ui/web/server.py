@@ -57,7 +57,7 @@ def listen(host: str, port: int, *, is_fixed: bool) -> socket.socket:
 
 
 class PageServer:
-    """Serves an application in a thread of its own, or in the caller's."""
+    """Serves an application in a thread of its own."""
 
     def __init__(self, app: FastAPI, bound: socket.socket) -> None:
         """Serve nothing yet."""
@@ -82,21 +82,19 @@ class PageServer:
                 lifespan="on",
             )
         )
-        self._thread: threading.Thread | None = None
+        # To join a thread must not be interrupted: then Python takes one that runs for ended.
+        self._ended = threading.Event()
+        self._ended.set()
 
     @property
     def connections(self) -> int:
         """How many there are."""
         return len(self._server.server_state.connections)
 
-    def serve(self) -> None:
-        """Serve until the process is told to end."""
-        self._server.run(sockets=[self._socket])
-
     def start(self) -> None:
         """Serve in a thread; returns when it answers. Raises ServerError when it does not."""
-        self._thread = threading.Thread(target=self._serve, name="page", daemon=True)
-        self._thread.start()
+        self._ended.clear()
+        threading.Thread(target=self._serve, name="page", daemon=True).start()
         waiting = threading.Event()
         for _ in range(int(_START / 0.02)):
             if self._server.started:
@@ -104,11 +102,17 @@ class PageServer:
             waiting.wait(0.02)
         raise ServerError(f"expected the page to be served within {_START:g} s; it was not")
 
+    def wait(self) -> None:
+        """Wait until it serves no more: it was told to end, or it broke."""
+        self._ended.wait()
+
     def stop(self) -> None:
         """End the thread that serves."""
         self._server.should_exit = True
-        if self._thread is not None:
-            self._thread.join(_START)
+        self._ended.wait(_START)
 
     def _serve(self) -> None:
-        asyncio.run(self._server.serve(sockets=[self._socket]))
+        try:
+            asyncio.run(self._server.serve(sockets=[self._socket]))
+        finally:
+            self._ended.set()
