@@ -63,7 +63,7 @@ def serve_page(
     household: Household | None = None,
     smart_home: Switched | None = None,
 ) -> None:
-    """Print the address, and serve the page of a robot until Ctrl-C or SIGTERM, and its smart home beside.
+    """Print the address; serve the page and the smart home of a robot until Ctrl-C or SIGTERM.
 
     Raises ServerError.
     """
