@@ -41,6 +41,7 @@ from roomba.commands.pictures.sensors.odometry import picture_of_odometry
 from roomba.commands.pictures.sensors.station import picture_of_station
 from roomba.commands.pictures.smart_home import picture_of_smart_home
 from roomba.commands.pictures.teaching.belief import picture_of_belief
+from roomba.commands.pictures.teaching.bends import picture_of_bends
 from roomba.commands.pictures.teaching.floor_plan import picture_of_floor_plan
 from roomba.commands.pictures.teaching.loop import picture_of_loop_closing
 from roomba.commands.pictures.teaching.matching import picture_of_matching
@@ -88,6 +89,7 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "belief": ("flat", picture_of_belief),
     "things": ("studio", picture_of_things),
     "stages": ("studio", picture_of_stages),
+    "bends": ("empty", picture_of_bends),
     "loop_closing": ("empty", picture_of_loop_closing),
 }
 """Each picture by the name of its file: the home that it is of, and what makes it."""
