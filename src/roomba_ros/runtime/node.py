@@ -17,7 +17,6 @@ import rospy
 
 from roomba.errors import RoombaError
 from roomba_ros.runtime.connections import guard_connections
-from roomba_ros.runtime.heap import keep_large_blocks_apart
 from roomba_ros.runtime.sending import send_at_once
 from roomba_ros.runtime.subscriptions import tell_refusals
 from roomba_ros.runtime.timing.heart import HEART
@@ -50,7 +49,6 @@ class Node(Protocol):
 
 def run_node(name: str, make: Callable[[], Node]) -> None:
     """Be the ROS node ``name`` until it is told to end."""
-    keep_large_blocks_apart()
     require_master()
     register(name)
     try:
