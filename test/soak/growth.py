@@ -19,6 +19,9 @@ MOST_GROWTH: Final = 1.0
 """MB an hour, of a robot in real time."""
 MOST_DESCRIPTORS: Final = 2
 MOST_THREADS: Final = 0
+_REST: Final = 5.0
+"""s; a clean that ended is put down, and what it took given back, within that time."""
+_LOOKS: Final = 10
 _SETTLED: Final = 0.3
 """Of all samples the first ones, in which caches fill, do not count."""
 _SURE: Final = 0.95
@@ -47,11 +50,26 @@ def growth(arena: Arena) -> list[Row]:
                 cleaner.keep_cleaning()
                 cleaner.finish()
                 tell(f"clean {cleaner.row.times} ended, {end - time.monotonic():.0f} s left")
-                for name, taken in samples.items():
-                    taken.append(sample(graph.process(name)))
+                for name, taken in at_rest(graph, list(samples)).items():
+                    samples[name].append(taken)
             return [cleaner.row, *(judged(name, taken) for name, taken in samples.items())]
 
         return in_child(arena.folder, work, arena.seconds + 2.0 * ENDED)
+
+
+def at_rest(graph: RosGraph, names: list[str]) -> dict[str, Sample]:
+    """Look at processes for a while after a clean: the sample of each in which it has the least.
+
+    What a process gives back when a clean ended it gives back at a moment of its own.
+    """
+    least: dict[str, Sample] = {}
+    for _ in range(_LOOKS):
+        time.sleep(_REST / _LOOKS)
+        for name in names:
+            found = sample(graph.process(name))
+            if name not in least or found.memory < least[name].memory:
+                least[name] = found
+    return least
 
 
 def sample(process: int) -> Sample:
