@@ -22,6 +22,7 @@ MOST_THREADS: Final = 0
 _REST: Final = 5.0
 """s; a clean that ended is put down, and what it took given back, within that time."""
 _LOOKS: Final = 10
+"""In that time."""
 _SETTLED: Final = 0.3
 """Of all samples the first ones, in which caches fill, do not count."""
 _SURE: Final = 0.95
@@ -58,18 +59,18 @@ def growth(arena: Arena) -> list[Row]:
 
 
 def at_rest(graph: RosGraph, names: list[str]) -> dict[str, Sample]:
-    """Look at processes for a while after a clean: the sample of each in which it has the least.
+    """Look at processes for 5 s after a clean: the last sample of each, with its least memory.
 
     What a process gives back when a clean ended it gives back at a moment of its own.
     """
-    least: dict[str, Sample] = {}
+    found: dict[str, Sample] = {}
     for _ in range(_LOOKS):
         time.sleep(_REST / _LOOKS)
         for name in names:
-            found = sample(graph.process(name))
-            if name not in least or found.memory < least[name].memory:
-                least[name] = found
-    return least
+            now = sample(graph.process(name))
+            least = found.get(name, now).memory
+            found[name] = now._replace(memory=min(least, now.memory))
+    return found
 
 
 def sample(process: int) -> Sample:

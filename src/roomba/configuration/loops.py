@@ -84,7 +84,9 @@ class TrackingConfig(Frozen):
     """Following a path exactly, as cleaning does: m, s, rad."""
 
     sharp_corner: Acute = 0.5
+    """Sharper corners of a path are turned on the spot."""
     off_corner: Positive = 0.002
+    """m; by so much the curve that rounds off a path leaves it at most."""
     braking: Positive = 1.8
     reach: Positive = 0.06
     """Length of path over which a slow robot corrects an offset to the side."""
@@ -95,10 +97,13 @@ class TrackingConfig(Frozen):
     turning_braking: Ratio = 0.85
     """Share of the body's angular acceleration with which a turn on the spot ends."""
     corner_turning: Positive = 2.0
+    """rad/s; the most in bends."""
     corner_acceleration: Positive = 7.0
+    """rad/s2; of the turning speed, in bends."""
     slowest_corner: Positive = 0.08
+    """m/s; in the tightest bends."""
     longest_blend: Positive = 0.05
-    """m; so far before and after a soft corner the heading changes at most."""
+    """m; each point of the curve is a mean over at most this way to each side."""
     aimed: Positive = 0.01
     arrival_tolerance: Positive = 0.003
     turn_in_place_angle: Acute = 0.6

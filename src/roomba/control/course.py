@@ -34,42 +34,39 @@ def course_of(points: Floats, config: TrackingConfig, body: BodyConfig) -> Cours
     stations = np.concatenate(([0.0], np.cumsum(np.hypot(ways[:, 0], ways[:, 1]))))
     turns = np.zeros(len(points))
     turns[1:-1] = np.abs(wrap_angles(np.diff(headings)))
-    sections = _sections(stations, np.flatnonzero(turns > config.sharp_corner))
-    samples = np.zeros(int(sections["last"][-1]) + 1 if len(sections) else 0, SAMPLE)
+    sections = _sections(stations, np.flatnonzero(turns > config.sharp_corner), config)
+    samples = np.zeros(np.sum(sections["last"] - sections["first"] + 1), SAMPLE)
     course = Course(points, stations, sections, samples)
-    _round_off(course, turns, config, body)
+    room = sections["last"] - sections["first"] + 2 * sections["around"] + 1
+    raw = np.empty((np.max(room, initial=0), 2))
+    round_off(course, turns, np.zeros(len(turns)), raw, _limits(config, body))
     return course
 
 
-def _sections(stations: Floats, stops: NDArray[np.intp]) -> Rows:
+def _sections(stations: Floats, stops: NDArray[np.intp], config: TrackingConfig) -> Rows:
     """Return the sections, rows of SECTION, between the path's ends and its stops."""
-    ends = np.concatenate((stops, [len(stations) - 1]))[: max(len(stations) - 1, 0)]
-    begins = np.concatenate(([0], ends[:-1])) if len(ends) else ends
+    if len(stations) < 2:
+        return np.zeros(0, SECTION)
+    ends = np.append(stops, len(stations) - 1)
+    begins = np.append(0, stops)
     sections = np.zeros(len(ends), SECTION)
     sections["begin"], sections["end"] = stations[begins], stations[ends]
     sections["leg"], sections["end_leg"] = begins, ends
+    lengths = sections["end"] - sections["begin"]
     # A straight one is told by its ends.
-    steps = np.ceil((sections["end"] - sections["begin"]) / _STEP).astype(np.int64)
-    steps[ends - begins == 1] = 1
-    sections["last"] = np.cumsum(steps + 1) - 1
+    steps = np.where(ends - begins == 1, 1.0, np.ceil(lengths / _STEP))
+    sections["around"] = np.ceil(config.longest_blend * steps / lengths)
+    sections["last"] = np.cumsum(steps + 1.0) - 1.0
     sections["first"] = sections["last"] - steps
     return sections
 
 
-def _round_off(course: Course, turns: Floats, config: TrackingConfig, body: BodyConfig) -> None:
-    """Fill in the course's curve; ``turns`` is how much the path turns at each point, rad."""
-    keep = np.zeros(1, BENDING)
-    keep["off_corner"], keep["longest_blend"] = config.off_corner, config.longest_blend
-    keep["turning"] = config.corner_turning
-    keep["turning_acceleration"] = config.corner_acceleration
-    keep["slowest"], keep["fastest"] = config.slowest_corner, body.max_speed
-    keep["acceleration"], keep["braking"] = body.max_acceleration, config.braking
-    round_off(course, turns, np.zeros(len(turns)), np.empty((_room(course, config), 2)), keep)
-
-
-def _room(course: Course, config: TrackingConfig) -> int:
-    """Return for how many samples the longest section needs room, with what is around it."""
-    sections = course.sections
-    steps = sections["last"] - sections["first"]
-    around = np.ceil(config.longest_blend * steps / (sections["end"] - sections["begin"]))
-    return int(np.max(steps + 2 * around + 1, initial=0))
+def _limits(config: TrackingConfig, body: BodyConfig) -> Rows:
+    """Return the limits of curves, a row of BENDING."""
+    limits = np.zeros(1, BENDING)
+    limits["off_corner"], limits["longest_blend"] = config.off_corner, config.longest_blend
+    limits["turning"] = config.corner_turning
+    limits["turning_acceleration"] = config.corner_acceleration
+    limits["slowest"], limits["fastest"] = config.slowest_corner, body.max_speed
+    limits["acceleration"], limits["braking"] = body.max_acceleration, config.braking
+    return limits

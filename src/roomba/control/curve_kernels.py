@@ -34,18 +34,19 @@ SAMPLE: Final = np.dtype(
 SECTION: Final = np.dtype(
     [
         ("begin", "f8"),  # m; along the path
-        ("end", "f8"),
+        ("end", "f8"),  # m; the same
         ("first", "i8"),  # of its samples
         ("last", "i8"),
+        ("around", "i8"),  # samples before it and behind it that its means reach
         ("leg", "i8"),  # its first one
-        ("end_leg", "i8"),  # the first one that is no longer of it
+        ("end_leg", "i8"),  # one past its last leg
     ]
 )
 """What is driven in one go: between two corners at which the robot turns on the spot."""
 
 BENDING: Final = np.dtype(
     [
-        ("off_corner", "f8"),  # m; the curve is not farther from the path
+        ("off_corner", "f8"),  # m; the curve is not farther off the path
         ("longest_blend", "f8"),  # m; no mean is taken over more than this to each side
         ("turning", "f8"),  # rad/s
         ("turning_acceleration", "f8"),  # rad/s2
@@ -55,12 +56,14 @@ BENDING: Final = np.dtype(
         ("braking", "f8"),  # m/s2
     ]
 )
-"""What a curve has to keep, one row."""
+"""Limits of a curve, one row."""
 
 _HALVINGS: Final = 10
+"""Of the interval in which a mean's width is looked for."""
 _WIDENING: Final = 0.5
 """By so much of the way from one corner to the next the mean may widen."""
 _NO_TURN: Final = 1e-9
+"""1/m or 1/m2; a curvature, or its change, that is none."""
 
 
 class Course(NamedTuple):
@@ -77,36 +80,34 @@ class Course(NamedTuple):
 
 
 @entry
-def round_off(course: Course, turns: Floats, halves: Floats, raw: Floats, keep: Any) -> None:
+def round_off(course: Course, turns: Floats, halves: Floats, raw: Floats, limits: Any) -> None:
     """Fill in the samples of a course.
 
     ``turns`` [n] is how much the path turns at each of its points, rad, to either side. ``halves``
     [n] is room for how far to each side of a corner the mean is taken, m, and ``raw`` for the
-    samples of the longest section and what is straight before and after it. ``keep`` is one row of
-    BENDING.
+    samples of the longest section and what is straight around it. ``limits`` is one row of BENDING.
     """
     for section in course.sections:
         step = (section.end - section.begin) / (section.last - section.first)
-        before = math.ceil(keep[0].longest_blend / step)
-        _widen(course.stations, turns, section, halves, keep[0])
-        _lay_out(course, section, raw, step, before)
-        _average(course, section, halves, raw, step, before)
+        _widen(course.stations, turns, section, halves, limits[0])
+        _lay_out(course, section, raw, step)
+        _average(course, section, halves, raw, step)
         _bend(course.samples, section, step)
-        _limit_speeds(course.samples, section, step, keep[0])
+        _limit_speeds(course.samples, section, step, limits[0])
 
 
 @inner_part
-def _widen(stations: Floats, turns: Floats, section: Row, halves: Floats, keep: Row) -> None:
+def _widen(stations: Floats, turns: Floats, section: Row, halves: Floats, limits: Row) -> None:
     """Set how far to each side of the section's corners the mean is taken, m.
 
     As far as it leaves the path by what it may, and changing slowly from corner to corner.
     """
     first, last = section.leg + 1, section.end_leg - 1
     for at in range(first, last + 1):
-        narrow, wide = 0.0, keep.longest_blend
+        narrow, wide = 0.0, limits.longest_blend
         for _ in range(_HALVINGS):
             half = 0.5 * (narrow + wide)
-            if _off_corner(stations, turns, at, first, last, half) <= keep.off_corner:
+            if _off_corner(stations, turns, at, first, last, half) <= limits.off_corner:
                 narrow = half
             else:
                 wide = half
@@ -140,11 +141,12 @@ def _off_corner(
 
 
 @inner_part
-def _lay_out(course: Course, section: Row, raw: Floats, step: float, before: int) -> None:
-    """Write down the path's points at the samples, m, and at as many before and after as told.
+def _lay_out(course: Course, section: Row, raw: Floats, step: float) -> None:
+    """Write down the path's points at the samples, m, and around the section.
 
-    Before and after it the path goes straight on.
+    Before and behind it the path is thought to go straight on.
     """
+    before = section.around
     points, stations, leg = course.points, course.stations, section.leg
     for at in range(section.last - section.first + 2 * before + 1):
         station = section.begin + (at - before) * step
@@ -157,10 +159,9 @@ def _lay_out(course: Course, section: Row, raw: Floats, step: float, before: int
 
 
 @inner_part
-def _average(
-    course: Course, section: Row, halves: Floats, raw: Floats, step: float, before: int
-) -> None:
+def _average(course: Course, section: Row, halves: Floats, raw: Floats, step: float) -> None:
     """Set the places of a section's samples to the means of the path around them."""
+    before = section.around
     corner = section.leg
     for at in range(section.last - section.first + 1):
         station = section.begin + at * step
@@ -205,6 +206,10 @@ def _bend(samples: Any, section: Row, step: float) -> None:
             before = samples[at - 1].heading
             heading = before + wrapped(heading - before)
         samples[at].heading = heading
+    if last > first + 1:
+        # Those of the ends are still those half a step farther in.
+        samples[first].heading = 2.0 * samples[first].heading - samples[first + 1].heading
+        samples[last].heading = 2.0 * samples[last].heading - samples[last - 1].heading
     for at in range(first, last + 1):
         low, high = max(at - 1, first), min(at + 1, last)
         turn = samples[high].heading - samples[low].heading
@@ -212,21 +217,21 @@ def _bend(samples: Any, section: Row, step: float) -> None:
 
 
 @inner_part
-def _limit_speeds(samples: Any, section: Row, step: float, keep: Row) -> None:
+def _limit_speeds(samples: Any, section: Row, step: float, limits: Row) -> None:
     """Fill in the speeds: of each bend by itself, then from where it can brake and speed up."""
     first, last = section.first, section.last
     for at in range(first, last + 1):
         low, high = max(at - 1, first), min(at + 1, last)
         change = abs(samples[high].curvature - samples[low].curvature) / ((high - low) * step)
         # Where the curvature changes by c in a metre, the turning speed does by v^2 c in a second.
-        even = math.sqrt(keep.turning_acceleration / max(change, _NO_TURN))
-        turning = keep.turning / max(abs(samples[at].curvature), _NO_TURN)
-        samples[at].speed = max(min(even, turning, keep.fastest), keep.slowest)
+        even = math.sqrt(limits.turning_acceleration / max(change, _NO_TURN))
+        turning = limits.turning / max(abs(samples[at].curvature), _NO_TURN)
+        samples[at].speed = max(min(even, turning, limits.fastest), limits.slowest)
     for at in range(last - 1, first - 1, -1):
         after = samples[at + 1].speed
-        reached = math.sqrt(after * after + 2.0 * keep.braking * step)
+        reached = math.sqrt(after * after + 2.0 * limits.braking * step)
         samples[at].speed = min(samples[at].speed, reached)
     for at in range(first + 1, last + 1):
         before = samples[at - 1].speed
-        reached = math.sqrt(before * before + 2.0 * keep.acceleration * step)
+        reached = math.sqrt(before * before + 2.0 * limits.acceleration * step)
         samples[at].speed = min(samples[at].speed, reached)

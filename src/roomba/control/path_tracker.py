@@ -17,7 +17,7 @@ from roomba.geometry import Pose, Twist
 class PathTracker:
     """Drives along ``points``, float64 [n, 2], m, from the first to the last.
 
-    The robot should stand near the first one; from farther away it drives to the first leg's line.
+    The robot should stand near the first one; from farther away it drives to the curve.
     """
 
     def __init__(
@@ -48,6 +48,10 @@ class PathTracker:
         """Return the wanted twist; ``limit`` is the speed wanted, m/s."""
         linear, angular = track(self.state[0], self.course, pose.x, pose.y, pose.theta, limit)
         return Twist(linear, angular)
+
+    def stand(self) -> None:
+        """Note that the robot stands, as it was not driven for a while."""
+        self._row["speed"] = 0.0
 
     @property
     def is_done(self) -> bool:

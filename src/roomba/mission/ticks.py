@@ -128,7 +128,7 @@ class MissionTicks:
     @property
     def sweeps(self) -> bool:
         """Whether what it drives over counts as cleaned."""
-        return self._job.cleaning is not None and self._drives_now and not self._job.bin.is_full
+        return self._job.cleaning is not None and self._is_under_way and not self._job.bin.is_full
 
     @property
     def last_place(self) -> tuple[float, float]:
@@ -140,7 +140,7 @@ class MissionTicks:
         return self._transitions.state.phase
 
     @property
-    def _drives_now(self) -> bool:
+    def _is_under_way(self) -> bool:
         return self._transitions.state.drives
 
     def _note_carpet(self, senses: Senses, places: NDArray[np.float64]) -> None:
@@ -166,7 +166,7 @@ class MissionTicks:
             each,
             self.speed_limit(senses),
             is_again=cleaning is not None and cleaning.is_again,
-            stands=self._drives_now and (waits or self._monitor.is_astray),
+            stands=self._is_under_way and (waits or self._monitor.is_astray),
         )
 
     def _notice(self, senses: Senses) -> None:
@@ -182,7 +182,7 @@ class MissionTicks:
 
     def _act(self, senses: Senses) -> MissionStep:
         if self._monitor.is_astray and self._phase is not Phase.DOCKING:
-            return MissionStep(STANDSTILL, looks_around=self._drives_now)
+            return MissionStep(STANDSTILL, looks_around=self._is_under_way)
         step = self._step(senses)
         if step.message is not None:
             self._transitions.reason = step.message

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -65,8 +65,8 @@ def test_sections_end_at_sharp_corners_and_nowhere_else(legs: Legs) -> None:
     made = course(*legs)
     sharp = [0]
     for leg, (turn, _) in enumerate(legs[1:], start=1):
-        if abs(abs(turn) - CONFIG.sharp_corner) < 1e-6:
-            return  # Rounding tells on which side it is.
+        # Rounding would tell on which side it is.
+        assume(abs(abs(turn) - CONFIG.sharp_corner) > 1e-6)
         if abs(turn) > CONFIG.sharp_corner:
             sharp.append(leg)
     assert made.sections["leg"].tolist() == sharp
@@ -85,9 +85,9 @@ def test_the_curve_stays_near_its_path_from_end_to_end(legs: Legs) -> None:
         found = places(curve(made, row))
         off = shapely.distance(shapely.LineString(points), shapely.points(found))
         assert off.max() <= CONFIG.off_corner + ROUNDING
-        # Corners between two samples lie beside the curve, too.
+        # Corners lie beside the curve, too; between two samples that cuts them off.
         off = shapely.distance(shapely.LineString(found), shapely.points(points))
-        assert off.max() <= CONFIG.off_corner + 0.25 * 0.004
+        assert off.max() <= CONFIG.off_corner + 0.001
         for end in (0, -1):
             assert np.hypot(*(found[end] - points[end])) <= CONFIG.off_corner + ROUNDING
 
@@ -107,13 +107,12 @@ def test_headings_and_curvature_are_those_of_the_places(legs: Legs) -> None:
     found, step = places(samples), np.hypot(*np.diff(places(samples), axis=0).T)
     between = np.unwrap(np.arctan2(*np.diff(found, axis=0).T[::-1]))
     middle = 0.5 * (between[:-1] + between[1:])
-    off = np.abs(samples["heading"][1:-1] - middle)
-    assert np.abs(np.cos(off)) == pytest.approx(1.0, abs=1e-4)
+    assert np.cos(samples["heading"][1:-1] - middle) == pytest.approx(1.0)
     assert (np.abs(np.diff(samples["heading"])) < CONFIG.sharp_corner).all()
     # All that the headings turn is what the curvature says.
     turned = samples["heading"][-1] - samples["heading"][0]
     bent = np.sum(0.5 * (samples["curvature"][1:] + samples["curvature"][:-1]) * step)
-    assert bent == pytest.approx(turned, abs=0.02 + 0.1 * abs(turned))
+    assert bent == pytest.approx(turned, abs=0.01 + 0.05 * abs(turned))
 
 
 @given(soft_legs)
@@ -164,6 +163,32 @@ def test_an_arc_of_short_legs_is_an_arc() -> None:
     middle = samples[len(samples) // 4 : 3 * len(samples) // 4]
     assert middle["curvature"] == pytest.approx(1.0 / 0.17, rel=0.15)
     assert middle["speed"].min() > 0.25
+
+
+@pytest.mark.parametrize("length", [0.01, 0.05, 0.15, 0.25, 1.0])
+def test_sections_as_long_as_a_grid_makes_them_have_room(length: float) -> None:
+    # The mean reaches over a whole number of samples: rounding may tell one more or one less.
+    for turn in (0.1, -0.3):
+        for scale in np.linspace(1.0 - 1e-15, 1.0 + 1e-15, 7):
+            made = course((0.0, 0.5 * length * scale), (turn, 0.5 * length * scale))
+            section = made.sections[0]
+            step = (section["end"] - section["begin"]) / (section["last"] - section["first"])
+            assert section["around"] * step >= CONFIG.longest_blend - ROUNDING
+
+
+def test_a_section_that_begins_in_a_bend_is_bent_from_its_first_sample() -> None:
+    around = np.linspace(0.0, 2.0, 60)
+    points = 0.3 * np.column_stack((np.sin(around), 1.0 - np.cos(around)))
+    # A sharp corner before it: so the bend begins with a section.
+    made = course_of(np.vstack(((-0.2, 0.2), points)), CONFIG, BODY)
+    samples = curve(made, 1)
+    inside = samples["curvature"][len(samples) // 2]
+    assert inside == pytest.approx(1.0 / 0.3, rel=0.05)
+    assert samples["curvature"][len(samples) // 4 : -len(samples) // 4] == pytest.approx(
+        inside, rel=0.1
+    )
+    # Towards its ends the path is thought to go straight on: it bends less, evenly.
+    assert (np.abs(np.diff(samples["curvature"])) < 0.2 * inside).all()
 
 
 def test_points_that_are_nearly_the_same_are_one() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import shlex
-import signal
 import socket
 import sys
 from pathlib import Path
@@ -19,7 +18,7 @@ from roomba.commands.play.owned import (
     owned_life,
     require_fitting,
 )
-from roomba.commands.play.serving import add_page_options, listen_at, serve_page
+from roomba.commands.play.serving import add_page_options, end_as_by_ctrl_c, listen_at, serve_page
 from roomba.commands.spelling import spelled
 from roomba.configuration.frozen import load_config
 from roomba.configuration.household import HouseholdConfig
@@ -43,6 +42,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser = _parser()
     wanted = parser.parse_args(arguments)
     require_fitting(parser, wanted)
+    # However the program is told to end, a robot on a line is given back.
+    end_as_by_ctrl_c()
     with contextlib.ExitStack() as until_end:
         try:
             client, source, told = _robot(wanted, until_end, _repeat(arguments))
@@ -67,8 +68,6 @@ def _robot(
         until_end.callback(client.end)
         source = RunSource("play", wanted.home, wanted.seed, repeat)
         return client, source, f"The robot lives in {wanted.home!r}. Its page:"
-    # It is given back however the program is told to end.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     life = bumping_life(wanted) if wanted.lidar == "none" else owned_life(wanted, _warn)
     until_end.callback(life.end)
     source = RunSource("play", wanted.robot, None, repeat)
@@ -94,8 +93,8 @@ def _live(
         keeper.totals,
     )
     client.start()
-    household.start()
     try:
+        household.start()
         serve_page(
             client,
             bound,

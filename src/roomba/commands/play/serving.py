@@ -47,6 +47,15 @@ def add_page_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def end_as_by_ctrl_c() -> None:
+    """Have SIGTERM end the program as Ctrl-C does, and Ctrl-C where a shell has it ignored.
+
+    That is in the background.
+    """
+    for told_to_end in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(told_to_end, signal.default_int_handler)
+
+
 def listen_at(wanted: argparse.Namespace) -> socket.socket:
     """Return a socket where the options want the page; raises ServerError."""
     port = DEFAULT_PORT if wanted.port is None else wanted.port
@@ -67,12 +76,9 @@ def serve_page(
 
     Raises ServerError.
     """
-    # SIGINT, too: where a shell put it into the background, that is ignored at first.
-    for told_to_end in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(told_to_end, signal.default_int_handler)
-    guard = guard_for(kept_token(), bound.getsockname()[0])
-    server = PageServer(create_app(robot, guard, keeper, household=household), bound)
     with contextlib.ExitStack() as until_end, contextlib.suppress(KeyboardInterrupt):
+        guard = guard_for(kept_token(), bound.getsockname()[0])
+        server = PageServer(create_app(robot, guard, keeper, household=household), bound)
         until_end.callback(server.stop)
         # In a thread: Ctrl-C comes here alone, and not to a loop of events that is being made.
         server.start()

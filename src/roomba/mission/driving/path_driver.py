@@ -28,6 +28,8 @@ from roomba.mission.driving.trail import Trail
 from roomba.mission.driving.way_ahead import LEAVING, WayAhead
 from roomba.mission.inputs.senses import Senses
 
+_PAUSE: Final = 3.5
+"""Ticks; after more of them without a command its drive has stopped."""
 _HERE: Final = 0.001
 """m; the robot stands at what is as near as this."""
 
@@ -160,7 +162,12 @@ class PathDriver:
         self._jumps.last, self._was_touching = senses.now, False
 
     def _follow_clock(self, now: float) -> None:
-        """When the clock was set, move the times that are remembered with it."""
+        """When the clock was set, move the times that are remembered with it.
+
+        A robot that was not driven for some ticks stands by now.
+        """
+        if self._jumps.last is None or now - self._jumps.last > _PAUSE * self._robot.timing.tick:
+            self.tracker.stand()
         jump = self._jumps.at(now)
         self.progress["at"] += jump
         if self._backs_from is not None:

@@ -82,9 +82,10 @@ class PageServer:
                 lifespan="on",
             )
         )
+        self._thread: threading.Thread | None = None
         # To join a thread must not be interrupted: then Python takes one that runs for ended.
         self._ended = threading.Event()
-        self._ended.set()
+        self._broken: BaseException | None = None
 
     @property
     def connections(self) -> int:
@@ -93,26 +94,35 @@ class PageServer:
 
     def start(self) -> None:
         """Serve in a thread; returns when it answers. Raises ServerError when it does not."""
-        self._ended.clear()
-        threading.Thread(target=self._serve, name="page", daemon=True).start()
-        waiting = threading.Event()
+        self._thread = threading.Thread(target=self._serve, name="page", daemon=True)
+        self._thread.start()
         for _ in range(int(_START / 0.02)):
             if self._server.started:
                 return
-            waiting.wait(0.02)
+            if self._ended.wait(0.02):
+                break
+        self._tell_if_broken()
         raise ServerError(f"expected the page to be served within {_START:g} s; it was not")
 
     def wait(self) -> None:
-        """Wait until it serves no more: it was told to end, or it broke."""
+        """Wait until it serves no more; raises ServerError when it broke."""
         self._ended.wait()
+        self._tell_if_broken()
 
     def stop(self) -> None:
         """End the thread that serves."""
         self._server.should_exit = True
-        self._ended.wait(_START)
+        if self._thread is not None and self._thread.ident is not None:
+            self._ended.wait(_START)
+
+    def _tell_if_broken(self) -> None:
+        if self._broken is not None:
+            raise ServerError(f"the page's server ended: {self._broken}") from self._broken
 
     def _serve(self) -> None:
         try:
             asyncio.run(self._server.serve(sockets=[self._socket]))
+        except BaseException as error:  # SystemExit, too, which would end this thread alone
+            self._broken = error
         finally:
             self._ended.set()

@@ -6,20 +6,35 @@ import os
 import signal
 import socket
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fixtures.robots.able_robot import AbleRobot
 
 from roomba.commands.play import serving
-from roomba.ui.web.server import PageServer, listen
+from roomba.ui.web.server import PageServer, ServerError, listen
+
+DEADLINE = 15
+"""s; a page that is still served then heard nothing."""
+SOON = 5.0
+"""s; so long ending takes at most."""
+
+
+def _too_late(*_: object) -> None:
+    raise AssertionError(f"it is still served after {DEADLINE} s")
 
 
 @pytest.fixture(autouse=True)
-def handlers() -> Iterator[None]:
-    before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
+def told_to_end() -> Iterator[None]:
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
+    before = {each: signal.getsignal(each) for each in numbers}
+    signal.signal(signal.SIGALRM, _too_late)
+    signal.alarm(DEADLINE)
     yield
+    signal.alarm(0)
     for each, handler in before.items():
         signal.signal(each, handler)
 
@@ -31,31 +46,64 @@ def bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[socket.so
         yield bound
 
 
-def told(number: signal.Signals) -> None:
+def tell(number: signal.Signals) -> None:
     os.kill(os.getpid(), number)
 
 
+def serve(bound: socket.socket) -> None:
+    serving.serve_page(AbleRobot(), bound, "A robot. Its page:", is_opened=False)
+
+
+def expect_no_page() -> None:
+    for thread in threading.enumerate():
+        if thread.name == "page":
+            thread.join(SOON)
+            assert not thread.is_alive()
+
+
+MOMENTS = {
+    "while the page is made": (serving, "create_app"),
+    "as it begins to serve": (PageServer, "start"),
+    "while the address is printed": (serving, "_tell"),
+    "while it serves": (PageServer, "wait"),
+}
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("moment", ["start", "wait"])
+@pytest.mark.parametrize("moment", MOMENTS)
 def test_told_to_end_at_any_moment_it_ends_and_serves_no_more(
     bound: socket.socket, monkeypatch: pytest.MonkeyPatch, number: signal.Signals, moment: str
 ) -> None:
-    plain = getattr(PageServer, moment)
+    owner, name = MOMENTS[moment]
+    plain = getattr(owner, name)
+    told_at: list[float] = []
 
-    def told_then(server: PageServer) -> None:
-        # As it begins, or a little later, while it serves.
-        threading.Timer(0.0 if moment == "start" else 0.2, told, [number]).start()
-        plain(server)
+    def told_then(*arguments: Any, **named: Any) -> Any:
+        told_at.append(time.monotonic())
+        threading.Timer(0.005, tell, [number]).start()
+        return plain(*arguments, **named)
 
-    monkeypatch.setattr(PageServer, moment, told_then)
-    serving.serve_page(AbleRobot(), bound, "A robot. Its page:", is_opened=False)
-    for thread in threading.enumerate():
-        if thread.name == "page":
-            thread.join(1.0)
-            assert not thread.is_alive()
+    monkeypatch.setattr(owner, name, told_then)
+    serving.end_as_by_ctrl_c()
+    serve(bound)
+    assert time.monotonic() - told_at[0] < SOON
+    expect_no_page()
 
 
 def test_in_the_background_of_a_shell_it_hears_that_it_is_to_end(bound: socket.socket) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Timer(0.3, told, [signal.SIGINT]).start()
-    serving.serve_page(AbleRobot(), bound, "A robot. Its page:", is_opened=False)
+    serving.end_as_by_ctrl_c()
+    threading.Timer(0.3, tell, [signal.SIGINT]).start()
+    serve(bound)
+    expect_no_page()
+
+
+def test_a_server_that_breaks_is_told(
+    bound: socket.socket, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def breaks(*_: object, **__: object) -> None:
+        raise OSError("no more files")
+
+    monkeypatch.setattr("uvicorn.Server.serve", breaks)
+    with pytest.raises(ServerError, match="no more files"):
+        serve(bound)

@@ -84,11 +84,12 @@ class Rig:
         theta = self.pose.theta + twist.angular * CONFIG.timing.tick
         half = 0.5 * (self.pose.theta + theta)
         way = twist.linear * CONFIG.timing.tick
-        x, y = self.pose.x + way * math.cos(half), self.pose.y + way * math.sin(half)
-        if all(math.hypot(x - a, y - b) >= BODY + radius for a, b, radius in self.discs):
-            self.pose = Pose(x, y, theta)
-        else:
-            self.pose = Pose(self.pose.x, self.pose.y, theta)
+        # As far as the discs leave it: up to them.
+        for part in np.linspace(way, 0.0, 16).tolist():
+            x, y = self.pose.x + part * math.cos(half), self.pose.y + part * math.sin(half)
+            if all(math.hypot(x - a, y - b) >= BODY + radius for a, b, radius in self.discs):
+                break
+        self.pose = Pose(x, y, theta)
 
     def run(
         self, seconds: float = 120.0, meanwhile: Callable[[int], None] = lambda tick: None

@@ -26,6 +26,7 @@ _PATH: Final = (
 """m; a piece of a plan along walls, whose fine grid is of 1 cm."""
 _SPEED: Final = 0.3
 """m/s; that is wanted."""
+_MOST_TICKS: Final = 400
 _FROM: Final = (1.2, 1.2)
 """m; where the path begins in the home, which is to be empty there."""
 
@@ -69,8 +70,10 @@ def _driven(home: Home, tracker: PathTracker) -> tuple[Floats, Floats]:
     """Let a robot that knows its place follow a path: where it was, m, and how far off, mm."""
     x, y = tracker.course.points[0].tolist()
     robot = Simulator(home, SimulatedRobotConfig(), start=Pose(x, y, 0.0))
-    places, off, tick = [], [], RobotConfig().timing.tick
-    while not tracker.is_done:
+    places: list[tuple[float, float]] = []
+    off: list[float] = []
+    tick = RobotConfig().timing.tick
+    while not tracker.is_done and len(places) < _MOST_TICKS:
         robot.step(tracker.tick(robot.pose, _SPEED), tick)
         places.append((robot.pose.x, robot.pose.y))
         off.append(1000.0 * abs(tracker.aside))
