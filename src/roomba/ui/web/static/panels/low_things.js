@@ -13,7 +13,14 @@ function show() {
   const things = get("home")?.low_things ?? [];
   $("low-offer").hidden = things.length === 0;
   if (things.length && !document.querySelector(".panel").dataset.open) open("rooms");
-  $("low-offers").replaceChildren(...things.map(entry));
+  // What is still offered stays where it is: a tap on what is drawn anew meanwhile would be lost.
+  const list = $("low-offers"), wanted = new Map(things.map((thing) => [JSON.stringify(thing), thing]));
+  for (const item of [...list.children]) if (!wanted.delete(item.dataset.thing)) item.remove();
+  for (const [key, thing] of wanted) {
+    const item = entry(thing);
+    item.dataset.thing = key;
+    list.append(item);
+  }
 }
 
 function entry({ times, corners }) {
