@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.localization import RecentSightConfig
 from roomba.control.path_tracker import PathTracker
+from roomba.control.tracking_kernels import TRACK
 from roomba.geometry import Pose
 from roomba.headless.body import SimulatedBody
 from roomba.headless.burst_kernels import run
@@ -178,7 +179,8 @@ class Burst:
         if driver is None:
             return self._nowhere
         tracker = driver.tracker
-        return Drive(tracker.state, tracker.course, driver.progress, driver.ahead.rows)
+        before, ahead = np.zeros(1, TRACK), driver.ahead.rows
+        return Drive(tracker.state, before, tracker.course, driver.progress, ahead)
 
     def _floor(self) -> Floor:
         """Return what is cleaned now; without a clean what is driven over does not count."""
@@ -271,7 +273,8 @@ def _nowhere(brain: Brain) -> Drive:
     robot = brain.robot
     points = np.array([[0.0, 0.0], [1.0, 0.0]])
     tracker = PathTracker(points, robot.tracking, robot.body, robot.timing.tick)
-    return Drive(tracker.state, tracker.course, np.zeros(1, PROGRESS), np.zeros(1, AHEAD))
+    before, progress, ahead = np.zeros(1, TRACK), np.zeros(1, PROGRESS), np.zeros(1, AHEAD)
+    return Drive(tracker.state, before, tracker.course, progress, ahead)
 
 
 _UNWATCHED: Final = np.zeros(1, WATCH), np.zeros((1, 1), np.bool_)

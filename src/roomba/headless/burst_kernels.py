@@ -136,13 +136,10 @@ def wanted(burst: Any, drive: Drive, x: float, y: float, theta: float) -> tuple[
     if not burst.drives:
         return 0.0, 0.0, False
     tracker: Any = drive.state[0]
-    section, leg, turning = tracker.section, tracker.leg, tracker.turning
-    along, aside, speed = tracker.along, tracker.aside, tracker.speed
+    drive.before[0] = drive.state[0]
     linear, angular = track(tracker, drive.course, x, y, theta, burst.limit)
     if tracker.done > 0.0:
-        tracker.section, tracker.leg, tracker.turning = section, leg, turning
-        tracker.along, tracker.aside, tracker.speed = along, aside, speed
-        tracker.done = 0.0
+        drive.state[0] = drive.before[0]
         return 0.0, 0.0, True
     return linear, angular, False
 

@@ -106,9 +106,13 @@ class Sight(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """The tracker, its path, how it comes farther on it, and how far that is clear."""
+    """The tracker, its path, how it comes farther on it, and how far that is clear.
+
+    ``before`` is room for the tracker's state as it was before a tick.
+    """
 
     state: Rows
+    before: Rows
     course: Course
     progress: Rows
     ahead: Rows

@@ -48,10 +48,7 @@ def add_page_options(parser: argparse.ArgumentParser) -> None:
 
 
 def end_as_by_ctrl_c() -> None:
-    """Have SIGTERM end the program as Ctrl-C does, and Ctrl-C where a shell has it ignored.
-
-    That is in the background.
-    """
+    """Have SIGTERM and SIGINT raise KeyboardInterrupt; shells ignore SIGINT for background jobs."""
     for told_to_end in (signal.SIGINT, signal.SIGTERM):
         signal.signal(told_to_end, signal.default_int_handler)
 

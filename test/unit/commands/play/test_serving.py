@@ -1,4 +1,4 @@
-"""A page is served until the program is told to end, at whatever moment that is."""
+"""SIGINT and SIGTERM end the server of a page, at any moment."""
 
 from __future__ import annotations
 

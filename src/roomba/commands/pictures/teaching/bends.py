@@ -27,6 +27,7 @@ _PATH: Final = (
 _SPEED: Final = 0.3
 """m/s; that is wanted."""
 _MOST_TICKS: Final = 400
+"""A drive that takes more of them does not come to its end."""
 _FROM: Final = (1.2, 1.2)
 """m; where the path begins in the home, which is to be empty there."""
 
