@@ -100,6 +100,10 @@ class MemoryConfig(Frozen):
     reason."""
     goes_well: Positive = 20.0
     """s of wall time after which what was taken up is no danger."""
+    free_space: Positive = 2e6
+    """Bytes; with less on the disk of the errand it is told that the disk is full,"""
+    free_space_period: Positive = 1.0
+    """which is looked at so often: s of wall time."""
 
 
 class PlacingConfig(Frozen):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import replace
 
@@ -17,6 +18,7 @@ from roomba.mission.ticks import MissionStep
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.mapped_mission import MappedMission
 from roomba.storage.checkpoint import Checkpoint
+from roomba.storage.free_space import require_free_space
 from roomba.vocabulary import listed
 from roomba_ros.mission.carpets import CarpetTopics
 from roomba_ros.mission.drive import MissionDrive
@@ -96,10 +98,12 @@ class MissionNode:
             read_thing_config(),
         )
         self._background = Background()
+        self._memory_folder = folder_of("~memory_folder", "mission")
         self._home: KnownHome | None = None
         self._newer: KnownHome | None = None
         self._memory: MissionMemory | None = None
         self._finished = -self._nodes.periods.finish
+        self._looked_at_disk = -math.inf
         self._senses = HeardSenses(self._config, self._nodes.hearing, *_HEARD)
         self._context = HomeTopics(
             self._config,
@@ -133,6 +137,7 @@ class MissionNode:
         senses = self._sense(now)
         self._mapped.limit_speed(self._parameters.refresh().robot_max_speed)
         self._follow_home(now, senses)
+        self._watch_disk()
         mission = self._mapped.mission
         self._orders.serve(mission is not None)
         if mission is None or senses is None:
@@ -243,8 +248,19 @@ class MissionNode:
 
     def _memory_by(self, digest: str) -> MissionMemory:
         robot = rospy.get_namespace().strip("/") or "robot"
-        folder = folder_of("~memory_folder", "mission") / robot
+        folder = self._memory_folder / robot
         return MissionMemory(folder, digest, self._nodes.memory, self._background)
+
+    def _watch_disk(self) -> None:
+        """Let it be told while the disk is full."""
+        memory, now = self._nodes.memory, time.monotonic()
+        if now - self._looked_at_disk < memory.free_space_period:
+            return
+        self._looked_at_disk = now
+        self._background.do(
+            "maps, pictures and the errand may not be kept",
+            lambda: require_free_space(self._memory_folder, memory.free_space),
+        )
 
     def _step(self, mission: Mission, senses: Senses) -> MissionStep:
         if self._context.is_changing and mission.state.drives:

@@ -82,7 +82,7 @@ class MissionTopics:
         """Publish what is due; return the state if it is told now."""
         self._show_plan(now, mission)
         self._show_maps(now, mission)
-        own = mission.message or self._background.trouble
+        own = "; ".join(filter(None, (mission.message, self._background.trouble)))
         if not self._is_due(
             now, (mission.state, mission.queue, mission.is_on_carpet, self._trouble, own)
         ):

@@ -230,6 +230,18 @@ def test_a_disk_that_refuses_is_told_and_what_was_refused_is_kept_when_it_does_n
     assert order("stop")[0]
 
 
+def test_a_disk_with_too_little_room_is_told_before_it_refuses_anything(graph: RosGraph) -> None:
+    config = graph.folder / "nodes.yaml"
+    config.write_text("memory: {free_space: 1.0e+18}\n")
+    graph.set_param("/nodes_config", str(config))
+    world, node = start(graph)
+    world.does("docked", 30.0)
+    wait_until(lambda: "No space left on device" in world.state.message, 5.0, "it is told")
+    assert "may not be kept" in world.state.message
+    assert world.state.state == "docked"
+    assert node.output.count("No space left on device") == 1
+
+
 def test_a_full_bin_is_told_and_waited_for(graph: RosGraph) -> None:
     world, _ = start(graph)
     world.x, world.is_docked = 0.0, False
