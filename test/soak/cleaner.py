@@ -36,6 +36,7 @@ class Cleaner:
         self.row = Row("clean")
         self.may_be_told_otherwise = False
         """Whether others gave orders: the clean under way need not end as it should."""
+        self._waited = ""
         rospy.Subscriber("/vacuum/state", VacuumState, self._on_state)
         rospy.Subscriber("/trouble", String, lambda told: self.trouble.append(told.data))
         self._client = ActionClient("clean", CleanAction)
@@ -53,7 +54,7 @@ class Cleaner:
             until(self.has_ended, READY)
         self._judge()
         if until(self._is_ready, ENDED) is not None:
-            self.may_be_told_otherwise = False
+            self.may_be_told_otherwise, self._waited = False, ""
             self._client.send_goal(CleanGoal())
             self.row.times += 1
             if until(lambda: self.state.phase == "cleaning" or self.has_ended(), READY) is None:
@@ -86,6 +87,7 @@ class Cleaner:
         return self.state.phase in ("docked", "idle")
 
     def _stop(self) -> None:
+        self._waited = f"{self.state.phase}: {self.state.message}"
         with contextlib.suppress(rospy.ServiceException):
             rospy.ServiceProxy("/stop", Trigger)()
 
@@ -96,7 +98,8 @@ class Cleaner:
         if self.row.times > 0 and self._client.get_state() != GoalStatus.SUCCEEDED:
             said = self._client.get_goal_status_text()
             status = self._client.get_state()
-            self.row.broken.append(f"clean {self.row.times}: status {status}, {said}")
+            why = f"{said}, as it waited for a person: {self._waited}" if self._waited else said
+            self.row.broken.append(f"clean {self.row.times}: status {status}, {why}")
 
     def goes_on(self, row: Row) -> None:
         """Note in a row if the clean does not get farther; one that ends meanwhile did."""

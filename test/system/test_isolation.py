@@ -117,10 +117,14 @@ def test_a_page_that_was_killed_is_back_at_its_port(isolated: RosGraph) -> None:
 def test_it_ends_as_any_robot_and_leaves_nothing(isolated: RosGraph) -> None:
     (run, *_) = isolated.programs
     processes = processes_of(run.process.pid)
+
+    def nothing_is_left() -> bool:
+        left = any(os.path.exists(f"/proc/{process}/exe") for process in processes)
+        return run.status is not None and not left
+
     os.kill(run.process.pid, signal.SIGINT)
-    promised(lambda: run.status is not None, ENDED, "it has ended")
+    promised(nothing_is_left, ENDED, "it has ended, and all that it started")
     assert "has not ended yet" not in run.output
-    assert not any(os.path.exists(f"/proc/{process}/exe") for process in processes)
     assert "expected an isolated robot, and none runs" in inside(isolated, "true").stderr
 
 

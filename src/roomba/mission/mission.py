@@ -89,14 +89,14 @@ class Mission:
         self._ticks = MissionTicks(
             robot,
             config,
-            self._transitions,
-            self._job,
-            self._drives,
-            at_station,
-            self._monitor,
-            retries,
-            senses,
-            robot.body.max_speed if max_speed is None else max_speed,
+            transitions=self._transitions,
+            job=self._job,
+            drives=self._drives,
+            at_station=at_station,
+            monitor=self._monitor,
+            retries=retries,
+            senses=senses,
+            max_speed=robot.body.max_speed if max_speed is None else max_speed,
         )
 
     # ---------------------------------------------------------------- commands

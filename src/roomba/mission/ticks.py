@@ -60,6 +60,7 @@ class MissionTicks:
         self,
         robot: RobotConfig,
         config: MissionConfig,
+        *,
         transitions: Transitions,
         job: Job,
         drives: Drives,
