@@ -16,6 +16,8 @@ import rosgraph
 import rospy
 from fixtures.graph import START_DEADLINE, RosGraph
 from fixtures.homes.tiny_home import tiny_home
+from fixtures.waiting import unchanged
+from geometry_msgs.msg import Twist
 from roomba_robot.srv import EmergencyStop
 from roslib.message import get_message_class
 from soak.arena import Arena
@@ -28,6 +30,10 @@ FLOOD: Final = 10_000
 """Messages a second that a flood is to have, as far as one sender gets, and in all."""
 ANSWERED: Final = 1.0
 """s of wall time in which the emergency stop answers meanwhile."""
+OBEYED: Final = 60.0
+"""s of wall time in which an order is done, or given up."""
+_QUIET: Final = 1.0
+"""s of wall time without a command, after which nothing is under way."""
 CONNECTIONS: Final = 10_000
 VIEWERS: Final = 1_000
 SHOWN: Final = 5.0
@@ -107,9 +113,18 @@ def flood(graph: RosGraph, cleaner: Cleaner, topic: str) -> Row:
     if cleaner.probe.counts["/speed"] - before < 0.5 * 10.0 * took:
         row.broken.append("the robot's speed was told less than half as often as it is to be")
     # Messages of nothing may have been orders: to pause, to stop, to go elsewhere.
+    if cleaner.may_be_told_otherwise:
+        _wait_until_obeyed(cleaner)
     if cleaner.state.phase == "cleaning":
         cleaner.goes_on(row)
     return row
+
+
+def _wait_until_obeyed(cleaner: Cleaner) -> None:
+    """Wait until what was ordered is done, or given up: the next clean would give way to it."""
+    probe = cleaner.probe
+    probe.hear("/cmd_vel", Twist)
+    until(lambda: unchanged(lambda: probe.counts["/cmd_vel"], _QUIET), OBEYED)
 
 
 def _emergency_stop_answers() -> bool:
