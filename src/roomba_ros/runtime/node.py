@@ -24,6 +24,8 @@ from roomba_ros.runtime.timing.progress import Progress
 from roomba_ros.runtime.timing.ticker import Ticker
 
 _asked_to_end = threading.Event()
+_has_begun = threading.Event()
+"""Set when the start is over: until then no loop looks whether it is to end."""
 
 CLOCK_DEADLINE = 10.0
 """s of wall time that a node waits for the first /clock message."""
@@ -72,12 +74,13 @@ def run_node(name: str, make: Callable[[], Node]) -> None:
 
 
 def settle() -> None:
-    """End the start: signs of life are given from now on.
+    """End the start: signs of life are given from now on, and a signal only asks it to end.
 
     What was made until now is no longer looked through for garbage: hundreds of thousands of
     objects, of imports and compiled functions. That takes up to 0.1 s, in which nothing ticks, each
     time when enough new ones were made.
     """
+    _has_begun.set()
     gc.collect()
     gc.freeze()
     HEART.begin()
@@ -92,18 +95,25 @@ def _stop(node: Node) -> None:
 
 
 def register(name: str) -> None:
-    """Become the ROS node ``name``; SIGINT and SIGTERM only ask it to end, see told_to_end.
+    """Become the ROS node ``name``; SIGINT and SIGTERM ask it to end, see told_to_end.
 
-    rospy's own handler works through the shutdown inside the interrupted main thread, and hangs
-    for ever when that thread was just asking the master for something.
+    Until :func:`settle` they end it at once: a start may take long and looks at nothing. rospy's
+    own handler works through the shutdown inside the interrupted main thread, and hangs for ever
+    when that thread was just asking the master for something.
     """
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: _asked_to_end.set())
+        signal.signal(number, _on_ending)
     guard_connections()
     send_at_once()
     # A log that the disk refuses is no reason for a traceback with each line of it.
     logging.raiseExceptions = False
     rospy.init_node(name, disable_signals=True)
+
+
+def _on_ending(*_: object) -> None:
+    _asked_to_end.set()
+    if not _has_begun.is_set():
+        threading.Thread(target=leave, args=(0,), daemon=True).start()
 
 
 def told_to_end() -> bool:

@@ -9,6 +9,7 @@ from fixtures.graph import RosGraph
 from fixtures.waiting import promised, wait_until
 
 NODE = """
+import sys
 import time
 import rospy
 from roomba_ros.runtime.node import run_node
@@ -17,9 +18,10 @@ class Holding:
     period = 0.05
     def start(self):
         rospy.core.add_shutdown_hook(lambda reason: time.sleep(60.0))
-        print("begun", flush=True)
+        print("starts", flush=True)
+        time.sleep(float(sys.argv[1]))
     def tick(self, now):
-        pass
+        print("ticks", flush=True)
     def stop(self):
         print("stopped", flush=True)
 
@@ -32,9 +34,18 @@ ENDED = 1.8
 def test_a_node_that_its_shutdown_holds_up_ends_all_the_same_after_its_last_word(
     graph: RosGraph,
 ) -> None:
-    program = graph.run(sys.executable, "-c", NODE)
-    wait_until(lambda: "begun" in program.output, 30.0, "it runs")
+    program = graph.run(sys.executable, "-c", NODE, "0")
+    wait_until(lambda: "ticks" in program.output, 30.0, "it runs")
     program.send_to_leader(signal.SIGINT)
     promised(lambda: program.status is not None, ENDED, "it has ended")
     assert program.status == 0
     assert "stopped" in program.output
+
+
+def test_a_start_however_long_is_not_waited_for(graph: RosGraph) -> None:
+    program = graph.run(sys.executable, "-c", NODE, "60")
+    wait_until(lambda: "starts" in program.output, 30.0, "it starts")
+    program.send_to_leader(signal.SIGINT)
+    promised(lambda: program.status is not None, ENDED, "it has ended")
+    assert program.status == 0
+    assert "ticks" not in program.output

@@ -18,6 +18,7 @@ from roomba.control.speed_loop import Hazards
 from roomba.geometry import Pose, Twist
 from roomba.headless.body import SimulatedBody
 from roomba.mission.docking.beams import StationBeams
+from roomba.mission.inputs.senses import EmptyingTold
 from roomba.perception.localization.belief.belief import unknown_belief
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.matching.scan_view import LidarModel, PlacedScan
@@ -107,6 +108,15 @@ def test_one_side_of_the_bumper_and_one_wheel_are_enough(side: str) -> None:
 def test_what_is_counted_and_weighed_is_sensed_at_its_time() -> None:
     senses = senses_of(Readings(7.5, Pose(), grains=3.0, in_bin=0.5), Pose(), Knowledge.KNOWN)
     assert (senses.now, senses.grains, senses.in_bin, senses.trouble) == (7.5, 3.0, 0.5, "")
+
+
+def test_what_brush_and_station_tell_comes_through() -> None:
+    told = EmptyingTold(is_at_work=True, bag=0.3)
+    readings = Readings(7.5, Pose(), brush_current=0.4, emptying=told)
+    senses = senses_of(readings, Pose(), Knowledge.KNOWN)
+    assert (senses.brush_current, senses.emptying) == (0.4, told)
+    plain = senses_of(Readings(7.5, Pose()), Pose(), Knowledge.KNOWN)
+    assert (plain.brush_current, plain.emptying) == (0.0, None)
 
 
 def test_without_a_gyro_the_wheels_tell_how_it_turns() -> None:
