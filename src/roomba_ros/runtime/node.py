@@ -97,9 +97,10 @@ def _stop(node: Node) -> None:
 def register(name: str) -> None:
     """Become the ROS node ``name``; SIGINT and SIGTERM ask it to end, see told_to_end.
 
-    Until :func:`settle` they end it at once: a start may take long and looks at nothing. rospy's
-    own handler works through the shutdown inside the interrupted main thread, and hangs for ever
-    when that thread was just asking the master for something.
+    Until :func:`settle` they end it at once, and it leaves with the master what a killed node does:
+    a start may take long and looks at nothing. rospy's own handler works through the shutdown
+    inside the interrupted main thread, and hangs for ever when that thread was just asking the
+    master for something.
     """
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _on_ending)
@@ -113,7 +114,11 @@ def register(name: str) -> None:
 def _on_ending(*_: object) -> None:
     _asked_to_end.set()
     if not _has_begun.is_set():
-        threading.Thread(target=leave, args=(0,), daemon=True).start()
+        # What is under way may take the exception for its own. No thread: its start takes a lock
+        # that this one may hold.
+        signal.signal(signal.SIGALRM, lambda *_: os._exit(0))
+        signal.setitimer(signal.ITIMER_REAL, LEAVING)
+        raise SystemExit(0)
 
 
 def told_to_end() -> bool:
