@@ -165,6 +165,11 @@ class CleaningConfig(Frozen):
     """m2; smaller floor out of reach is not tried again."""
     least_for_round: Positive = 0.02
     """m2; a patch as large as this is worth another round, though ``enough`` is clean."""
+    worth_way: Positive = 100.0
+    """m of way for each m2; a round that takes more is not driven though ``enough`` is clean, and a
+    new plan leaves slivers that take more: polishing a plan leaves floor by the same measure."""
+    worth_way_to_enough: Positive = 500.0
+    """The same of a round while less than ``enough`` is clean."""
     most_ways_out: Count = 40
     """Times, in a clean, that it leaves a place where it is shut in, or waits."""
     most_cut_offs: Count = 12

@@ -78,5 +78,5 @@ class Transitions:
         """Drive there no more; what was not driven of a round is planned again."""
         drives, cleaning = self._drives, self._job.cleaning
         if drives.driver is not None and cleaning is not None and drives.is_round:
-            cleaning.interrupted(drives.driver.left)
+            cleaning.interrupted(drives.driver.rest)
         drives.driver = None

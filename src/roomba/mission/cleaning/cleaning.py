@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mission import CleaningConfig
 from roomba.geometry import Pose
-from roomba.grid import GridFrame
 from roomba.mission.cleaning.checkpoint import Values
 from roomba.mission.cleaning.dirty import DirtyFloor
 from roomba.mission.cleaning.ledger import CoverageLedger
@@ -22,13 +21,20 @@ from roomba.mission.cleaning.missed import is_hidden, missed_floor
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, Missed
 from roomba.mission.cleaning.rounds import Rounds
 from roomba.mission.cleaning.stages import Stage, edges_of
+from roomba.mission.cleaning.worth import (
+    is_worth_its_way,
+    large_patches,
+    plan_worth_its_way,
+    slivers_of,
+)
 from roomba.mission.driving.gaps import closed_gaps
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import CoverageMap, patches_of
 from roomba.perception.swept.dirt_map import DirtMap
+from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.path.costmap import Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError
-from roomba.raster.regions import numbered_regions
+from roomba.planning.path.polyline import Path
 from roomba.vocabulary import CleanMode, RoomWay
 
 Floats = NDArray[np.float64]
@@ -66,6 +72,7 @@ class Cleaning:
         self._looked_again = False
         self._unreachable = False
         self._scrubbed = False
+        self._rest: Floats | None = None
         self.broken_off = 0.0
         """m; of the last path that was not driven to its end, what was left then."""
 
@@ -188,7 +195,7 @@ class Cleaning:
         self._looked_again, self._unreachable = True, False
         staging = (self._context.staging.x, self._context.staging.y)
         left = self.coverage.wanted & ~self.clean & self._reachable(staging, lasting)
-        large = _patches(left, self.coverage.frame, self._config.least_area_to_retry)
+        large = large_patches(left, self.coverage.frame, self._config.least_area_to_retry)
         if not large.any():
             return False
         self._ledger.add(Stage("what was out of reach", large))
@@ -200,27 +207,29 @@ class Cleaning:
         self._unreachable = True
         self._rounds.cut_off()
 
-    def interrupted(self, left: float) -> None:
-        """Tell that the last path was not driven to its end, of which ``left`` m were left.
+    def interrupted(self, rest: Floats) -> None:
+        """Tell that the last path was not driven to its end; ``rest``, float64 [n, 2], m, is left.
 
         So it says nothing of what was missed; what is worth a round is planned first.
         """
-        self._begin_anew()
-        self.broken_off = left
+        self._begin_anew(rest)
+        self.broken_off = Path(rest).length
 
-    def plans_anew(self, now: float, left: float) -> bool:
-        """Whether a path, ``left`` m of it, on which something stands is to be planned anew.
+    def plans_anew(self, now: float, rest: Floats) -> bool:
+        """Whether the ``rest``, float64 [n, 2], m, of a path on which something stands is to be
+        planned anew.
 
         With all that is known by now that takes less way than to go around it and to come back for
         what is next to it.
         """
-        if not self._rounds.replans(now, left):
+        if not self._rounds.replans(now, Path(rest).length):
             return False
-        self._begin_anew()
+        self._begin_anew(rest)
         return True
 
-    def _begin_anew(self) -> None:
-        """Do not count the last plan as a round."""
+    def _begin_anew(self, rest: Floats) -> None:
+        """Do not count the last plan, of which there is a ``rest``, as a round."""
+        self._rest = rest
         self._rounds.begin_anew()
         self._ledger.try_again()
 
@@ -274,7 +283,7 @@ class Cleaning:
         floor = planner.floor.with_obstacles(obstacles).coverable(at)
         # Edges are driven along on the whole map, by which the place is known better.
         todo = self._ledger.untried & floor & ~edges_of(floor, self._context)
-        todo = _patches(todo, self.coverage.frame, self._config.least_while_growing)
+        todo = large_patches(todo, self.coverage.frame, self._config.least_while_growing)
         if not todo.any():
             return None
         self._ledger.note_tried(todo)
@@ -292,7 +301,7 @@ class Cleaning:
         todo = stage.floor & self.coverage.missed
         missed, config = float(np.count_nonzero(todo)) * self.coverage.cell_area, self._config
         is_anew = self._rounds.takes_anew()
-        large = _patches(todo, self.coverage.frame, config.least_for_round) if is_anew else todo
+        large = large_patches(todo, self.coverage.frame, config.least_for_round)
         if is_anew and large.any():
             todo = large
         elif not self._rounds.is_first:
@@ -307,13 +316,7 @@ class Cleaning:
         self._rounds.begin(missed)
         edges_only = self.request.mode is CleanMode.EDGES
         try:
-            plan = self._context.plan_coverage(
-                (here.x, here.y),
-                todo,
-                obstacles,
-                edges_only=edges_only,
-                end=self._ledger.way_out_of(stage),
-            )
+            plan = self._planned(stage, todo, here, obstacles)
         except NoPathError:
             self._unreachable = True
             todo &= self._reachable((here.x, here.y), obstacles)
@@ -328,6 +331,39 @@ class Cleaning:
             else:
                 return None
         return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
+
+    def _planned(
+        self, stage: Stage, todo: Mask, here: Pose, obstacles: list[RoundObstacle]
+    ) -> CoveragePlan:
+        """Plan over what is to do; beside the rest of a path slivers may be left.
+
+        Raises NoPathError.
+        """
+        rest, self._rest = self._rest, None
+        if rest is None:
+            return self._plan_over(stage, todo, here, obstacles)
+        frame, config = self.coverage.frame, self._config
+        floor = todo & self._reachable((here.x, here.y), obstacles)
+        slivers = slivers_of(floor, self.coverage.along(rest), frame, config.least_for_round)
+        return plan_worth_its_way(
+            lambda floor: self._plan_over(stage, floor, here, obstacles),
+            todo,
+            slivers,
+            frame,
+            config.worth_way,
+        )
+
+    def _plan_over(
+        self, stage: Stage, todo: Mask, here: Pose, obstacles: list[RoundObstacle]
+    ) -> CoveragePlan:
+        """Plan over floor of a stage, and on to where the next part begins."""
+        return self._context.plan_coverage(
+            (here.x, here.y),
+            todo,
+            obstacles,
+            edges_only=self.request.mode is CleanMode.EDGES,
+            end=self._ledger.way_out_of(stage),
+        )
 
     def _worth_it(
         self, stage: Stage, todo: Mask, here: Pose, obstacles: list[RoundObstacle]
@@ -346,8 +382,17 @@ class Cleaning:
         wanted = max(int(np.count_nonzero(stage.floor & reachable)), 1)
         share = 1.0 - np.count_nonzero(todo) / wanted
         config = self._config
-        least = config.least_for_round if share >= config.enough else config.least_patch
-        return _patches(todo, self.coverage.frame, least)
+        is_enough = share >= config.enough
+        least = config.least_for_round if is_enough else config.least_patch
+        worth = config.worth_way if is_enough else config.worth_way_to_enough
+        patches = large_patches(todo, self.coverage.frame, least)
+        is_worth_it = patches.any() and is_worth_its_way(
+            lambda floor: self._plan_over(stage, floor, here, obstacles),
+            patches,
+            self.coverage.frame,
+            worth,
+        )
+        return patches & is_worth_it
 
     def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:
         """Remember floor that a person may open later: it is tried again before the end."""
@@ -387,11 +432,4 @@ class Cleaning:
     def _begin_stage(self, *, is_driven: bool = False) -> None:
         self._rounds.begin_stage(is_driven=is_driven)
         self._scrubbed = self.is_again = False
-
-
-def _patches(floor: Mask, frame: GridFrame, least: float) -> Mask:
-    """Return what of a floor is in patches of ``least`` m2 or more."""
-    labels = numbered_regions(floor)
-    is_large = np.bincount(labels.ravel()) * frame.resolution**2 >= least
-    is_large[0] = False
-    return np.asarray(is_large[labels])
+        self._rest = None

@@ -50,7 +50,7 @@ class Drives:
         self,
         points: Floats,
         senses: Senses,
-        plans_anew: Callable[[float, float], bool] | None = None,
+        plans_anew: Callable[[float, Floats], bool] | None = None,
     ) -> None:
         """Begin to drive along points, float64 [n, 2], m.
 
@@ -127,5 +127,5 @@ class Drives:
         self.obstacles.forget()
 
 
-def _never(now: float, left: float) -> bool:
+def _never(now: float, rest: Floats) -> bool:
     return False

@@ -28,6 +28,8 @@ from roomba.mission.driving.trail import Trail
 from roomba.mission.driving.way_ahead import LEAVING, WayAhead
 from roomba.mission.inputs.senses import Senses
 
+Floats = NDArray[np.float64]
+
 _PAUSE: Final = 3.5
 """Ticks; after more of them without a command its drive has stopped."""
 _HERE: Final = 0.001
@@ -90,11 +92,11 @@ class PathDriver:
         config: DrivingConfig,
         robot: RobotConfig,
         senses: Senses,
-        plans_anew: Callable[[float, float], bool] = lambda now, left: False,
+        plans_anew: Callable[[float, Floats], bool] = lambda now, rest: False,
     ) -> None:
         """Begin; the path may begin anywhere: the robot goes to its start first.
 
-        ``plans_anew`` is asked, with the time, s, and how much is left, m, whether a path on which
+        ``plans_anew`` is asked, with the time, s, and the :attr:`rest`, whether a path on which
         something stands is better planned anew than driven around that.
         """
         self._rejoin, self._obstacles, self._trail = rejoin, obstacles, trail
@@ -129,6 +131,11 @@ class PathDriver:
         """
         course = self.tracker.course
         return course.points[course.stations > self.tracker.along + _HERE]
+
+    @property
+    def rest(self) -> Floats:
+        """What is left of the path, from where the robot is on it: float64 [n, 2], m."""
+        return self.tracker.rest
 
     @property
     def is_tracking(self) -> bool:
@@ -222,7 +229,7 @@ class PathDriver:
         if points is not None and moved > self._config.least_progress:
             self._nudged_at = senses.pose.x, senses.pose.y
             self._begin(points, senses)
-        elif self._plans_anew(senses.now, self.left):
+        elif self._plans_anew(senses.now, self.rest):
             self._state = DriveState.OVERTAKEN
         else:
             self._go_around(senses)

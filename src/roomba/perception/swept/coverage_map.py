@@ -58,11 +58,15 @@ class CoverageMap:
 
     def take_back(self, points: NDArray[np.float64]) -> None:
         """Let floor along a way, float64 [n, 2], m, be as if the tool had not passed over it."""
-        touched = np.zeros_like(self.cells)
-        for (x, y), (to_x, to_y) in zip(points[:-1].tolist(), points[1:].tolist(), strict=True):
-            sweep(touched, self.place, x, y, to_x, to_y, self.radius)
-        self.cells &= ~touched
+        self.cells[self.along(points)] &= np.uint8(~SWEPT & 0xFF)
         self.count_again()
+
+    def along(self, points: NDArray[np.float64]) -> Mask:
+        """Return what the tool passes over along a way, float64 [n, 2], m: bool over ``frame``."""
+        passed = np.zeros_like(self.cells)
+        for (x, y), (to_x, to_y) in zip(points[:-1].tolist(), points[1:].tolist(), strict=True):
+            sweep(passed, self.place, x, y, to_x, to_y, self.radius)
+        return passed > 0
 
     def lift(self) -> None:
         """Interrupt the path: the next pose does not continue the last one."""

@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from fixtures.robots.driven_cleans import HERE, cleaning, context, drive, finish
+from fixtures.robots.driven_cleans import HERE, ahead, cleaning, context, drive, finish
 from fixtures.robots.missions import DEN, HALL, HOME, TWO_ROOMS
 
 from roomba.configuration.mission import MissionConfig
@@ -33,7 +33,7 @@ def test_what_was_not_driven_is_planned_again() -> None:
     points = clean.next_path(HERE, [])
     assert points is not None
     here = drive(clean, points, 0.5)
-    clean.interrupted(1.0)
+    clean.interrupted(ahead(1.0))
     left = clean.left
     assert 0.1 < left / clean.coverage.wanted_area < 0.9
     again = clean.next_path(here, [])
@@ -97,7 +97,7 @@ def test_passes_are_stages_and_each_sweeps_all_anew() -> None:
             assert clean.stage_number == number + 1
             # What was clean once stays told as clean.
             assert np.count_nonzero(clean.clean) > 0.995 * clean.coverage.wanted_cells
-            clean.interrupted(1.0)
+            clean.interrupted(ahead(1.0))
     assert clean.next_path(HERE, []) is None
 
 
@@ -202,7 +202,7 @@ def test_with_another_context_it_goes_on_and_wants_less() -> None:
     wall = Zone("wall", ZoneKind.WALL, ((1.5, 0.0), (1.5, 2.5)))
     walled = context(zones=Zones((wall,)))
     clean.use_context(walled, DirtMap(walled.occupancy))
-    clean.interrupted(1.0)
+    clean.interrupted(ahead(1.0))
     assert (clean.coverage.swept == swept).all()
     assert not (clean.coverage.wanted & ~walled.coverable()).any()
     assert finish(clean, []) >= 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.robots.driven_cleans import FENCE, HERE, cleaning, context, drive, finish
+from fixtures.robots.driven_cleans import FENCE, HERE, ahead, cleaning, context, drive, finish
 from fixtures.robots.missions import DEN, TWO_ROOMS, WALL_X
 
 from roomba.geometry import Pose
@@ -12,6 +12,7 @@ from roomba.mission.cleaning.request import MissReason
 from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.planning.path.costmap import RoundObstacle
 from roomba.planning.path.planner import NoPathError
+from roomba.planning.path.polyline import Path
 
 
 def test_what_is_behind_a_shut_door_is_told_and_looked_for_once_more() -> None:
@@ -93,8 +94,8 @@ def test_a_path_on_which_something_stands_is_planned_anew_now_and_then() -> None
     points = clean.next_path(HERE, [])
     assert points is not None
     here = drive(clean, points, 0.4)
-    assert not clean.plans_anew(100.0, 3.0), "so near to the end that is not worth it"
-    assert clean.plans_anew(100.0, 20.0)
+    assert not clean.plans_anew(100.0, ahead(3.0)), "so near to the end that is not worth it"
+    assert clean.plans_anew(100.0, ahead(20.0))
     missed = clean.left
     again = clean.next_path(here, [(1.2, 0.6, 0.1)])
     assert again is not None
@@ -103,8 +104,41 @@ def test_a_path_on_which_something_stands_is_planned_anew_now_and_then() -> None
     assert length[1] < 0.9 * length[0]
     drive(clean, again)
     assert clean.left < 0.1 * missed
-    assert not clean.plans_anew(105.0, 20.0), "it was planned only just"
-    assert clean.plans_anew(200.0, 20.0)
+    assert not clean.plans_anew(105.0, ahead(20.0)), "it was planned only just"
+    assert clean.plans_anew(200.0, ahead(20.0))
+
+
+@pytest.mark.parametrize("share", [0.3, 0.4])
+def test_planned_anew_it_takes_no_swaths_more_for_slivers(share: float) -> None:
+    lengths = []
+    for is_told in (True, False):
+        clean = cleaning()
+        points = clean.next_path(HERE, [])
+        assert points is not None
+        here = drive(clean, points, share)
+        rest = points[round(share * len(points)) - 1 :]
+        assert clean.plans_anew(100.0, rest if is_told else ahead(20.0))
+        again = clean.next_path(here, [])
+        assert again is not None
+        lengths.append(Path(again).length / Path(rest).length)
+    # The plan leaves some cells on purpose; these it would go back for.
+    assert lengths[0] < 1.01
+    assert lengths[1] > 1.1
+
+
+def test_a_small_patch_far_away_is_worth_no_round() -> None:
+    for size, is_worth in ((20, False), (60, True)):
+        clean = cleaning()
+        points = clean.next_path(HERE, [])
+        assert points is not None
+        drive(clean, points)
+        frame = clean.coverage.frame
+        row, column = frame.cell_of(2.4, 1.9)
+        patch = np.zeros(frame.shape, np.bool_)
+        patch[row - 5 : row + 5, column - size // 2 : column + size // 2] = True
+        clean.coverage.cells[patch] &= np.uint8(~SWEPT & 0xFF)
+        clean.coverage.count_again()
+        assert (clean.next_path(HERE, []) is not None) is is_worth
 
 
 def test_planned_anew_at_the_end_it_comes_to_an_end() -> None:
@@ -116,7 +150,7 @@ def test_planned_anew_at_the_end_it_comes_to_an_end() -> None:
             break
         here = drive(clean, points)
         now += 100.0
-        clean.plans_anew(now, 20.0)
+        clean.plans_anew(now, ahead(20.0))
     assert clean.stage is None
     assert clean.coverage.fraction > 0.995
 
@@ -158,7 +192,7 @@ def test_let_out_again_it_goes_on_where_it_was() -> None:
     points = clean.next_path(HERE, [])
     assert points is not None
     drive(clean, points, 0.3)
-    assert clean.plans_anew(100.0, 20.0)
+    assert clean.plans_anew(100.0, ahead(20.0))
     # In the den, which is clean, when the door shuts behind it.
     den = clean.coverage.wanted & context(TWO_ROOMS).in_room(DEN)
     clean.coverage.cells[den] |= np.uint8(SWEPT)

@@ -32,6 +32,7 @@ STRAIGHT = np.array([(0.6, 0.5), (2.6, 0.5)])
 HERE = Pose(0.6, 0.5, 0.0)
 
 Disc = tuple[float, float, float]
+Floats = NDArray[np.float64]
 
 
 class Rig:
@@ -42,7 +43,7 @@ class Rig:
         points: NDArray[np.float64] = STRAIGHT,
         pose: Pose = HERE,
         discs: list[Disc] | None = None,
-        plans_anew: Callable[[float, float], bool] = lambda now, left: False,
+        plans_anew: Callable[[float, Floats], bool] = lambda now, rest: False,
     ) -> None:
         self.pose, self.discs = pose, discs or []
         self.time, self.clock = 0.0, 0.0
@@ -275,18 +276,18 @@ def see(rig: Rig, x: float, y: float) -> None:
     place.layer["version"] += 1
 
 
-def asked(answers: list[tuple[float, float]], answer: bool) -> Callable[[float, float], bool]:
-    """Return what writes down when it is asked, and how much of the path was left then."""
+def asked(answers: list[Floats], answer: bool) -> Callable[[float, Floats], bool]:
+    """Return what writes down what was left of the path when it is asked."""
 
-    def plans_anew(now: float, left: float) -> bool:
-        answers.append((now, left))
+    def plans_anew(now: float, rest: Floats) -> bool:
+        answers.append(rest)
         return answer
 
     return plans_anew
 
 
 def test_past_a_thing_at_the_side_it_goes_on_a_little_aside() -> None:
-    answers: list[tuple[float, float]] = []
+    answers: list[Floats] = []
     rig = Rig(plans_anew=asked(answers, True))
     see(rig, 1.5, 0.65)
     assert rig.run().state is DriveState.DONE
@@ -302,12 +303,16 @@ def test_past_a_thing_at_the_side_it_goes_on_a_little_aside() -> None:
 def test_what_stands_in_the_middle_of_its_path_has_it_planned_anew_or_gone_around(
     answer: bool,
 ) -> None:
-    answers: list[tuple[float, float]] = []
+    answers: list[Floats] = []
     rig = Rig(plans_anew=asked(answers, answer))
     see(rig, 1.5, 0.5)
     step = rig.run()
     (first, *_) = answers
-    assert 0.8 < first[1] < 1.6
+    # From where it was on its path to the end of that.
+    assert 1.0 < first[0, 0] < 1.5 - BODY
+    assert first[0, 1] == pytest.approx(0.5, abs=0.02)
+    assert first[-1] == pytest.approx(STRAIGHT[-1])
+    assert np.hypot(*np.diff(first, axis=0).T).sum() == pytest.approx(2.6 - first[0, 0], abs=0.02)
     if answer:
         assert step.state is DriveState.OVERTAKEN
         assert rig.pose.x < 1.5 - BODY

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from fixtures.robots.missions import HOME
 
@@ -115,7 +116,7 @@ def test_the_rest_takes_energy_by_its_floor_and_that_of_an_exploration_is_unknow
     assert job.needed_energy(0.1) == pytest.approx(2.0 * needed)
     assert job.cleaning is not None
     # Few patches may have a long way between them: the path that was broken off tells.
-    job.cleaning.interrupted(1000.0)
+    job.cleaning.interrupted(np.array([(0.0, 0.0), (1000.0, 0.0)]))
     assert job.needed_energy(0.2) > 10.0 * needed
     job.forget()
     assert job.needed_energy(0.2) == 0.0

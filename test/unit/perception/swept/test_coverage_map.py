@@ -120,6 +120,16 @@ def test_counts_kept_are_those_of_the_cells(ways: list[tuple[float, float]], see
     assert coverage.swept_cells == np.count_nonzero(coverage.wanted & coverage.swept)
 
 
+def test_along_a_way_is_what_numpy_says_and_changes_nothing() -> None:
+    coverage = CoverageMap(FRAME, everything(), 0.18)
+    way = [(LEFT + 0.1, LOW + 0.1), (RIGHT - 0.1, LOW + 0.3), (RIGHT - 0.2, HIGH)]
+    expected = np.minimum(off_way(*way[:2]), off_way(*way[1:])) <= coverage.radius
+    assert (coverage.along(np.array(way)) == expected).all()
+    assert not coverage.along(np.array(way[:1])).any()
+    assert coverage.swept_cells == 0
+    assert not coverage.swept.any()
+
+
 def test_all_of_nothing_is_clean() -> None:
     assert CoverageMap(FRAME, ~everything(), 0.18).fraction == 1.0
 

@@ -1,0 +1,65 @@
+"""Missed floor by size, and whether it is worth the way that it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.grid import GridFrame
+from roomba.planning.coverage.plan import CoveragePlan
+from roomba.planning.path.planner import NoPathError
+from roomba.raster.regions import numbered_regions
+
+Mask = NDArray[np.bool_]
+PlanOver = Callable[[Mask], CoveragePlan]
+"""Plans a way over a floor, bool over a frame, and on; raises NoPathError."""
+
+
+def large_patches(floor: Mask, frame: GridFrame, least: float) -> Mask:
+    """Return what of a floor, bool over ``frame``, is in patches of ``least`` m2 or more."""
+    labels = numbered_regions(floor)
+    is_large = np.bincount(labels.ravel()) * frame.resolution**2 >= least
+    is_large[0] = False
+    return np.asarray(is_large[labels])
+
+
+def slivers_of(floor: Mask, ahead: Mask, frame: GridFrame, least: float) -> Mask:
+    """Return what of a floor is not ``ahead`` and in patches of less than ``least`` m2.
+
+    All bool over ``frame``; ``ahead`` is what the rest of a path sweeps. Beside swaths that were
+    driven slivers are left, a cell wide. What is ahead is as wide as the swaths over it: with a
+    sliver beside it it takes one more.
+    """
+    behind = floor & ~ahead
+    return behind & ~large_patches(behind, frame, least)
+
+
+def plan_worth_its_way(
+    plan_over: PlanOver, floor: Mask, slivers: Mask, frame: GridFrame, worth: float
+) -> CoveragePlan:
+    """Return a plan over a floor, bool over ``frame``, or over it but for ``slivers``.
+
+    These are left where they take more way than ``worth`` m for each m2, unless they are all.
+    Raises NoPathError.
+    """
+    plan, rest = plan_over(floor), floor & ~slivers
+    if not (slivers.any() and rest.any()):
+        return plan
+    shorter = plan_over(rest)
+    return plan if _is_worth(slivers, frame, plan.length - shorter.length, worth) else shorter
+
+
+def is_worth_its_way(plan_over: PlanOver, floor: Mask, frame: GridFrame, worth: float) -> bool:
+    """Whether a way over a floor, bool over ``frame``, is longer than the way on alone by no more
+    than ``worth`` m for each m2; also where no way is known."""
+    try:
+        way = plan_over(floor).length - plan_over(np.zeros_like(floor)).length
+    except NoPathError:
+        return True
+    return _is_worth(floor, frame, way, worth)
+
+
+def _is_worth(floor: Mask, frame: GridFrame, way: float, worth: float) -> bool:
+    return bool(way <= worth * float(np.count_nonzero(floor)) * frame.resolution**2)
