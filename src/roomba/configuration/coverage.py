@@ -40,6 +40,10 @@ class CoverageConfig(Frozen):
     """Cells of way that a cell of floor is worth when the way is polished."""
     spare: Ratio = 0.0015
     """Share of the floor that polishing may leave at most."""
+    bend_worth: NotNegative = 12.0
+    """Cells of way that a sharp corner is worth: a bend in place of it costs no more."""
+    bend_unswept: Positive = 10.0
+    """Cells of way that a cell of floor is worth when corners become bends."""
     search_rounds: AtLeastOne = 5000
     """Exchanges in the search for an order, after which it goes on only if they paid."""
     search_pays: Ratio = 0.005

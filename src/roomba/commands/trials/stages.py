@@ -18,7 +18,7 @@ from roomba.errors import RoombaError
 from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 
 NAMES: Final = tuple(field.name for field in fields(CoverageStages))
-_OF_ONE_LINE: Final = ("connection", "polish")
+_OF_ONE_LINE: Final = ("connection", "polish", "rounding")
 """Stages that give one line; the others give a list of lines."""
 
 

@@ -92,6 +92,7 @@ class CoveragePlanner:
         pieces = stages.order(ground.net, edge_pieces + swath_pieces, first, last, config)
         line = stages.connection(ground.net, pieces, first, last)
         line = stages.polish(line, need, ground.middles, radius, config)
+        line = stages.rounding(line, need, ground.middles, radius, config)
         return CoveragePlan(
             _from_to(ground, line, start, end),
             tuple(ground.metres(piece) for piece in swath_pieces),

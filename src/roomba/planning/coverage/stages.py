@@ -20,6 +20,7 @@ from roomba.planning.coverage.tour.connection import connected as our_connection
 from roomba.planning.coverage.tour.net import Net
 from roomba.planning.coverage.tour.order import ordered as our_order
 from roomba.planning.coverage.tour.polish import polished as our_polish
+from roomba.planning.coverage.tour.rounding import rounded as our_rounding
 from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
@@ -34,6 +35,8 @@ Connection = Callable[[Net, list[Line], Line, Line | None], Line]
 """net, lines in order, first place, last place: one line."""
 Polish = Callable[[Line, Mask, Mask, float, CoverageConfig], Line]
 """line, need, middles, radius, configuration: a shorter and straighter line."""
+Rounding = Callable[[Line, Mask, Mask, float, CoverageConfig], Line]
+"""The same: a line with bends in place of sharp corners."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +48,7 @@ class CoverageStages:
     order: Order = our_order
     connection: Connection = our_connection
     polish: Polish = our_polish
+    rounding: Rounding = our_rounding
 
 
 OUR_STAGES: Final = CoverageStages()

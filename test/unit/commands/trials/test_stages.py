@@ -50,7 +50,11 @@ def test_one_of_a_folder_takes_the_place_of_ours(code: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "path", "said"),
     [
-        ("swath", "made_stages:nothing", "expected edges, swaths, order, connection, polish"),
+        (
+            "swath",
+            "made_stages:nothing",
+            "expected edges, swaths, order, connection, polish, rounding",
+        ),
         ("swaths", "made_stages", "expected MODULE:FUNCTION, got 'made_stages'"),
         ("swaths", "no_such_module:f", "a module that can be imported, got 'no_such_module'"),
         ("swaths", "made_stages:bogus", "expected a function, got none at 'made_stages:bogus'"),

@@ -1,0 +1,136 @@
+"""Bends in place of corners, against what the ways sweep, cell by cell."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from fixtures.references.straight_ways import (
+    Line,
+    Mask,
+    connected_to,
+    crosses_between_centres_that_fit,
+    length_of,
+    swept_cells,
+)
+from fixtures.thoroughness import examples
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from roomba.angles import wrap_angles
+from roomba.configuration.coverage import CoverageConfig
+from roomba.planning.coverage.tour.connection import connected
+from roomba.planning.coverage.tour.net import net_over
+from roomba.planning.coverage.tour.rounding import rounded
+
+RADIUS = 5.0
+UNSWEPT = 1.0
+WORTH = 8.0
+CONFIG = CoverageConfig(bend_worth=WORTH, bend_unswept=UNSWEPT, spare=0.02)
+SHARP = 0.5
+"""rad; as in the stage."""
+
+
+def turns(line: Line) -> Line:
+    ways = np.diff(line, axis=0)
+    found: Line = np.abs(wrap_angles(np.diff(np.arctan2(ways[:, 1], ways[:, 0]))))
+    return found
+
+
+def sharp(line: Line) -> int:
+    return int((turns(line) > SHARP).sum())
+
+
+def left(line: Line, need: Mask) -> int:
+    return int((need & ~swept_cells(need.shape, [line], RADIUS)).sum())
+
+
+@st.composite
+def ways(draw: st.DrawFn) -> tuple[Mask, Line, Mask]:
+    """A floor among boxes, a way over it from place to place, and which floor counts."""
+    fits = np.ones((draw(st.integers(20, 70)), draw(st.integers(20, 70))), np.bool_)
+    for _ in range(draw(st.integers(0, 4))):
+        row, column = draw(st.integers(0, 65)), draw(st.integers(0, 65))
+        fits[row : row + draw(st.integers(1, 20)), column : column + draw(st.integers(1, 20))] = 0
+    cells = np.argwhere(fits).tolist()
+    assume(cells)
+    row, column = cells[len(cells) // 2]
+    part = np.zeros_like(fits)
+    for cell in connected_to(fits, (row, column)):
+        part[cell] = True
+    random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    places = np.argwhere(part)[:, ::-1].astype(float)
+    stops = [places[random.integers(len(places))][None] for _ in range(draw(st.integers(2, 12)))]
+    line = connected(net_over(part), stops[1:], stops[0][0], None)
+    need = part & (random.random(part.shape) < draw(st.sampled_from([0.0, 0.5, 1.0])))
+    return part, line, need
+
+
+@given(ways())
+@settings(max_examples=examples(80))
+def test_each_corner_that_goes_costs_no_more_than_it_is_worth(
+    drawn: tuple[Mask, Line, Mask],
+) -> None:
+    fits, line, need = drawn
+    found = rounded(line.copy(), need, fits, RADIUS, CONFIG)
+    assert np.array_equal(found[[0, -1]], line[[0, -1]])
+    # Legs of the line itself may be off its cells by what they were straightened.
+    assert crosses_between_centres_that_fit(fits, found, 0.05)
+    gone = sharp(line) - sharp(found)
+    assert gone >= 0
+    cost = length_of(found) - length_of(line) + UNSWEPT * (left(found, need) - left(line, need))
+    # Two corners may go at once, and points that do not bend the way went before.
+    assert cost <= WORTH * max(gone, 0) + 0.1 * len(line)
+
+
+def test_where_no_floor_counts_a_corner_becomes_the_widest_bend() -> None:
+    fits = np.ones((60, 60), np.bool_)
+    line = np.array([[5.0, 5.0], [50.0, 5.0], [50.0, 50.0]])
+    found = rounded(line, np.zeros_like(fits), fits, RADIUS, CONFIG)
+    assert turns(found).max() < 0.25
+    assert turns(found).sum() == turns(line).sum() == 0.5 * math.pi
+    away = np.hypot(*(found[1:-1] - (50.0 - RADIUS, 5.0 + RADIUS)).T)
+    assert np.all((away > RADIUS - 1e-9) & (away < 1.02 * RADIUS))
+
+
+def test_from_one_swath_to_the_next_it_is_a_half_circle_that_leaves_hardly_anything() -> None:
+    fits = np.ones((60, 60), np.bool_)
+    ends = 40.0
+    line = np.array([[20.2, 5.0], [20.2, ends], [30.2, ends], [30.2, 5.0]])
+    need = np.zeros_like(fits)
+    need[5 : int(ends) + 1, 16:36] = True
+    found = rounded(line, need, fits, RADIUS, CONFIG)
+    assert sharp(found) == 0
+    assert found[:, 1].max() > ends
+    cost = length_of(found) - length_of(line) + UNSWEPT * (left(found, need) - left(line, need))
+    assert cost < WORTH
+    # A bend within the corners alone leaves more.
+    within = np.concatenate((line[:1], _half_circle(25.2, ends - RADIUS), line[-1:]))
+    assert left(found, need) < left(within, need)
+
+
+def _half_circle(x: float, y: float) -> Line:
+    angles = np.linspace(math.pi, 0.0, 30)
+    return np.column_stack((x + RADIUS * np.cos(angles), y + RADIUS * np.sin(angles)))
+
+
+def test_a_corner_of_a_room_whose_floor_nothing_else_sweeps_stays() -> None:
+    fits = np.zeros((60, 60), np.bool_)
+    fits[5:51, 5:51] = True
+    line = np.array([[5.0, 5.0], [50.0, 5.0], [50.0, 50.0]])
+    need = swept_cells(fits.shape, [line], RADIUS)
+    found = rounded(line, need, fits, RADIUS, CoverageConfig(bend_worth=2.0, bend_unswept=1.0))
+    assert np.array_equal(found, line)
+
+
+def test_where_the_body_does_not_fit_there_is_no_bend() -> None:
+    fits = np.zeros((60, 60), np.bool_)
+    fits[5, 5:51] = fits[5:51, 50] = True
+    line = np.array([[5.0, 5.0], [50.0, 5.0], [50.0, 50.0]])
+    assert np.array_equal(rounded(line, np.zeros_like(fits), fits, RADIUS, CONFIG), line)
+
+
+def test_a_way_without_corners_is_left_as_it_is() -> None:
+    fits = np.ones((9, 9), np.bool_)
+    for line in (np.array([[1.0, 2.0]]), np.array([[1.0, 2.0], [7.0, 3.0]])):
+        assert np.array_equal(rounded(line, fits, fits, RADIUS, CONFIG), line)
