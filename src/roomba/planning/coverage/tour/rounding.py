@@ -30,7 +30,7 @@ _SHARP: Final = 0.5
 """rad; at sharper corners the robot turns on the spot, others are bends already."""
 _SHARPEST: Final = 2.4
 """rad; sharper corners stay: a bend would begin far before them."""
-_SIDE: Final = 0.2
+_SIDE: Final = 0.1
 """rad; a bend turns by no more at a point: so it is driven without slowing down for its points."""
 _NARROWER: Final = 0.75
 """Radii of bends that are tried are by this factor apart, ..."""
@@ -40,10 +40,14 @@ _FARTHER: Final = 0.2
 """Widest radii; in such steps it is tried how much farther swaths go on, ..."""
 _STEPS: Final = 5
 """... up to so many: a bend of the widest radius then leaves nothing."""
+_LEAST_GAIN: Final = 1e-6
+"""Cells of way by which a bend is better than another one: ..."""
+_OFF: Final = 1e-6
+"""... what is off by rounding, cells of way too, decides nothing."""
 _BESIDE: Final = 2.0
 """cells; bends keep so much more than all ways do: in a bend the place is known less exactly, and a
 touch takes more time than a stop."""
-_ROOM: Final = 32
+_ROOM: Final = 64
 """Points of a way around two corners: more than bends of _SHARPEST have, in sides of _SIDE."""
 
 
@@ -52,7 +56,7 @@ class Rounded(NamedTuple):
 
     ``points`` float64 [n, 2], of which the first ``size`` [0] are written down; ``counts`` int16
     [rows, columns]; ``need`` the cells that count; ``fits`` where the middle may be; ``old`` and
-    ``new``, float64 [32, 2], are the ways around the corners at hand, of ``sizes`` [2] points;
+    ``new``, float64 [64, 2], are the ways around the corners at hand, of ``sizes`` [2] points;
     ``radius`` is half the tool's width, cells, and ``spare`` [1] how many more cells may be left.
     """
 
@@ -150,7 +154,7 @@ def _try_both(work: Rounded, line: Line, at: int, unswept: float, worth: float) 
         farther = step * _FARTHER * work.radius
         if _bend_both(work, line, at, farther):
             cost = _cost(work, unswept, least)
-            if cost < least:
+            if cost < least - _LEAST_GAIN:
                 least, best = cost, farther
     if best < 0.0:
         return False
@@ -192,7 +196,7 @@ def _bend_both(work: Rounded, line: Line, at: int, farther: float) -> bool:
     first_tangent, second_tangent = math.tan(0.5 * abs(first)), math.tan(0.5 * abs(second))
     bend = min(work.radius, across / (first_tangent + second_tangent))
     back, on = bend * first_tangent - farther, bend * second_tangent - farther
-    if bend < _NARROWER**_RADII * work.radius or back > come or on > go:
+    if bend < _NARROWER**_RADII * work.radius or back > come - _OFF or on > go - _OFF:
         return False
     _begin(work)
     back, on = max(back, 0.0), max(on, 0.0)
@@ -218,7 +222,7 @@ def _bend_one(work: Rounded, line: Line, at: int, bend: float) -> bool:
     come = math.hypot(here[0] - before[0], here[1] - before[1])
     go = math.hypot(after[0] - here[0], after[1] - here[1])
     tangent = bend * math.tan(0.5 * abs(turn))
-    if tangent > come or 2.0 * tangent > go:
+    if tangent > come - _OFF or 2.0 * tangent > go - _OFF:
         return False
     in_x, in_y = (here[0] - before[0]) / come, (here[1] - before[1]) / come
     out_x, out_y = (after[0] - here[0]) / go, (after[1] - here[1]) / go
