@@ -17,6 +17,8 @@ from roomba_ros.runtime.node import told_to_end
 
 SERVER_DEADLINE = 5.0
 """s of wall time that an action server or a service may take to be there."""
+_LOOK = 0.5
+"""s of wall time between two looks whether this process is told to end."""
 CALL_DEADLINE = 10.0
 """s of wall time that a service may work on an answer."""
 
@@ -31,13 +33,7 @@ def call_service(service: rospy.ServiceProxy, *arguments: object) -> Any:
     RequestRefusedError with its reason when it refuses.
     """
     name = service.resolved_name
-    try:
-        rospy.wait_for_service(name, timeout=SERVER_DEADLINE)
-    except rospy.ROSException as error:
-        raise RobotUnavailableError(
-            f"no service {name} answers within {SERVER_DEADLINE:g} s; is the robot running "
-            "(`./roomba run`)?"
-        ) from error
+    _wait_for(name)
     answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
     # In a thread of its own: rospy waits for an answer without end.
     threading.Thread(target=lambda: answers.put(_answer(service, arguments)), daemon=True).start()
@@ -47,6 +43,24 @@ def call_service(service: rospy.ServiceProxy, *arguments: object) -> Any:
     if isinstance(answer, RoombaError):
         raise answer
     return answer
+
+
+def _wait_for(name: str) -> None:
+    """Wait until a service is there; raises RobotUnavailableError.
+
+    One that is told to end waits no longer: what offers the service may have ended just before.
+    """
+    deadline = time.monotonic() + SERVER_DEADLINE
+    while True:
+        try:
+            rospy.wait_for_service(name, timeout=_LOOK)
+            return
+        except rospy.ROSException as error:
+            if told_to_end() or time.monotonic() > deadline:
+                raise RobotUnavailableError(
+                    f"no service {name} answers within {SERVER_DEADLINE:g} s; is the robot running "
+                    "(`./roomba run`)?"
+                ) from error
 
 
 def is_offered(name: str) -> bool:

@@ -27,6 +27,24 @@ class Holding:
 
 run_node("holding", Holding)
 """
+CALLS = """
+import rospy
+from roomba_ros.runtime.calls import call_service
+from roomba_ros.runtime.node import run_node
+from std_srvs.srv import Trigger
+
+class Asking:
+    period = 0.05
+    def start(self):
+        self.service = rospy.ServiceProxy("not_there", Trigger)
+    def tick(self, now):
+        print("asks", flush=True)
+        call_service(self.service)
+    def stop(self):
+        pass
+
+run_node("asking", Asking)
+"""
 ENDED = 1.8
 """s of wall time until the supervisor would tell it more firmly."""
 
@@ -49,3 +67,10 @@ def test_a_start_however_long_is_not_waited_for(graph: RosGraph) -> None:
     promised(lambda: program.status is not None, ENDED, "it has ended")
     assert program.status == 0
     assert "ticks" not in program.output
+
+
+def test_a_service_that_is_not_there_is_not_waited_for(graph: RosGraph) -> None:
+    program = graph.run(sys.executable, "-c", CALLS)
+    wait_until(lambda: "asks" in program.output, 30.0, "it waits")
+    program.send_to_leader(signal.SIGINT)
+    promised(lambda: program.status is not None, ENDED, "it has ended")

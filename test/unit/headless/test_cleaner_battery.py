@@ -56,7 +56,7 @@ def test_while_it_charges_time_passes_in_few_ticks_and_is_recorded() -> None:
 
 
 def test_it_charges_as_much_as_the_rest_needs() -> None:
-    robot = begun(200.0)
+    robot = begun(130.0)
     robot.simulator.set_charge(0.085)
     until(robot, in_phase(robot, Phase.CHARGING), 120.0)
     robot.simulator.set_charge(0.5)
