@@ -18,7 +18,7 @@ Counts = NDArray[np.int16]
 """How many legs of a path sweep each cell, int16 [rows, columns]."""
 
 _TOUCH = 1e-7
-_MOST_LEGS = 8
+_MOST_LEGS = 64
 
 
 class Legs(NamedTuple):
@@ -35,7 +35,7 @@ class Legs(NamedTuple):
 
 @allocating_entry
 def room_for_legs() -> Legs:
-    """Return room for 8 legs."""
+    """Return room for 64 legs."""
     return Legs(
         np.empty((_MOST_LEGS, 4)), np.empty((_MOST_LEGS, 2)), np.empty((_MOST_LEGS, 2), np.int64)
     )
@@ -158,6 +158,15 @@ def left_without(
         if left > most:
             break
     return left
+
+
+@inner_part
+def replace_legs(counts: Counts, legs: Legs, old: int, count: int, radius: float) -> None:
+    """Count what the first ``old`` of legs sweep once less, and what the others up to ``count``
+    sweep once more."""
+    for leg in range(count):
+        x, y, to_x, to_y = legs.ends[leg]
+        sweep_leg(counts, x, y, to_x, to_y, radius, -1 if leg < old else 1)
 
 
 @inner_part

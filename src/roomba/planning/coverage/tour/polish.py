@@ -20,10 +20,10 @@ from roomba.planning.coverage.passes.sweep import (
     Counts,
     Legs,
     left_without,
+    replace_legs,
     room_for_legs,
     set_leg,
     sweep,
-    sweep_leg,
 )
 from roomba.raster.regions import Mask
 
@@ -168,9 +168,7 @@ def _is_worth_it(
     if left > most:
         return False
     bent.spare[0] -= left
-    for leg in range(count):
-        x, y, to_x, to_y = bent.legs.ends[leg]
-        sweep_leg(bent.counts, x, y, to_x, to_y, radius, -1 if leg < old else 1)
+    replace_legs(bent.counts, bent.legs, old, count, radius)
     return True
 
 

@@ -19,7 +19,15 @@ from numpy.typing import NDArray
 from roomba.compilation import allocating_entry, inner_part, part
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import way_fits
-from roomba.planning.coverage.passes.sweep import Counts, sweep, sweep_leg
+from roomba.planning.coverage.passes.sweep import (
+    Counts,
+    Legs,
+    left_without,
+    replace_legs,
+    room_for_legs,
+    set_leg,
+    sweep,
+)
 from roomba.planning.coverage.tour.connection import tidy
 from roomba.raster.distance import distance_to_nearest
 from roomba.raster.regions import Mask
@@ -56,8 +64,9 @@ class Rounded(NamedTuple):
 
     ``points`` float64 [n, 2], of which the first ``size`` [0] are written down; ``counts`` int16
     [rows, columns]; ``need`` the cells that count; ``fits`` where the middle may be; ``old`` and
-    ``new``, float64 [64, 2], are the ways around the corners at hand, of ``sizes`` [2] points;
-    ``radius`` is half the tool's width, cells, and ``spare`` [1] how many more cells may be left.
+    ``new``, float64 [64, 2], are the ways around the corners at hand, of ``sizes`` [2] points, and
+    ``legs`` those of both; ``radius`` is half the tool's width, cells, and ``spare`` [1] how many
+    more cells may be left.
     """
 
     points: Line
@@ -68,6 +77,7 @@ class Rounded(NamedTuple):
     old: Line
     new: Line
     sizes: NDArray[np.int64]
+    legs: Legs
     radius: float
     spare: NDArray[np.int64]
 
@@ -93,6 +103,7 @@ def rounded(line: Line, need: Mask, fits: Mask, radius: float, config: CoverageC
         np.empty((_ROOM, 2)),
         np.empty((_ROOM, 2)),
         np.zeros(2, np.int64),
+        room_for_legs(),
         radius,
         np.array([int(config.spare * need.sum())]),
     )
@@ -277,12 +288,7 @@ def _cost(work: Rounded, unswept: float, most: float) -> float:
     longer = _length(work.new, work.sizes[1]) - _length(work.old, work.sizes[0])
     if longer >= most or not _fits(work):
         return math.inf
-    before = _left_around(work)
-    _count(work, 0, -1)
-    _count(work, 1, 1)
-    left = _left_around(work) - before
-    _count(work, 1, -1)
-    _count(work, 0, 1)
+    left = _left(work)
     return longer + unswept * left if left <= max(work.spare[0], 0) else math.inf
 
 
@@ -303,39 +309,28 @@ def _fits(work: Rounded) -> bool:
     return True
 
 
-@part
-def _count(work: Rounded, which: int, change: int) -> None:
-    """Count what the old way, 0, or the new one, 1, sweeps once more or less."""
-    way = work.old if which == 0 else work.new
-    for leg in range(work.sizes[which] - 1):
-        x, y = way[leg]
-        sweep_leg(work.counts, x, y, way[leg + 1, 0], way[leg + 1, 1], work.radius, change)
-
-
 @inner_part
-def _left_around(work: Rounded) -> int:
-    """Return how many needed cells nothing sweeps around the old way, where that can change."""
-    rows, columns = work.need.shape
-    reach = 2.0 * work.radius
-    low_x, high_x, low_y, high_y = math.inf, -math.inf, math.inf, -math.inf
-    for at in range(work.sizes[0]):
-        x, y = work.old[at]
-        low_x, high_x = min(low_x, x - reach), max(high_x, x + reach)
-        low_y, high_y = min(low_y, y - reach), max(high_y, y + reach)
-    left = 0
-    for row in range(max(math.floor(low_y), 0), min(math.ceil(high_y) + 1, rows)):
-        for column in range(max(math.floor(low_x), 0), min(math.ceil(high_x) + 1, columns)):
-            if work.need[row, column] and work.counts[row, column] == 0:
-                left += 1
-    return left
+def _left(work: Rounded) -> int:
+    """Return how many more needed cells nothing sweeps with the new way in place of the old one.
+
+    Both ways are written down as legs.
+    """
+    at = 0
+    for which in range(2):
+        way = work.old if which == 0 else work.new
+        for leg in range(work.sizes[which] - 1):
+            x, y = way[leg]
+            set_leg(work.legs, at, x, y, way[leg + 1, 0], way[leg + 1, 1])
+            at += 1
+    old = work.sizes[0] - 1
+    return left_without(work.need, work.counts, work.legs, old, at, work.radius, np.inf)
 
 
 @inner_part
 def _take(work: Rounded) -> None:
     """Go the new way in place of the old one, and write it down."""
-    before = _left_around(work)
-    _count(work, 0, -1)
-    _count(work, 1, 1)
-    work.spare[0] -= _left_around(work) - before
+    work.spare[0] -= _left(work)
+    old = work.sizes[0] - 1
+    replace_legs(work.counts, work.legs, old, old + work.sizes[1] - 1, work.radius)
     for at in range(work.sizes[1]):
         _write(work, work.new[at])
