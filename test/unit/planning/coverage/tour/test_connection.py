@@ -9,16 +9,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
+from fixtures.references.drawn_ways import one_part_of, without_boxes
 from fixtures.references.straight_ways import (
     Line,
     Mask,
-    connected_to,
     crosses_between_centres_that_fit,
     length_of,
     runs_between_centres_that_fit,
 )
 from fixtures.thoroughness import examples
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roomba.planning.coverage.tour.connection import connected, tidy
@@ -32,18 +32,10 @@ STRAIGHTENED = 0.05
 def floors(draw: st.DrawFn) -> Mask:
     """One part of a floor of boxes and single closed cells: wide places and ways of one cell."""
     fits = np.ones((draw(st.integers(5, 50)), draw(st.integers(5, 50))), np.bool_)
-    for _ in range(draw(st.integers(0, 6))):
-        row, column = draw(st.integers(0, 45)), draw(st.integers(0, 45))
-        fits[row : row + draw(st.integers(1, 20)), column : column + draw(st.integers(1, 20))] = 0
+    without_boxes(draw, fits, 6, 45)
     random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     fits &= random.random(fits.shape) > draw(st.sampled_from([0.0, 0.02, 0.25]))
-    cells = np.argwhere(fits).tolist()
-    assume(cells)
-    row, column = cells[len(cells) // 2]
-    part = np.zeros_like(fits)
-    for cell in connected_to(fits, (row, column)):
-        part[cell] = True
-    return part
+    return one_part_of(fits)
 
 
 def length_over_cells(fits: Mask, start: Line, goal: Line) -> float:

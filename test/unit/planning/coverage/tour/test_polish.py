@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
+from fixtures.references.drawn_ways import ways
 from fixtures.references.straight_ways import (
     Line,
     Mask,
-    connected_to,
     crosses_between_centres_that_fit,
     length_of,
     swept_cells,
     turning_of,
 )
 from fixtures.thoroughness import examples
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roomba.configuration.coverage import CoverageConfig
-from roomba.planning.coverage.tour.connection import connected
-from roomba.planning.coverage.tour.net import net_over
 from roomba.planning.coverage.tour.polish import polished
 
 RADIUS, TURNING, FLOOR = 4.0, 6.0, 1.0
@@ -37,27 +35,6 @@ def weights(turning: float, unswept: float = FLOOR) -> CoverageConfig:
 
 def cost(line: Line, need: Mask, turning: float) -> float:
     return length_of(line) + turning * turning_of(line) + FLOOR * left(line, need)
-
-
-@st.composite
-def ways(draw: st.DrawFn) -> tuple[Mask, Line, Mask]:
-    """A floor among boxes, a way over it from place to place, and which floor counts."""
-    fits = np.ones((draw(st.integers(20, 70)), draw(st.integers(20, 70))), np.bool_)
-    for _ in range(draw(st.integers(0, 4))):
-        row, column = draw(st.integers(0, 65)), draw(st.integers(0, 65))
-        fits[row : row + draw(st.integers(1, 20)), column : column + draw(st.integers(1, 20))] = 0
-    cells = np.argwhere(fits).tolist()
-    assume(cells)
-    row, column = cells[len(cells) // 2]
-    part = np.zeros_like(fits)
-    for cell in connected_to(fits, (row, column)):
-        part[cell] = True
-    random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
-    places = np.argwhere(part)[:, ::-1].astype(float)
-    stops = [places[random.integers(len(places))][None] for _ in range(draw(st.integers(2, 12)))]
-    line = connected(net_over(part), stops[1:], stops[0][0], None)
-    need = part & (random.random(part.shape) < draw(st.sampled_from([0.0, 0.5, 1.0])))
-    return part, line, need
 
 
 @given(ways(), st.sampled_from([0.0, TURNING, 100.0]))
