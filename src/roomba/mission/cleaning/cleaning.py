@@ -22,8 +22,10 @@ from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, Mis
 from roomba.mission.cleaning.rounds import Rounds
 from roomba.mission.cleaning.stages import Stage, edges_of
 from roomba.mission.cleaning.worth import (
+    PlanOver,
     is_worth_its_way,
     large_patches,
+    made_once,
     plan_worth_its_way,
     slivers_of,
 )
@@ -301,12 +303,14 @@ class Cleaning:
         todo = stage.floor & self.coverage.missed
         missed, config = float(np.count_nonzero(todo)) * self.coverage.cell_area, self._config
         is_anew = self._rounds.takes_anew()
-        large = large_patches(todo, self.coverage.frame, config.least_for_round)
+        frame, least = self.coverage.frame, config.least_for_round
+        large = large_patches(todo, frame, least) if is_anew else todo
+        plan_over = made_once(lambda floor: self._plan_over(stage, floor, here, obstacles))
         if is_anew and large.any():
             todo = large
         elif not self._rounds.is_first:
             self.is_again = True
-            todo = self._worth_it(stage, todo, here, obstacles)
+            todo = self._worth_it(stage, todo, here, obstacles, plan_over)
             if self._rounds.is_over(missed):
                 todo[:] = False
         if not self._rounds.is_first and not todo.any() and not self._scrubbed:
@@ -316,7 +320,7 @@ class Cleaning:
         self._rounds.begin(missed)
         edges_only = self.request.mode is CleanMode.EDGES
         try:
-            plan = self._planned(stage, todo, here, obstacles)
+            plan = self._planned(todo, here, obstacles, plan_over)
         except NoPathError:
             self._unreachable = True
             todo &= self._reachable((here.x, here.y), obstacles)
@@ -333,7 +337,7 @@ class Cleaning:
         return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
 
     def _planned(
-        self, stage: Stage, todo: Mask, here: Pose, obstacles: list[RoundObstacle]
+        self, todo: Mask, here: Pose, obstacles: list[RoundObstacle], plan_over: PlanOver
     ) -> CoveragePlan:
         """Plan over what is to do; beside the rest of a path slivers may be left.
 
@@ -341,17 +345,11 @@ class Cleaning:
         """
         rest, self._rest = self._rest, None
         if rest is None:
-            return self._plan_over(stage, todo, here, obstacles)
+            return plan_over(todo)
         frame, config = self.coverage.frame, self._config
         floor = todo & self._reachable((here.x, here.y), obstacles)
         slivers = slivers_of(floor, self.coverage.along(rest), frame, config.least_for_round)
-        return plan_worth_its_way(
-            lambda floor: self._plan_over(stage, floor, here, obstacles),
-            todo,
-            slivers,
-            frame,
-            config.worth_way,
-        )
+        return plan_worth_its_way(plan_over, todo, slivers, frame, config.worth_way)
 
     def _plan_over(
         self, stage: Stage, todo: Mask, here: Pose, obstacles: list[RoundObstacle]
@@ -366,7 +364,12 @@ class Cleaning:
         )
 
     def _worth_it(
-        self, stage: Stage, todo: Mask, here: Pose, obstacles: list[RoundObstacle]
+        self,
+        stage: Stage,
+        todo: Mask,
+        here: Pose,
+        obstacles: list[RoundObstacle],
+        plan_over: PlanOver,
     ) -> Mask:
         """Return the patches that are worth another round, of what a stage missed.
 
@@ -386,12 +389,8 @@ class Cleaning:
         least = config.least_for_round if is_enough else config.least_patch
         worth = config.worth_way if is_enough else config.worth_way_to_enough
         patches = large_patches(todo, self.coverage.frame, least)
-        is_worth_it = patches.any() and is_worth_its_way(
-            lambda floor: self._plan_over(stage, floor, here, obstacles),
-            patches,
-            self.coverage.frame,
-            worth,
-        )
+        frame = self.coverage.frame
+        is_worth_it = patches.any() and is_worth_its_way(plan_over, patches, frame, worth)
         return patches & is_worth_it
 
     def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:

@@ -17,6 +17,19 @@ PlanOver = Callable[[Mask], CoveragePlan]
 """Plans a way over a floor, bool over a frame, and on; raises NoPathError."""
 
 
+def made_once(plan_over: PlanOver) -> PlanOver:
+    """Return the same, which makes the plan over each floor once."""
+    plans: dict[bytes, CoveragePlan] = {}
+
+    def over(floor: Mask) -> CoveragePlan:
+        key = floor.tobytes()
+        if key not in plans:
+            plans[key] = plan_over(floor)
+        return plans[key]
+
+    return over
+
+
 def large_patches(floor: Mask, frame: GridFrame, least: float) -> Mask:
     """Return what of a floor, bool over ``frame``, is in patches of ``least`` m2 or more."""
     labels = numbered_regions(floor)

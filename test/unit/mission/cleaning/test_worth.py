@@ -11,6 +11,7 @@ from roomba.grid import GridFrame
 from roomba.mission.cleaning.worth import (
     is_worth_its_way,
     large_patches,
+    made_once,
     plan_worth_its_way,
     slivers_of,
 )
@@ -99,3 +100,24 @@ def test_floor_to_which_no_way_is_known_is_tried() -> None:
         raise NoPathError((0.0, 0.0), NoPathReason.START_BLOCKED, None)
 
     assert is_worth_its_way(plan_over, floor_of(SLIVER), FRAME, WORTH)
+
+
+def test_the_plan_over_each_floor_is_made_once_and_its_failure_each_time() -> None:
+    asked: list[int] = []
+
+    def plan_over(floor: Mask) -> CoveragePlan:
+        asked.append(int(np.count_nonzero(floor)))
+        if not floor.any():
+            raise NoPathError((0.0, 0.0), NoPathReason.START_BLOCKED, None)
+        return a_way_of(float(asked[-1]))
+
+    over = made_once(plan_over)
+    body, sliver = floor_of(BODY), floor_of(SLIVER)
+    assert over(body) is over(body.copy())
+    assert over(sliver).length == 60.0
+    assert over(body).length == 1200.0
+    assert asked == [1200, 60]
+    for _ in range(2):
+        with pytest.raises(NoPathError):
+            over(np.zeros_like(body))
+    assert asked == [1200, 60, 0, 0]
