@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import TrackingConfig
 from roomba.control.course import course_of
-from roomba.control.tracking_kernels import TRACK, track
+from roomba.control.tracking_kernels import TRACK, along_of, off_path, track
 from roomba.geometry import Pose, Twist
 
 
@@ -71,9 +69,7 @@ class PathTracker:
     @property
     def along(self) -> float:
         """How far along the path it is, m."""
-        if self.is_done or len(self.course.sections) == 0:
-            return self.length
-        return min(max(float(self._row["along"]), 0.0), self.length)
+        return along_of(self.state[0], self.course)
 
     @property
     def left(self) -> float:
@@ -94,11 +90,4 @@ class PathTracker:
 
     def off_path(self, pose: Pose) -> float:
         """Return how far a pose is from the leg that it should be on, m."""
-        if len(self.course.sections) == 0:
-            return pose.distance_to(*self.course.points[0].tolist())
-        leg = self.leg
-        first, last = self.course.points[leg], self.course.points[leg + 1]
-        way = last - first
-        share = float(np.dot((pose.x - first[0], pose.y - first[1]), way) / np.dot(way, way))
-        nearest = first + min(max(share, 0.0), 1.0) * way
-        return math.hypot(pose.x - nearest[0], pose.y - nearest[1])
+        return off_path(self.state[0], self.course, pose.x, pose.y)

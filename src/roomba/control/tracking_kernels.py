@@ -80,6 +80,29 @@ def track(
 
 
 @inner_part
+def along_of(state: Row, course: Course) -> float:
+    """Return how far along its path the robot is, m; ``state`` is a row of TRACK."""
+    length = course.stations[course.stations.size - 1]
+    if state.done > 0.0 or course.sections.size == 0:
+        return float(length)
+    return float(min(max(state.along, 0.0), length))
+
+
+@inner_part
+def off_path(state: Row, course: Course, x: float, y: float) -> float:
+    """Return how far a place is from the leg that the robot should be on, m."""
+    first_x, first_y = course.points[0, 0], course.points[0, 1]
+    if course.sections.size == 0:
+        return math.hypot(x - first_x, y - first_y)
+    first_x, first_y = course.points[state.leg, 0], course.points[state.leg, 1]
+    way_x = course.points[state.leg + 1, 0] - first_x
+    way_y = course.points[state.leg + 1, 1] - first_y
+    share = ((x - first_x) * way_x + (y - first_y) * way_y) / (way_x * way_x + way_y * way_y)
+    share = min(max(share, 0.0), 1.0)
+    return math.hypot(x - (first_x + share * way_x), y - (first_y + share * way_y))
+
+
+@inner_part
 def locate(state: Row, course: Course, section: Row, x: float, y: float) -> float:
     """Find the curve's place that is nearest to the robot; return its heading, rad."""
     step = (section.end - section.begin) / (section.last - section.first)

@@ -14,12 +14,12 @@ import numpy as np
 
 from roomba.angles import wrapped
 from roomba.compilation import entry, inner_part
-from roomba.control.tracking_kernels import track
+from roomba.control.tracking_kernels import along_of, off_path, track
 from roomba.headless.burst_place_kernels import believed, follow
 from roomba.headless.burst_state import Drive, Floats, Floor, PlaceParts, Rows, Sight, World
 from roomba.headless.rows import GYRO, TIME
 from roomba.mission.cleaning.dirty_kernels import may_be_dirty
-from roomba.mission.driving.progress_kernels import along_of, mark_progress, off_path
+from roomba.mission.driving.progress_kernels import mark_progress
 from roomba.mission.driving.way_ahead_kernels import is_blocked
 from roomba.mission.phases.carpet_kernels import changes_floor, note_current
 from roomba.mission.phases.dust_bin_kernels import note_dust
