@@ -112,7 +112,8 @@ class PageServer:
     def stop(self) -> None:
         """End the thread that serves."""
         self._server.should_exit = True
-        if self._thread is not None and self._thread.ident is not None:
+        # Also one that Ctrl-C interrupted as it was started: it may not have run yet.
+        if self._thread in threading.enumerate():
             self._ended.wait(_START)
 
     def _tell_if_broken(self) -> None:
