@@ -111,8 +111,9 @@ def test_headings_and_curvature_are_those_of_the_places(legs: Legs) -> None:
     assert (np.abs(np.diff(samples["heading"])) < CONFIG.sharp_corner).all()
     # All that the headings turn is what the curvature says.
     turned = samples["heading"][-1] - samples["heading"][0]
-    bent = np.sum(0.5 * (samples["curvature"][1:] + samples["curvature"][:-1]) * step)
-    assert bent == pytest.approx(turned, abs=0.01 + 0.05 * abs(turned))
+    bends = 0.5 * (samples["curvature"][1:] + samples["curvature"][:-1]) * step
+    # Each bend is told by samples, and is off by a share of itself, to whichever side it turns.
+    assert bends.sum() == pytest.approx(turned, abs=0.01 + 0.05 * np.abs(bends).sum())
 
 
 @given(soft_legs)
