@@ -18,9 +18,8 @@ from typing import Any, Final
 
 from distributed import Client, KilledWorker, LocalCluster, wait
 
-from roomba.commands.campaign.running.machines import Work
 from roomba.commands.campaign.running.runs import CampaignRun, OtherMachineError
-from roomba.commands.campaign.running.work import RunEnd
+from roomba.commands.campaign.running.work import RunEnd, Work
 from roomba.commands.options import UsageError
 from roomba.commands.trials.many import LONGEST_RUN, one_thread_each, undisturbed
 from roomba.errors import RoombaError

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 from roomba.commands.campaign.running.runs import CampaignRun
-from roomba.commands.campaign.running.work import RunEnd, carried_out
+from roomba.commands.campaign.running.work import RunEnd, Work, carried_out
 from roomba.commands.trials.many import run_many
-
-Work = Callable[[CampaignRun], RunEnd]
 
 ATTEMPTS: Final = 3
 """How often a run is begun whose process ends before it has a result."""

@@ -6,6 +6,7 @@ import os
 import socket
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -28,6 +29,10 @@ class RunEnd:
     failure: str
     where: str
     began: float
+
+
+Work = Callable[[CampaignRun], RunEnd]
+"""Makes a run: what a worker does with each."""
 
 
 def carried_out(run: CampaignRun) -> RunEnd:

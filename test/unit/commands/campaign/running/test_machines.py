@@ -10,9 +10,9 @@ import pytest
 from fixtures.campaigns.campaign_work import NOTES, made_run, noted, times_begun
 
 from roomba.commands.campaign.running import machines
-from roomba.commands.campaign.running.machines import ATTEMPTS, Machines, Work, run_on
+from roomba.commands.campaign.running.machines import ATTEMPTS, Machines, run_on
 from roomba.commands.campaign.running.runs import CampaignRun
-from roomba.commands.campaign.running.work import RunEnd
+from roomba.commands.campaign.running.work import RunEnd, Work
 from roomba.commands.trials.many import run_many
 
 RUNS = [made_run(seed) for seed in range(6)]
