@@ -33,10 +33,10 @@ def started(graph: RosGraph) -> Program:
     return program
 
 
-def killed(graph: RosGraph, master: Program) -> None:
-    """Kill the master once it has kept what it knows."""
+def killed(graph: RosGraph, master: Program, newest: str) -> None:
+    """Kill the master once it has kept what it knows, the ``newest`` topic as well."""
     text = graph.folder / "master.xml"
-    wait_until(lambda: text.exists() and "/said" in text.read_text(), 20.0, "it is kept")
+    wait_until(lambda: text.exists() and newest in text.read_text(), 20.0, "it is kept")
     seen = text.stat().st_mtime_ns
     wait_until(lambda: os.stat(text).st_mtime_ns == seen, 5.0)
     os.kill(master.process.pid, signal.SIGKILL)
@@ -50,7 +50,7 @@ def test_all_is_known_to_the_next_one_and_new_clients_find_it(own: RosGraph) -> 
     rospy.Service("/said", Trigger, lambda _: TriggerResponse(True, "here"))
     said = rospy.Publisher("/said/loud", String, queue_size=1, latch=True)
     said.publish("hello")
-    killed(own, master)
+    killed(own, master, "/said/loud")
     started(own)
     assert own.param("/map/name") == {
         "floor": 1,
@@ -72,7 +72,7 @@ def test_a_node_that_ended_meanwhile_is_forgotten(own: RosGraph) -> None:
     master = started(own)
     speaker = own.run("rostopic", "pub", "-l", "/said", "std_msgs/String", "back")
     wait_until(lambda: "/said" in own.system_state()[0], 20.0, "it speaks")
-    killed(own, master)
+    killed(own, master, "/said")
     os.killpg(speaker.process.pid, signal.SIGKILL)
     speaker.ends(20.0)
     started(own)
