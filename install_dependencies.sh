@@ -330,13 +330,14 @@ pip_install() { # VENV ARGUMENT...
     --progress-bar off --retries 5 --prefer-binary "$@"
 }
 
+# Bytecode is made when a module is first imported, and of the rest in the background (set_up.sh).
 install_requirements() { # library|runtime|dev
   local -a arguments=()
   local file
   while read -r file; do
     arguments+=(--requirement "$REPOSITORY/$file")
   done < <(requirement_files "$1")
-  pip_install "$VENV" --constraint "$REPOSITORY/constraints.txt" "${arguments[@]}"
+  pip_install "$VENV" --no-compile --constraint "$REPOSITORY/constraints.txt" "${arguments[@]}"
 }
 
 # An environment is made anew if its Python is gone, it was moved, or an installation into it was interrupted.

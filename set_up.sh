@@ -105,11 +105,14 @@ compile_loops() { # library|runtime|dev
   fi
 }
 
-# One at a time. numba touches the folders that it looks into: the old ones are of sources that are no more.
+# Bytecode first, then loops, one process at a time. numba touches the folders that it looks into: the old ones are of
+# sources that are no more.
 compile_other_loops() {
   local module stamp
   stamp=$(compiled_stamp)
   enter_what_there_is
+  # Of what pip installed; a package may bring files for another Python.
+  "$VENV/bin/python3" -m compileall -q "$VENV"/lib/python3*/site-packages || true
   for module in trials.warm map.warm "warm_up others"; do
     # shellcheck disable=SC2086 # a word of its own
     python3 -m roomba.commands.$module && count_loops_left "$stamp" || return 1

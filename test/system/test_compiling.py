@@ -157,3 +157,10 @@ def test_tests_wait_for_all(checkout: Checkout) -> None:
     has_ended, told = checkout.does(f"{steps}; set_up_missing_steps dev; set_up_is_complete dev")
     assert has_ended, told
     assert "Compiling all other loops" in told
+
+
+def test_what_pip_left_without_bytecode_gets_it_beside(checkout: Checkout) -> None:
+    assert checkout.does("set_up library")[0]
+    checkout.wait(checkout.is_complete)
+    made = [call for call in checkout.calls if call.startswith("-m compileall")]
+    assert len(made) == 1

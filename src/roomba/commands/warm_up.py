@@ -2,8 +2,8 @@
 
 Numba keeps what it compiled in a cache on disk. ``./roomba`` runs this when something is not there,
 and beside it :mod:`roomba.commands.trials.warm`: a plan here and a clean there are what a robot
-needs first, and what one of them compiled, the other one finds in the cache. So both begin with the
-largest loops that the other half needs later. All that may wait, here ``others``, is compiled while
+needs first, and what one of them compiled, the other one finds in the cache. So each begins with
+large loops that the other half needs later. All that may wait, here ``others``, is compiled while
 the robot is used already: bursts, the camera, :mod:`roomba.commands.map.warm`.
 """
 
@@ -31,11 +31,14 @@ from roomba.world.simulator import Simulator
 
 
 def main() -> None:
-    """Plan, cut a map into rooms, and walk in a small room."""
+    """Cut a map into rooms, plan, and walk in a small room.
+
+    The other half begins with making a robot.
+    """
     home = _small_room()
+    segment(home.map)
     robot = HeadlessMission(home)
     _plan(home, robot)
-    segment(home.map)
     robot.walk(2.4, 2.4)
 
 

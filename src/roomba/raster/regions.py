@@ -21,7 +21,7 @@ def dilated(mask: Mask, reach: Mask) -> Mask:
     """
     grown = np.empty(mask.shape, np.bool_)
     heights = ((reach.sum(axis=0) - 1) // 2).astype(np.int16)
-    _grow(np.ascontiguousarray(mask), heights, grown)
+    _grow(np.ascontiguousarray(mask), heights, int(heights.max()) + 1, grown)
     return grown
 
 
@@ -33,15 +33,15 @@ def numbered_regions(mask: Mask) -> Labels:
 
 
 @allocating_entry
-def _grow(mask: Mask, heights: NDArray[np.int16], grown: Mask) -> None:
+def _grow(mask: Mask, heights: NDArray[np.int16], most: int, grown: Mask) -> None:
     """Set the cells that have a true cell near enough in their column or one beside it.
 
-    ``heights`` [2 n + 1] is how far the reach goes up and down, in each of its columns; -1 where it
-    is empty.
+    ``heights`` [2 n + 1] is how far the reach goes up and down, in each of its columns, less than
+    ``most``; -1 where it is empty.
     """
     rows, columns = mask.shape
     away = np.empty((rows, columns), np.int16)
-    cells_along_columns(mask, heights.max() + 1, away)
+    cells_along_columns(mask, most, away)
     aside = heights.size // 2
     grown[:] = False
     for row in range(rows):

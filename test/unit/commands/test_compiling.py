@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
@@ -34,6 +35,13 @@ def test_each_function_is_told_when_it_begins_to_be_compiled(
     told = capsys.readouterr().out.splitlines()
     assert [line.partition(": ")[0] for line in told] == ["1", "2"]
     assert [line.rpartition(".")[2] for line in told] == ["outer", "inner"]
+
+
+def test_garbage_is_looked_for_as_usual_after_compiling() -> None:
+    usual = gc.get_threshold()
+    with compiled_functions_told():
+        assert gc.get_threshold()[0] > usual[0]
+    assert gc.get_threshold() == usual
 
 
 def test_what_is_not_compiled_is_found(tmp_path: Path) -> None:

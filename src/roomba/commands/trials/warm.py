@@ -8,9 +8,12 @@ import sys
 import numpy as np
 
 from roomba.commands.compiling import compiled_functions_told
+from roomba.configuration.coverage import CoverageConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
+from roomba.headless.burst import LONGEST_BURST
 from roomba.headless.cleaner import HeadlessMission
+from roomba.planning.coverage.stages import OUR_STAGES
 from roomba.world.home.home import DirtSource, Home
 
 
@@ -39,16 +42,28 @@ def closet() -> Home:
     )
 
 
-def warm_up_ticks() -> None:
-    """Clean it tick by tick, as nodes do: without the burst, which is the largest loop of all.
+def warm_up_half(longest_burst: int) -> None:
+    """Walk, then clean it, with bursts of so many ticks; with 0, tick by tick as nodes do.
 
     First it walks: :mod:`roomba.commands.warm_up`, which may run beside it, begins with planning.
+    Then it makes a way shorter and rounds it off, which the other one comes to last: what both
+    begin to compile at once is compiled twice. The burst, the largest loop of all, comes last.
     """
-    robot = HeadlessMission(closet(), longest_burst=0)
+    robot = HeadlessMission(closet(), longest_burst=longest_burst)
     robot.walk(0.9, 0.9)
+    _finish_a_plan()
     robot.clean()
 
 
+def _finish_a_plan() -> None:
+    """Do the last stages of planning, on a way to and fro over free floor."""
+    floor, config = np.ones((40, 40), np.bool_), CoverageConfig()
+    way = np.array([[5.0, 5.0], [30.0, 5.0], [30.0, 12.0], [5.0, 12.0]])
+    for stage in (OUR_STAGES.polish, OUR_STAGES.rounding):
+        way = stage(way, floor, floor, 3.5, config)
+
+
 if __name__ == "__main__":
+    halves = {"ticks": 0, "bursts": LONGEST_BURST}
     with compiled_functions_told():
-        warm_up_ticks() if sys.argv[1:] == ["ticks"] else warm_up()
+        warm_up_half(halves[sys.argv[1]]) if sys.argv[1:] else warm_up()

@@ -80,6 +80,7 @@ def _see_from_first(
     """
     mount_x, mount_y, mount_turn = lidar.mount[0], lidar.mount[1], lidar.mount[2]
     origin_x = origin_y = origin_turn = 0.0
+    back_cosine, back_sine = 1.0, 0.0
     for beam in range(ranges.size):
         pose_beyond(path, stamp + beam * lidar.time_increment, pose)
         cosine, sine = math.cos(pose[2]), math.sin(pose[2])
@@ -87,6 +88,8 @@ def _see_from_first(
         y = pose[1] + sine * mount_x + cosine * mount_y
         if beam == 0:
             origin_x, origin_y, origin_turn = x, y, pose[2]
+            back = origin_turn + mount_turn
+            back_cosine, back_sine = math.cos(back), math.sin(back)
         turned = wrapped(pose[2] - origin_turn)
         places[beam] = beam + turned / lidar.step
         lengths[beam] = math.nan
@@ -94,10 +97,9 @@ def _see_from_first(
         if not lidar.nearest <= length < lidar.farthest:
             continue
         # Where the lidar is by now, in its frame at the first beam.
-        back = origin_turn + mount_turn
-        cosine, sine = math.cos(back), math.sin(back)
         off_x, off_y = x - origin_x, y - origin_y
-        away_x, away_y = cosine * off_x + sine * off_y, cosine * off_y - sine * off_x
+        away_x = back_cosine * off_x + back_sine * off_y
+        away_y = back_cosine * off_y - back_sine * off_x
         cosine, sine = math.cos(turned), math.sin(turned)
         along, across = lidar.directions[beam, 0], lidar.directions[beam, 1]
         end_x = away_x + length * (cosine * along - sine * across)

@@ -56,6 +56,13 @@ def trip_along(costs: Costs, tour: Tour) -> Trip:
 
 
 @part
+def place_of(trip: Trip, end: int) -> int:
+    """Return the position of an end, as wide as sums of positions: moves are compiled once then."""
+    place: int = np.int64(trip.position[end])  # type: ignore[assignment]
+    return place
+
+
+@part
 def join(costs: Costs, trip: Trip, at: int) -> None:
     """Note what the connection of the ends at a position and at the next one costs."""
     one, other = trip.tour[at], trip.tour[at + 1]
@@ -93,9 +100,9 @@ def _try_end(costs: Costs, trip: Trip, end: int) -> int:
 
     Returns how many ends it concerned, written to ``touched``; 0 when there is no such move.
     """
-    tour, position, touched = trip.tour, trip.position, trip.touched
+    tour, touched = trip.tour, trip.touched
     size = tour.size
-    at = position[end]
+    at = place_of(trip, end)
     leaves = at % 2 == 1
     partner_at = at + 1 if leaves else at - 1
     if partner_at < 0 or partner_at >= size:
@@ -109,7 +116,7 @@ def _try_end(costs: Costs, trip: Trip, end: int) -> int:
         gain = now - costs.costs[end, k]
         if gain <= _GAIN:
             break
-        other_at = position[other]
+        other_at = place_of(trip, other)
         other_leaves = other_at % 2 == 1
         other_partner_at = other_at + 1 if other_leaves else other_at - 1
         if other == partner or other_partner_at < 0 or other_partner_at >= size:
@@ -145,7 +152,7 @@ def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) ->
     The connection of the ends at ``at`` and ``other_at`` is new and brings ``gain``; which third
     connection is broken is searched here.
     """
-    tour, position, touched = trip.tour, trip.position, trip.touched
+    tour, touched = trip.tour, trip.touched
     size = tour.size
     leaver_at, entry_at = (at, other_at) if at % 2 == 1 else (other_at, at)
     if entry_at > leaver_at:
@@ -156,7 +163,7 @@ def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) ->
             e = costs.nearest[b, k]
             if e < 0 or costs.costs[b, k] >= gain - _GAIN:
                 break
-            e_at = position[e]
+            e_at = place_of(trip, e)
             if e_at % 2 == 0 or e_at < entry_at or e_at + 1 >= size:
                 continue
             f = tour[e_at + 1]
@@ -180,7 +187,7 @@ def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) ->
             d = costs.nearest[a, k]
             if d < 0 or costs.costs[a, k] >= gain - _GAIN:
                 break
-            d_at = position[d]
+            d_at = place_of(trip, d)
             if d_at % 2 == 1 or d_at <= entry_at or d_at > leaver_at:
                 continue
             c = tour[d_at - 1]
@@ -197,7 +204,7 @@ def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) ->
     return 0
 
 
-@inner_part
+@part
 def exchange(costs: Costs, trip: Trip, first: int, middle: int, stop: int) -> None:
     """Swap the runs at [first, middle) and [middle, stop), between other pieces."""
     tour, room = trip.tour, trip.room
@@ -218,11 +225,11 @@ def exchange(costs: Costs, trip: Trip, first: int, middle: int, stop: int) -> No
 @inner_part
 def _move_run(costs: Costs, trip: Trip, end: int, other: int) -> int:
     """Move a run of one to three pieces that begins with ``end`` to the side of ``other``."""
-    tour, position, touched = trip.tour, trip.position, trip.touched
+    tour, touched = trip.tour, trip.touched
     size = tour.size
-    at = position[end]
+    at = place_of(trip, end)
     leaves = at % 2 == 1
-    other_at = position[other]
+    other_at = place_of(trip, other)
     partner_at = other_at + 1 if other_at % 2 == 1 else other_at - 1
     if partner_at < 0 or partner_at >= size:
         return 0

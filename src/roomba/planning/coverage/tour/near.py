@@ -151,9 +151,7 @@ def nearest_wanted(
                 search.costs[other] = cost
                 to_bucket = cost % _BUCKETS
                 if heads[to_bucket] == queue.shape[1]:
-                    larger = np.zeros((_BUCKETS, 2 * queue.shape[1]), np.int32)
-                    larger[:, : queue.shape[1]] = queue
-                    queue = larger
+                    queue = _twice_as_long(queue)
                 queue[to_bucket, heads[to_bucket]] = other
                 heads[to_bucket] += 1
                 waiting += 1
@@ -162,6 +160,17 @@ def nearest_wanted(
     for n in range(touched):
         search.costs[search.touched[n]] = _NEVER
     return count
+
+
+@allocating_part
+def _twice_as_long(queue: Ints) -> Ints:
+    """Return the rows of a queue with as much room again behind them."""
+    longer = np.empty((queue.shape[0], 2 * queue.shape[1]), np.int32)
+    # Cell by cell: an array set at once may not fit, and to say so takes longest to compile.
+    for row in range(queue.shape[0]):
+        for at in range(queue.shape[1]):
+            longer[row, at] = queue[row, at]
+    return longer
 
 
 @allocating_entry

@@ -111,12 +111,11 @@ def shaken(costs: Costs, first_tour: Tour, period: int, pays: float) -> Tour:
         exchange(costs, trip, first + 1, middle + 1, last + 1)
         trip.gain[0] -= joined[a] + joined[e] + joined[c]
         trip.span[0], trip.span[1] = first + 1, last
-        count = 0
-        for concerned in (a, b, c, d, e, f):
+        for count, concerned in enumerate((a, b, c, d, e, f)):
             queue[count] = concerned
             waiting[concerned] = True
-            count += 1
-        improve(costs, trip, queue, count, waiting)
+        # No number that stands here: it would be compiled once more for that alone.
+        improve(costs, trip, queue, trip.touched.size, waiting)
         low, high = trip.span
         if trip.gain[0] >= 0.0:
             for at in range(low - 1, high + 2):
