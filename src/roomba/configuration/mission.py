@@ -146,15 +146,13 @@ class CleaningConfig(Frozen):
     least_dirt: Positive = 500.0
     """Grains/m2; floor with fewer of them is not dirty."""
     dirty_near: Positive = 1.5
-    """m; dirty floor as near as this is cleaned once more before the robot goes on."""
+    """m; dirty floor as near as this is cleaned once more in passing."""
+    dirty_ahead: Positive = 25.0
+    """m of the path ahead on which the place is looked for from where that takes the least way."""
     dirty_period: Positive = 5.0
     """s; from one look for dirty floor close by to the next."""
-    dirty_way: Positive = 3.0
-    """m; more way than twice the shortest that could sweep it that such floor may cost."""
     least_dirty: Positive = 0.08
     """m2; smaller dirty patches are not cleaned once more."""
-    least_dirty_round: Positive = 0.2
-    """m2; dirty patches as large as this are worth a way of their own at the end."""
     usual_floor: Positive = 4.0
     """m2; with less of it swept it is not known how dirty floor usually is."""
     usual_period: Positive = 30.0
@@ -170,6 +168,8 @@ class CleaningConfig(Frozen):
     new plan leaves slivers that take more: polishing a plan leaves floor by the same measure."""
     worth_way_to_enough: Positive = 500.0
     """The same of a round while less than ``enough`` is clean."""
+    worth_way_again: Positive = 20.0
+    """The same of dirty floor that is cleaned once more, in passing or at the end."""
     most_ways_out: Count = 40
     """Times, in a clean, that it leaves a place where it is shut in, or waits."""
     most_cut_offs: Count = 12

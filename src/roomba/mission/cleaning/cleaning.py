@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from roomba.configuration.mission import CleaningConfig
 from roomba.geometry import Pose
 from roomba.mission.cleaning.checkpoint import Values
-from roomba.mission.cleaning.dirty import DirtyFloor
+from roomba.mission.cleaning.detour import with_detour
+from roomba.mission.cleaning.dirty import DirtyFloor, DirtyPatch
 from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.missed import is_hidden, missed_floor
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, Missed
@@ -163,29 +164,42 @@ class Cleaning:
         return self.stage is not None and not self._context.is_growing
 
     def dirty_at_hand(
-        self, here: Pose, obstacles: list[RoundObstacle], now: float
+        self, here: Pose, rest: Floats, obstacles: list[RoundObstacle], now: float
     ) -> Floats | None:
-        """Return the way over dirty floor close by and back here, float64 [n, 2], m, or None.
+        """Return a path that leads over dirty floor close by as well, float64 [n, 2], m, or None.
 
-        That is floor which was swept just now, at ``now`` s.
+        That is floor which was swept by ``now``, s. ``rest``, float64 [n, 2], m, is the path before
+        the robot.
         """
-        stage, at = self.stage, (here.x, here.y)
+        stage = self.stage
         assert stage is not None
-        again = self.dirty.at_hand(self.coverage, stage.floor, at, now)
-        if again is None:
+        patches = self.dirty.at_hand(self.coverage, stage.floor, (here.x, here.y), now)
+        if not patches:
             return None
         obstacles = obstacles + closed_gaps(obstacles, self._context.reach, self._context.gap_spare)
+        path, again = np.vstack(((here.x, here.y), rest)), None
+        for patch in patches:
+            longer = self._with_dirty(path, patch, obstacles)
+            if longer is not None:
+                path = again = longer
+                self.dirty.note_again(patch)
+                self._ledger.sweep_anew(patch.floor)
+        return again
+
+    def _with_dirty(
+        self, path: Floats, patch: DirtyPatch, obstacles: list[RoundObstacle]
+    ) -> Floats | None:
+        """Return a path, float64 [n, 2], m, with a way over a patch put in, or None if too long."""
+        coverage, config = self._context.coverage, self._config
         edges_only = self.request.mode is CleanMode.EDGES
-        try:
-            plan = self._context.coverage.plan(at, at, again, obstacles, edges_only=edges_only)
-        except NoPathError:
-            return None
-        area = float(np.count_nonzero(again)) * self.coverage.cell_area
-        if plan.length > self._config.dirty_way + 2.0 * area / self._context.tool_width:
-            return None
-        self.dirty.note_again()
-        self._ledger.sweep_anew(again)
-        return plan.points
+        area = float(np.count_nonzero(patch.floor)) * self.coverage.cell_area
+        return with_detour(
+            path,
+            self.dirty.places_of(patch),
+            lambda at: coverage.plan(at, at, patch.floor, obstacles, edges_only=edges_only),
+            config.dirty_ahead,
+            config.worth_way_again * area,
+        )
 
     def wants_another_look(self, lasting: list[RoundObstacle]) -> bool:
         """Whether floor was out of reach: once, before the end, it is to be looked for again.
@@ -314,7 +328,7 @@ class Cleaning:
             if self._rounds.is_over(missed):
                 todo[:] = False
         if not self._rounds.is_first and not todo.any() and not self._scrubbed:
-            todo = self._dirty_again(stage)
+            todo = self._dirty_again(stage, plan_over)
         if not todo.any():
             return None
         self._rounds.begin(missed)
@@ -410,10 +424,14 @@ class Cleaning:
         except NoPathError:
             return np.zeros(self.coverage.frame.shape, np.bool_)
 
-    def _dirty_again(self, stage: Stage) -> Mask:
-        """Return what was so dirty that it gets another pass, once a stage."""
+    def _dirty_again(self, stage: Stage, plan_over: PlanOver) -> Mask:
+        """Return what was so dirty that it gets another pass, once a stage, and is worth it."""
         self._scrubbed = True
-        again = self.dirty.left(self.coverage, stage.floor)
+        frame, worth = self.coverage.frame, self._config.worth_way_again
+        again = np.zeros(frame.shape, np.bool_)
+        for patch in self.dirty.left(self.coverage, stage.floor):
+            if is_worth_its_way(plan_over, patch.floor, frame, worth):
+                again |= patch.floor
         if again.any():
             self._ledger.sweep_anew(again)
             self._rounds.expect_gain()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -16,6 +17,7 @@ from roomba.perception.swept.dirt_map import CELL, DirtMap
 from roomba.planning.path.costmap import Point
 from roomba.raster.regions import Labels, dilated, numbered_regions
 
+Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 _AROUND: Final = np.ones((3, 3), np.bool_)
@@ -23,6 +25,14 @@ _HAIR: Final = 1e-4
 """m; cells and ways lie on grids, so the last bits would decide between distances that are even."""
 _MISSED: Final = 0.02
 """Share of a patch that may be missed still when it is swept as a whole: specks stay at walls."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DirtyPatch:
+    """Dirty floor that hangs together: bool over the dirt map, and ``floor`` over the fine grid."""
+
+    cells: Mask
+    floor: Mask
 
 
 class DirtyFloor:
@@ -47,18 +57,14 @@ class DirtyFloor:
         self._again: Mask = np.zeros(self.dirt.frame.shape, np.bool_)
         self.done: Mask = self._again.copy()
         """What was told, or is swept again: it is not looked for any more."""
-        self._last = self._again
         self.watch["looked_at"] = self.watch["measured_at"] = -math.inf
 
-    def left(self, coverage: CoverageMap, floor: Mask) -> Mask:
-        """Return what is dirty of a swept floor and was not swept again: it is to be, now.
-
-        Only patches worth a way of their own are told.
-        """
-        cells = _large(self._dirty() & ~self._again, self._config.least_dirty_round)
+    def left(self, coverage: CoverageMap, floor: Mask) -> list[DirtyPatch]:
+        """Return the dirty patches of a swept floor that were not swept again, each once."""
+        cells = _large(self._dirty() & ~self._again, self._config.least_dirty)
         self._again |= cells
         self.done |= cells
-        return self._fine(cells, coverage, floor)
+        return self._each(cells, numbered_regions(cells), coverage, floor)
 
     def may_be_at_hand(self, here: Point, now: float) -> bool:
         """Whether it is time, s, to look for dirty floor close by: see :func:`may_be_dirty`."""
@@ -67,33 +73,35 @@ class DirtyFloor:
             may_be_dirty(self.watch, dirt.grains, dirt.way, self.done, dirt.place, *here, now)
         )
 
-    def at_hand(self, coverage: CoverageMap, floor: Mask, here: Point, now: float) -> Mask | None:
-        """Return dirty patches of a floor close by that are swept as a whole, or None.
+    def at_hand(
+        self, coverage: CoverageMap, floor: Mask, here: Point, now: float
+    ) -> list[DirtyPatch]:
+        """Return the dirty patches of a floor close by that are swept as a whole.
 
-        Each is told once; :meth:`note_again` tells that they are swept again. None as well while
-        too little was swept to tell what is usual. ``now`` is the time, s.
+        Each is told once; :meth:`note_again` tells that it is swept again. None while too little
+        was swept to tell what is usual. ``now`` is the time, s.
         """
         self._measure(now)
         cells = self.dirt.cells_from(float(self.watch["dirty_from"][0])) & ~self.done
         cells = _large(cells, self._config.least_dirty)
         if not cells.any():
-            return None
+            return []
         patches = numbered_regions(dilated(cells, _AROUND))
         at_hand = self._are_near(patches, here)
         if not at_hand.any():
-            return None
+            return []
         at_hand &= self._are_whole(patches, at_hand, coverage, floor)
-        if not at_hand.any():
-            return None
         cells &= at_hand[patches]
         self.done |= cells
-        self._last = cells
-        again = self._fine(cells, coverage, floor)
-        return again if again.any() else None
+        return self._each(cells, patches, coverage, floor)
 
-    def note_again(self) -> None:
-        """What was told last is swept again now; it is not at the end."""
-        self._again |= self._last
+    def note_again(self, patch: DirtyPatch) -> None:
+        """A patch that was told is swept again now; it is not at the end."""
+        self._again |= patch.cells
+
+    def places_of(self, patch: DirtyPatch) -> Floats:
+        """Return the middles of a patch's cells, float64 [n >= 1, 2], m."""
+        return np.column_stack(self.dirt.frame.centres(*np.nonzero(patch.cells)))
 
     def _measure(self, now: float) -> None:
         """Find out from how many grains on floor is dirty, when that is due.
@@ -112,9 +120,17 @@ class DirtyFloor:
     def _dirty(self) -> Mask:
         return self.dirt.dirty_cells(self._config.dirty_times, self._config.least_dirt)
 
-    def _fine(self, cells: Mask, coverage: CoverageMap, floor: Mask) -> Mask:
-        fine: Mask = self.dirt.over(cells, coverage.frame) & floor & coverage.swept
-        return fine
+    def _each(
+        self, cells: Mask, labels: Labels, coverage: CoverageMap, floor: Mask
+    ) -> list[DirtyPatch]:
+        """Return cells as patches by ``labels`` of their own, those with swept floor."""
+        patches = []
+        for number in np.unique(labels[cells]):
+            patch = cells & (labels == number)
+            fine = self.dirt.over(patch, coverage.frame) & floor & coverage.swept
+            if fine.any():
+                patches.append(DirtyPatch(patch, fine))
+        return patches
 
     def _are_near(self, patches: Labels, here: Point) -> Mask:
         """Return of each patch, by its number, whether it is close by; bool [patches + 1]."""

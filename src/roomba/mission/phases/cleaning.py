@@ -6,8 +6,6 @@ import math
 from dataclasses import replace
 from typing import Final
 
-import numpy as np
-
 from roomba.configuration.mission import ExploringConfig
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.request import CleanOutcome
@@ -145,12 +143,10 @@ class CleanPhase:
             return
         if not cleaning.dirty.may_be_at_hand((senses.pose.x, senses.pose.y), senses.now):
             return
-        points = cleaning.dirty_at_hand(
-            senses.pose, drives.obstacles.standing(senses.now), senses.now
-        )
+        obstacles, rest = drives.obstacles.standing(senses.now), drives.driver.points_left
+        points = cleaning.dirty_at_hand(senses.pose, rest, obstacles, senses.now)
         if points is not None:
-            rest = drives.driver.points_left
-            drives.begin(np.concatenate((points, rest)), senses, cleaning.plans_anew)
+            drives.begin(points, senses, cleaning.plans_anew)
 
     def _drive_on(self, cleaning: Cleaning, senses: Senses, limit: float) -> PhaseStep:
         drives, exploration = self._drives, self._job.exploration

@@ -11,6 +11,7 @@ from fixtures.robots.missions import DEN, HALL, HOME, TWO_ROOMS
 
 from roomba.configuration.mission import MissionConfig
 from roomba.geometry import Pose
+from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, MissReason
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.dirt_map import DirtMap
@@ -141,7 +142,8 @@ def test_where_it_was_very_dirty_it_cleans_once_more() -> None:
     assert clean.next_path(HERE, []) is None
 
 
-def test_dirty_floor_at_hand_is_cleaned_once_more_before_it_goes_on() -> None:
+def with_dirty_patch() -> Cleaning:
+    """A clean that drove over all of HOME, and found six cells dirty."""
     place = context()
     dirt = DirtMap(place.occupancy)
     clean = cleaning(place=place, dirt=dirt)
@@ -152,18 +154,36 @@ def test_dirty_floor_at_hand_is_cleaned_once_more_before_it_goes_on() -> None:
     points = clean.next_path(HERE, [])
     assert points is not None
     drive(clean, points)
-    swept, here = clean.coverage.fraction, Pose(1.0, 0.9, 0.0)
-    again = clean.dirty_at_hand(here, [], 0.0)
-    assert again is not None
+    return clean
+
+
+def test_dirty_floor_at_hand_is_cleaned_once_more_where_that_takes_the_least_way() -> None:
+    clean = with_dirty_patch()
+    swept, here, end = clean.coverage.fraction, Pose(1.0, 1.6, 0.0), (1.0, 2.2)
+    rest = np.array([(1.0, 0.9), end])
+    path = clean.dirty_at_hand(here, rest, [], 0.0)
+    assert path is not None
     assert clean.coverage.fraction < swept
-    assert again[0] == pytest.approx((here.x, here.y))
-    assert again[-1] == pytest.approx((here.x, here.y))
-    assert float(np.hypot(*np.diff(again, axis=0).T).sum()) < 6.0
-    drive(clean, again)
+    assert path[0] == pytest.approx((here.x, here.y))
+    assert path[-1] == pytest.approx(end)
+    # It branches off after 0.7 m, where the path turns back, and not at once.
+    assert (np.hypot(*(path - (1.0, 0.9)).T) < 0.05).sum() >= 2
+    legs = float(np.hypot(*np.diff(path, axis=0).T).sum())
+    assert 2.0 < legs < 2.0 + MissionConfig().cleaning.worth_way_again * 0.24
+    drive(clean, path)
     assert clean.coverage.fraction == pytest.approx(swept, abs=0.001)
     # Neither again in passing nor at the end.
-    assert clean.dirty_at_hand(here, [], 0.0) is None
+    assert clean.dirty_at_hand(here, rest, [], 0.0) is None
     assert clean.next_path(HERE, []) is None
+
+
+def test_dirty_floor_that_no_way_leads_to_is_left() -> None:
+    clean = with_dirty_patch()
+    # Things stand all around it.
+    ring = [(x, y, 0.05) for x in np.arange(0.5, 1.8, 0.1) for y in (0.25, 1.05)]
+    ring += [(x, y, 0.05) for x in (0.5, 1.7) for y in np.arange(0.25, 1.1, 0.1)]
+    here, rest = Pose(1.0, 1.6, 0.0), np.array([(1.0, 2.2)])
+    assert clean.dirty_at_hand(here, rest, ring, 0.0) is None
 
 
 def test_along_edges_there_is_less_to_do() -> None:
