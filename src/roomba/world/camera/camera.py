@@ -23,7 +23,7 @@ from roomba.world.camera.kernels.smooth import render_smooth
 from roomba.world.camera.scene.arrays import SceneArrays, ViewTables, Workspace
 from roomba.world.camera.scene.scene import Scene
 from roomba.world.camera.scene.texture_atlas import tone
-from roomba.world.camera.view import aligned, view_tables, whole_lanes, workspace
+from roomba.world.camera.view import view_tables, workspace
 from roomba.world.home.turned import placed
 
 __all__ = ["Camera", "Picture", "Scene"]
@@ -173,13 +173,14 @@ class _Quick:
     def taken(self, shot: _Shot) -> Picture:
         scene, x, y, cosine, sine, dirt, dirt_place = shot
         height, width, columns = self._config.height, self._config.width, self.view.columns
-        colour = aligned((height, columns, 3), np.uint8)
-        depth = aligned((whole_lanes(height), columns), np.float32)
+        colour = np.empty((height, 3 * columns), np.uint8)
+        depth = np.empty((height, columns), np.float32)
         render_quick(
             scene, self.view, x, y, cosine, sine, dirt, dirt_place, self._work, colour, depth
         )
         return Picture(
-            np.ascontiguousarray(colour[:, :width]), np.ascontiguousarray(depth[:height, :width])
+            np.ascontiguousarray(colour.reshape(height, columns, 3)[:, :width]),
+            np.ascontiguousarray(depth[:, :width]),
         )
 
 

@@ -3,40 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.sensors import CameraConfig
 from roomba.world.camera.kernels.span import SPANS_OF_BOX, SPANS_OF_WALL
-from roomba.world.camera.lanes.lanes import LANES
-from roomba.world.camera.scene.arrays import Spans, ViewTables, Workspace
-
-Number = TypeVar("Number", np.uint8, np.uint32, np.float32)
+from roomba.world.camera.scene.arrays import STRIP, TILE, Spans, StripRow, ViewTables, Workspace
 
 KNOT_SPACING = 0.05
 """m; the floor's light and dirt are felt at least so finely near the camera."""
 KNOT_ROWS = 16
 """Rows of samples; and not more of them apart than this."""
 MOST_TAPS = 5
-CACHE_LINE = 64
-"""Bytes."""
 FINEST_CRUMB = 0.0012
 """m; a sample larger than this begins to miss single crumbs."""
-
-
-def whole_lanes(count: int) -> int:
-    """Return so many rows or columns, or a few more: a whole number of lanes."""
-    return -(-count // LANES) * LANES
-
-
-def aligned(shape: tuple[int, ...], kind: type[Number]) -> NDArray[Number]:
-    """Return an array, not filled, whose lanes do not lie astride two of the cache's lines."""
-    size = math.prod(shape) * np.dtype(kind).itemsize
-    spare = np.empty(size + CACHE_LINE, np.uint8)
-    first = -spare.ctypes.data % CACHE_LINE
-    return spare[first : first + size].view(kind).reshape(shape)
 
 
 def view_tables(config: CameraConfig, factor: int) -> ViewTables:
@@ -55,24 +36,19 @@ def view_tables(config: CameraConfig, factor: int) -> ViewTables:
     crispness = np.clip(FINEST_CRUMB / footprint * 1.4, 0.0, 1.0)
     crispness[crispness < 0.05] = 0.0
     return ViewTables(
-        columns=whole_lanes(columns),
+        columns=-(-columns // STRIP) * STRIP,
         middle=0.5 * columns,
         rows=rows,
         focal=focal,
         eye=config.mount_height,
-        reach=_with_spare(reach),
+        reach=reach.astype(np.float32),
         spread=(reach**1.5 / focal).astype(np.float32),
-        floor_depth=_with_spare(np.where(level > 0.0, distance, np.inf)),
+        floor_depth=np.where(level > 0.0, distance, np.inf).astype(np.float32),
         knots=_knots(distance, rows, factor),
         octave=np.log2(footprint).astype(np.float32),
         taps=taps.astype(np.int32),
         crispness=crispness.astype(np.float32),
     )
-
-
-def _with_spare(values: NDArray[np.float64]) -> NDArray[np.float32]:
-    """Return a value per row and some more, so that there are lanes from each row on."""
-    return np.pad(values.astype(np.float32), (0, LANES), "edge")
 
 
 def _knots(distance: NDArray[np.float64], rows: int, step: int) -> NDArray[np.int32]:
@@ -96,14 +72,32 @@ def _knots(distance: NDArray[np.float64], rows: int, step: int) -> NDArray[np.in
 
 def workspace(view: ViewTables, boxes: int) -> Workspace:
     """Return room for pictures of a scene of so many boxes."""
-    height = whole_lanes(view.rows) + LANES
     spans = SPANS_OF_WALL + SPANS_OF_BOX * boxes
     return Workspace(
         hits=np.zeros((view.columns, 3), np.float64),
         seen=np.zeros((boxes, 4), np.float64),
         spans=Spans(np.zeros((spans, 4), np.int64), np.zeros((spans, 7), np.float64)),
-        colours=aligned((LANES, height), np.uint32),
-        depths=aligned((LANES, height), np.float32),
-        tile=aligned((height, LANES), np.uint32),
-        knots=np.zeros((2, len(view.knots), 3), np.float32),
+        colours=np.zeros((STRIP, view.rows), np.uint32),
+        depths=np.zeros((STRIP, view.rows), np.float32),
+        tile=np.zeros((view.rows, STRIP), np.uint32),
+        knots=np.zeros((view.columns // TILE + 1, len(view.knots), 3), np.float32),
+        surfaces=np.zeros(STRIP // TILE, np.int64),
+        row=_strip_row(),
     )
+
+
+def _strip_row() -> StripRow:
+    def real() -> NDArray[np.float32]:
+        return np.zeros(STRIP, np.float32)
+
+    def whole() -> NDArray[np.int32]:
+        return np.zeros(STRIP, np.int32)
+
+    def packed() -> NDArray[np.uint32]:
+        return np.zeros(STRIP, np.uint32)
+
+    return StripRow(
+        way_x=real(), way_y=real(), scale=real(), start=whole(), width=whole(), base=whole(),
+        shade=whole(), level=whole(), dust=whole(), veil=packed(), place=whole(), block=whole(),
+        colour=packed(),
+    )  # fmt: skip

@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from roomba.compilation import compiled
+from roomba.world.camera.kernels.compilation import INLINE
 from roomba.world.camera.kernels.face import add_face, add_span, row_of
 from roomba.world.camera.kernels.light import upright_shade
 from roomba.world.camera.kernels.ray import NEAR
-from roomba.world.camera.lanes.compilation import INLINE
 from roomba.world.camera.scene.arrays import (
     FACE,
     PLANE,

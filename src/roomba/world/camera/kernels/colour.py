@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import compiled
-from roomba.world.camera.lanes.compilation import INLINE
+from roomba.world.camera.kernels.compilation import INLINE
+
+RED_BLUE, GREEN, EIGHT = np.uint32(0xFF00FF), np.uint32(0x00FF00), np.uint32(8)
 
 
 @compiled(**INLINE)
@@ -23,6 +25,17 @@ def scaled(colour: int, shade: int) -> int:
 def blended(colour: int, other: int, share: int) -> int:
     """Return a packed colour mixed with ``share`` / 256 of another, share 0..256."""
     return int(scaled(colour, 256 - share) + scaled(other, share))
+
+
+@compiled(**INLINE)
+def mixed(colour: np.uint32, other: np.uint32, share: np.int32) -> np.uint32:
+    """Return the same, rounded once instead of twice, in numbers of 32 bits throughout."""
+    one, two = np.uint32(256 - share), np.uint32(share)
+    red_blue = np.uint32((colour & RED_BLUE) * one) + np.uint32((other & RED_BLUE) * two)
+    green = np.uint32((colour & GREEN) * one) + np.uint32((other & GREEN) * two)
+    return np.uint32(
+        (np.uint32(red_blue) >> EIGHT & RED_BLUE) | (np.uint32(green) >> EIGHT & GREEN)
+    )
 
 
 @compiled(**INLINE)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import compiled
+from roomba.world.camera.kernels.compilation import INLINE, INNER
 from roomba.world.camera.kernels.light import between_bytes
-from roomba.world.camera.lanes.compilation import INLINE, INNER
 from roomba.world.camera.scene.arrays import Lighting, ViewTables
 
 CRUMB_TEXELS = 2000.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from roomba.compilation import compiled
-from roomba.world.camera.lanes.compilation import INLINE
+from roomba.world.camera.kernels.compilation import INLINE
 from roomba.world.camera.scene.arrays import Spans, ViewTables
 
 CONTACT_HEIGHT = 0.22

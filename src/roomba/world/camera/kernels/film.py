@@ -6,10 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import compiled
-from roomba.world.camera.lanes.compilation import INNER, KERNEL
+from roomba.world.camera.kernels.compilation import INLINE, INNER, KERNEL
+from roomba.world.camera.scene.arrays import STRIP
 
 BLOCK = 16
 """Columns that are turned into rows together: what fits the nearest cache."""
+TURNED = 8
+"""Columns of a strip that are turned into rows together."""
 RED_BLUE, GREEN, TWO = np.uint32(0xFF00FF), np.uint32(0x00FF00), np.uint32(2)
 
 
@@ -40,3 +43,31 @@ def shrink(colours: NDArray[np.uint32], halved: NDArray[np.uint32]) -> None:
         red_blue = (one & RED_BLUE) + (two & RED_BLUE) + (three & RED_BLUE) + (four & RED_BLUE)
         green = (one & GREEN) + (two & GREEN) + (three & GREEN) + (four & GREEN)
         halved[row] = ((red_blue >> TWO) & RED_BLUE) | ((green >> TWO) & GREEN)
+
+
+@compiled(**INLINE)
+def turn(
+    columns: NDArray[np.float32 | np.uint32],
+    last: int,
+    rows: NDArray[np.float32 | np.uint32],
+    begin: int,
+) -> None:
+    """Copy the columns of a strip into rows, from the first to before ``last``.
+
+    ``columns`` is [STRIP, rows]; in ``rows`` they are those from ``begin`` on.
+    """
+    for first in range(0, STRIP, TURNED):
+        for at_row in range(last):
+            row = np.uint64(at_row)
+            for i in range(first, first + TURNED):
+                rows[row, np.uint64(begin + i)] = columns[np.uint64(i), row]
+
+
+@compiled(**INLINE)
+def write_pixels(colours: NDArray[np.uint32], pixels: NDArray[np.uint8]) -> None:
+    """Write packed colours [STRIP] as red, green and blue, a byte each."""
+    for i in range(STRIP):
+        colour = colours[i]
+        pixels[3 * i] = colour & 255
+        pixels[3 * i + 1] = (colour >> 8) & 255
+        pixels[3 * i + 2] = (colour >> 16) & 255

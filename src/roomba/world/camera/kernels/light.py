@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import compiled
-from roomba.world.camera.lanes.compilation import INLINE
+from roomba.world.camera.kernels.compilation import INLINE
 from roomba.world.camera.scene.arrays import SceneArrays
 
 

@@ -1,7 +1,8 @@
 """Compiled pictures of one sample per pixel, made for speed.
 
-A picture is painted in tiles of as many columns as there are lanes, so that what is worked on stays
-in the nearest caches: upright things column by column, the floor row by row.
+A picture is painted in strips of some columns, so that what is worked on stays in the nearest
+caches: upright things column by column, the floor row by row. Light and dirt on the floor are felt
+at the edges of its tiles, some to a strip.
 """
 
 from __future__ import annotations
@@ -10,19 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import compiled
+from roomba.world.camera.kernels.compilation import INLINE, INNER, KERNEL
 from roomba.world.camera.kernels.dirt import feel_knots
 from roomba.world.camera.kernels.face import row_of
+from roomba.world.camera.kernels.film import turn, write_pixels
 from roomba.world.camera.kernels.quick_floor import paint_floor
 from roomba.world.camera.kernels.quick_upright import LIGHT, paint_columns
 from roomba.world.camera.kernels.ray import cast_walls, find_boxes
-from roomba.world.camera.lanes.compilation import INLINE, INNER, KERNEL
-from roomba.world.camera.lanes.lane_memory import load, store, store_pixels, turn
-from roomba.world.camera.lanes.lanes import LANES, all_real
-from roomba.world.camera.scene.arrays import SceneArrays, ViewTables, Workspace
+from roomba.world.camera.scene.arrays import STRIP, TILE, SceneArrays, ViewTables, Workspace
 
 
 @compiled(**INNER)
-def finish_upright(
+def turn_upright(
     work: Workspace,
     view: ViewTables,
     begin: int,
@@ -31,28 +31,49 @@ def finish_upright(
     picture: NDArray[np.uint8],
     depths: NDArray[np.float32],
 ) -> None:
-    """Turn a tile's columns into rows: all depths, and the picture above ``first_row``.
+    """Turn a strip's columns into rows: all depths, and the picture above ``first_row``.
 
     Below that, colours are left in ``work.tile``; from ``lowest`` down is only floor.
     """
-    height = work.colours.shape[1]
-    for row in range(0, lowest, LANES):
-        turn(work.colours, row, height, work.tile, row * LANES, LANES)
-        turn(work.depths, row, height, depths, row * view.columns + begin, view.columns)
+    turn(work.colours, lowest, work.tile, 0)
+    turn(work.depths, lowest, depths, begin)
     for row in range(lowest, view.rows):
-        store(depths, row * view.columns + begin, all_real(view.floor_depth[row]))
+        depths[row, begin : begin + STRIP] = view.floor_depth[row]
     for row in range(first_row):
-        colours = load(work.tile, row * LANES)
-        store_pixels(picture, 3 * (row * view.columns + begin), colours)
+        write_pixels(work.tile[row], picture[row, 3 * begin :])
 
 
 @compiled(**INLINE)
 def first_floor_row(hits: NDArray[np.float64], view: ViewTables, begin: int, end: int) -> int:
     """Return the first row of floor that can be in sight in columns begin..end-1."""
     farthest = 0.0
-    for c in range(begin, min(end, view.columns)):
+    for c in range(max(begin, 0), min(end, view.columns)):
         farthest = max(farthest, hits[c, 0])
     return int(row_of(-view.eye / farthest, 0.5 * view.rows, view.focal, view.rows))
+
+
+@compiled(**INLINE)
+def feel_edges(
+    scene: SceneArrays,
+    view: ViewTables,
+    x: float,
+    y: float,
+    cosine: float,
+    sine: float,
+    dirt: NDArray[np.int32],
+    dirt_place: NDArray[np.float64],
+    work: Workspace,
+) -> None:
+    """Feel light and dirt along each edge of a tile, from where its strips' floor may begin."""
+    for edge in range(work.knots.shape[0]):
+        column = edge * TILE
+        k = (view.middle - column) / view.focal
+        left, right = (column - 1) // STRIP * STRIP, (column // STRIP + 1) * STRIP
+        feel_knots(
+            scene.lighting, view, x, y, cosine - k * sine, sine + k * cosine,
+            first_floor_row(work.hits, view, left, right),
+            dirt, dirt_place, scene.floor.cover, LIGHT, work.knots[edge],
+        )  # fmt: skip
 
 
 @compiled(**KERNEL)
@@ -69,29 +90,18 @@ def render_quick(
     picture: NDArray[np.uint8],
     depths: NDArray[np.float32],
 ) -> None:
-    """Paint ``picture`` [rows, columns, 3], red, green, blue, and ``depths`` [rows, columns].
+    """Paint ``picture`` [rows, 3 * columns], red, green, blue, and ``depths`` [rows, columns].
 
     The camera is at (x, y) and looks along (cosine, sine). ``dirt_place`` is cell, origin x and
-    origin y of ``dirt``. ``depths`` has rows to spare, for a whole number of lanes.
+    origin y of ``dirt``.
     """
     farthest = cast_walls(scene.walls, view, x, y, cosine, sine, work.hits)
     boxes = find_boxes(scene.boxes.shapes, view, x, y, cosine, sine, farthest, work.seen)
-    for begin in range(-LANES, view.columns, LANES):
-        end = begin + LANES
-        # Its right edge is the next tile's left one.
-        k = (view.middle - end) / view.focal
-        feel_knots(
-            scene.lighting, view, x, y, cosine - k * sine, sine + k * cosine,
-            first_floor_row(work.hits, view, max(begin, 0), end + LANES),
-            dirt, dirt_place, scene.floor.cover, LIGHT, work.knots[(end // LANES) & 1],
-        )  # fmt: skip
-        if begin < 0:
-            continue
-        first_row = first_floor_row(work.hits, view, begin, end)
-        lowest = paint_columns(
-            scene, view, x, y, cosine, sine, begin, boxes, first_row, work, depths
-        )
-        finish_upright(work, view, begin, first_row, lowest, picture, depths)
+    feel_edges(scene, view, x, y, cosine, sine, dirt, dirt_place, work)
+    for begin in range(0, view.columns, STRIP):
+        first_row = first_floor_row(work.hits, view, begin, begin + STRIP)
+        lowest = paint_columns(scene, view, x, y, cosine, sine, begin, boxes, work)
+        turn_upright(work, view, begin, first_row, lowest, picture, depths)
         paint_floor(
             scene, view, x, y, cosine, sine, begin, first_row, lowest, work, picture, depths
         )

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import compiled
-from roomba.world.camera.lanes.compilation import INLINE, INNER
+from roomba.world.camera.kernels.compilation import INLINE, INNER
 from roomba.world.camera.scene.arrays import ViewTables, WallGrid
 
 NEAR = 0.004

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from roomba.compilation import compiled
 from roomba.world.camera.kernels.colour import level_of, scaled, smooth_texel
+from roomba.world.camera.kernels.compilation import INLINE, KERNEL
 from roomba.world.camera.kernels.dirt import (
     feel_knots,
 )
@@ -20,7 +21,6 @@ from roomba.world.camera.kernels.film import shrink
 from roomba.world.camera.kernels.ray import cast_walls, find_boxes
 from roomba.world.camera.kernels.smooth_floor import paint_floor
 from roomba.world.camera.kernels.span import column_spans
-from roomba.world.camera.lanes.compilation import INLINE, KERNEL
 from roomba.world.camera.scene.arrays import (
     PLANE,
     TURNED_FACE,

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from roomba.compilation import compiled
 from roomba.world.camera.kernels.colour import blended, scaled, smooth_texel
+from roomba.world.camera.kernels.compilation import INLINE
 from roomba.world.camera.kernels.dirt import (
     CRUMB_BLOCK,
     CRUMB_MASK,
     CRUMB_TEXELS,
     floor_surface,
 )
-from roomba.world.camera.lanes.compilation import INLINE
 from roomba.world.camera.scene.arrays import SceneArrays, ViewTables
 from roomba.world.home.crumbs import DUST
 

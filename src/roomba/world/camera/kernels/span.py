@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from roomba.compilation import compiled
 from roomba.world.camera.kernels.box import add_box
+from roomba.world.camera.kernels.compilation import INLINE
 from roomba.world.camera.kernels.face import add_face, add_span, row_of
 from roomba.world.camera.kernels.light import upright_shade
-from roomba.world.camera.lanes.compilation import INLINE
 from roomba.world.camera.scene.arrays import FACE, PLANE, SceneArrays, Spans, ViewTables
 
 SKIRTING_HEIGHT = 0.07

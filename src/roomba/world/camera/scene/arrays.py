@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 SHADES = 128
 GREYS = 64
 """How many lights and greys a surface's toned colours are kept in."""
+TILE = 16
+"""Columns of a picture between which light and dirt are felt."""
+STRIP = 64
+"""Columns of a picture that are painted together: a whole number of tiles."""
 
 
 class Surfaces(NamedTuple):
@@ -130,6 +134,36 @@ FACE, TURNED_FACE, PLANE = np.int64(0), np.int64(1), np.int64(2)
 """Kinds of spans; on a turned face, the texture is turned by a right angle."""
 
 
+class StripRow(NamedTuple):
+    """Room for what is known of the floor in a row of a strip, [STRIP] each."""
+
+    way_x: NDArray[np.float32]
+    """Where a column looks, m in the map frame per metre of depth."""
+    way_y: NDArray[np.float32]
+    scale: NDArray[np.float32]
+    """Texels per metre, of the halving of the texture that suits."""
+    start: NDArray[np.int32]
+    """Its first texel."""
+    width: NDArray[np.int32]
+    """Its width, texels: a power of two."""
+    base: NDArray[np.int32]
+    """First of the surface's ``shaded`` colours."""
+    shade: NDArray[np.int32]
+    """Light, 0..SHADES - 1."""
+    level: NDArray[np.int32]
+    """Of dirt."""
+    dust: NDArray[np.int32]
+    """How much it hides, 0..256."""
+    veil: NDArray[np.uint32]
+    """Its colour."""
+    place: NDArray[np.int32]
+    """A texel of the floor, or of the pattern of crumbs."""
+    block: NDArray[np.int32]
+    """An entry of the table of the fewest crumbs."""
+    colour: NDArray[np.uint32]
+    """What is seen."""
+
+
 class Workspace(NamedTuple):
     """Room to work in; nothing in it lasts from picture to picture."""
 
@@ -139,13 +173,16 @@ class Workspace(NamedTuple):
     """[boxes, 4]: distance, index, first and last column of a box in view."""
     spans: Spans
     colours: NDArray[np.uint32]
-    """[columns that are painted together, rows]; with rows to spare for all lanes from the last."""
+    """[STRIP, rows]."""
     depths: NDArray[np.float32]
     """The same."""
     tile: NDArray[np.uint32]
-    """[rows, columns that are painted together]: ``colours`` turned."""
+    """[rows, STRIP]: ``colours`` turned."""
     knots: NDArray[np.float32]
-    """[2, knots, 3]: light, level of dirt and veil of dust, beside the columns."""
+    """[edges of tiles, knots, 3]: light, level of dirt and veil of dust."""
+    surfaces: NDArray[np.int64]
+    """[tiles of a strip]: what the floor is made of."""
+    row: StripRow
 
 
 class ViewTables(NamedTuple):
@@ -161,10 +198,7 @@ class ViewTables(NamedTuple):
     eye: float
     """Height of the camera above the floor, m."""
     reach: NDArray[np.float32]
-    """[rows]: depth at which a row meets a level plane 1 m above or below the camera, m.
-
-    Some values to spare for all lanes from the last row, as in ``floor_depth``.
-    """
+    """[rows]: depth at which a row meets a level plane 1 m above or below the camera, m."""
     spread: NDArray[np.float32]
     """[rows]: size, m, of what a sample stands for on that plane."""
     floor_depth: NDArray[np.float32]

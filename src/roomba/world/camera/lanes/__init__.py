@@ -1,1 +1,0 @@
-"""Compiled code that handles several pixels at once."""
