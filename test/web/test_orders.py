@@ -15,7 +15,7 @@ from roomba.vocabulary import CleanMode
 
 def asked_for(robot: Embodied) -> CleanMode | None:
     cleaning = robot.mission.cleaning
-    return None if cleaning is None else cleaning.request.mode
+    return None if cleaning is None else cleaning.ledger.request.mode
 
 
 def test_a_zone_is_drawn_and_cleaned(opened: Opened) -> None:

@@ -229,7 +229,7 @@ def test_each_room_has_its_own_passes_and_fan_and_the_speed_is_set(opened: Opene
 
     def ways(robot: Embodied) -> tuple[RoomWay, ...]:
         cleaning = robot.mission.cleaning
-        return () if cleaning is None else cleaning.request.each
+        return () if cleaning is None else cleaning.ledger.request.each
 
     expected = RoomWay(2, FanLevel.STANDARD), RoomWay(1, FanLevel.QUIET)
     assert opened.robot.ask(ways) == expected

@@ -134,7 +134,7 @@ class Burst:
         row["cell_area"] = (
             self._truth.cell_area
             if mission.cleaning is None
-            else (mission.cleaning.coverage.cell_area)
+            else (mission.cleaning.ledger.coverage.cell_area)
         )
         if steady.driver is not None:
             row["off_path"] = brain.config.driving.off_path
@@ -151,7 +151,7 @@ class Burst:
         row["last"], row["way"] = (last.now, last.pose.x, last.pose.y), 0.0
         row["sweeps"] = mission.sweeps
         cleaning = mission.cleaning
-        row["swept_at"] = _place_of(None if cleaning is None else cleaning.coverage.at)
+        row["swept_at"] = _place_of(None if cleaning is None else cleaning.ledger.coverage.at)
         row["true_at"] = _place_of(self._truth.at)
         row["swept"] = row["truth_swept"] = 0
         row["is_left"] = row["is_followed"] = False
@@ -185,7 +185,7 @@ class Burst:
     def _floor(self) -> Floor:
         """Return what is cleaned now; without a clean what is driven over does not count."""
         mission, truth = self._brain.mission, self._truth
-        coverage = truth if mission.cleaning is None else mission.cleaning.coverage
+        coverage = truth if mission.cleaning is None else mission.cleaning.ledger.coverage
         dirt = mission.dirt
         return Floor(
             coverage.cells,
@@ -230,8 +230,8 @@ class Burst:
         row, cleaning = self._burst[0], self._brain.mission.cleaning
         if row["sweeps"] and cleaning is not None:
             x, y = row["swept_at"].tolist()
-            cleaning.coverage.swept_cells += int(row["swept"])
-            cleaning.coverage.at = x, y
+            cleaning.ledger.coverage.swept_cells += int(row["swept"])
+            cleaning.ledger.coverage.at = x, y
         x, y = row["true_at"].tolist()
         self._truth.swept_cells += int(row["truth_swept"])
         self._truth.at = x, y

@@ -221,7 +221,7 @@ class Mission:
     @property
     def queue(self) -> tuple[str, ...]:
         """The rooms that its clean has still to do, the present one first."""
-        return () if self.cleaning is None else self.cleaning.queue
+        return () if self.cleaning is None else self.cleaning.ledger.queue
 
     @property
     def exploration(self) -> Exploration | None:
@@ -286,7 +286,7 @@ class Mission:
             return 0.0
         driving = 0.0 if self.driver is None else self.driver.left
         if self.state.phase is Phase.CLEANING:
-            driving = max(driving, self.cleaning.left / self.context.tool_width)
+            driving = max(driving, self.cleaning.ledger.left / self.context.tool_width)
         speed = min(self._config.driving.speed, self.max_speed)
         return driving / (self._config.driving.mean_speed * speed)
 

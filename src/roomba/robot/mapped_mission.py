@@ -58,7 +58,7 @@ def fan_of(mission: Mission) -> FanLevel | None:
     cleaning = mission.cleaning
     if cleaning is None or mission.state.phase is Phase.ERROR:
         return None
-    stage, request = cleaning.stage, cleaning.request
+    stage, request = cleaning.ledger.stage, cleaning.ledger.request
     asked = request.way_of("" if stage is None else stage.name).fan
     boosts = request.carpets is CarpetWay.BOOST and asked is not FanLevel.QUIET
     return FanLevel.STRONG if boosts and mission.is_on_carpet else asked

@@ -131,7 +131,7 @@ class MissionTopics:
         self._mapped, self._mapped_wall = now, time.monotonic()
         rows = mission.context.known.frame.rows
         if mission.cleaning is not None and (has_ended or self._coverage.get_num_connections()):
-            coverage = mission.cleaning.coverage
+            coverage = mission.cleaning.ledger.coverage
             cells, frame = coverage.cells.copy(), coverage.frame
             self._show(self._coverage, lambda: coverage_message(now, cells, frame, rows, "map"))
         if has_ended or self._dirt.get_num_connections():
@@ -159,8 +159,8 @@ def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
         state.room = mission.context.room_at(senses.pose.x, senses.pose.y)
     if mission.cleaning is not None:
         # Counted once: it is a look at every cell of the floor.
-        state.covered = mission.cleaning.clean_area
-        state.wanted = mission.cleaning.coverage.wanted_area
+        state.covered = mission.cleaning.ledger.clean_area
+        state.wanted = mission.cleaning.ledger.coverage.wanted_area
         state.fraction = share_of(state.covered, state.wanted)
         state.seconds_to_go = mission.seconds_to_go()
     return state

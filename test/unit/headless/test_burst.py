@@ -186,7 +186,7 @@ def test_what_is_swept_in_it_is_counted_as_if_counted_anew() -> None:
     assert sum(map(len, robot.rows)) > 5 * len(robot.rows)
     cleaning = robot.mission.cleaning
     assert cleaning is not None
-    for coverage in (robot.truth, cleaning.coverage):
+    for coverage in (robot.truth, cleaning.ledger.coverage):
         kept = coverage.swept_cells
         coverage.count_again()
         assert coverage.swept_cells == kept

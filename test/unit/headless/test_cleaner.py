@@ -105,7 +105,7 @@ def test_rooms_in_order_are_cleaned_one_after_the_other(names: tuple[str, ...]) 
     cleaning = robot.mission.cleaning
     assert cleaning is not None
     first, second = (robot.context.in_room(name) for name in names)
-    until(robot, lambda: cleaning.stage_number == 1)
+    until(robot, lambda: cleaning.ledger.stage_number == 1)
     assert floor_clean(robot, first) >= FLOOR_TOO_LITTLE
     assert floor_clean(robot, second) < 0.5
     assert_all_clean(robot, robot.run())
@@ -116,7 +116,7 @@ def test_rooms_not_in_order_begin_with_the_nearest() -> None:
     robot.mission.clean(CleanRequest(CleanMode.ROOMS, rooms=(DEN, HALL)), robot.senses())
     cleaning = robot.mission.cleaning
     assert cleaning is not None
-    assert [stage.name for stage in cleaning.stages] == [HALL, DEN]
+    assert [stage.name for stage in cleaning.ledger.stages] == [HALL, DEN]
 
 
 def test_zones_are_cleaned_and_little_else() -> None:

@@ -61,8 +61,8 @@ def test_what_is_told_as_clean_was_swept_with_room_in_the_bin() -> None:
     until(robot, in_phase(robot, Phase.BIN_FULL), 1200.0)
     cleaning = robot.mission.cleaning
     assert cleaning is not None
-    told = cleaning.coverage.swept & cleaning.coverage.wanted
-    assert 0.05 < cleaning.coverage.fraction < 0.95
+    told = cleaning.ledger.coverage.swept & cleaning.ledger.coverage.wanted
+    assert 0.05 < cleaning.ledger.coverage.fraction < 0.95
     assert np.count_nonzero(told & ~robot.truth.swept) < 0.01 * np.count_nonzero(told)
     robot.simulator.empty_bin()
     robot.look()
@@ -87,7 +87,7 @@ def test_without_a_level_sensor_the_grains_tell_and_what_was_swept_in_vain_is_sw
     assert robot.seen.in_bin == pytest.approx(1.9, rel=1e-3)
     cleaning = robot.mission.cleaning
     assert cleaning is not None
-    told = cleaning.coverage.swept & cleaning.coverage.wanted
+    told = cleaning.ledger.coverage.swept & cleaning.ledger.coverage.wanted
     assert np.count_nonzero(told & ~robot.truth.swept) < 0.02 * np.count_nonzero(told)
 
 

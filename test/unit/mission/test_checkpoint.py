@@ -52,7 +52,7 @@ def test_all_that_matters_comes_back() -> None:
     again, now = Job(DirtMap(HOME.map), MissionConfig(), 100.0, SENSES), 7.0
     take_up(found, again, Senses(now, SENSES.pose))
     assert again.cleaning is not None
-    assert again.cleaning.request == CleanRequest(passes=2)
+    assert again.cleaning.ledger.request == CleanRequest(passes=2)
     assert again.exploration is None
     assert again.outcome is CleanOutcome.COMPLETED
     assert (again.ledger.distance, again.ledger.energy, again.ledger.dirt) == (12.0, 0.5, 2.0)

@@ -177,7 +177,7 @@ def test_lost_it_says_so_at_once() -> None:
 
 def test_what_it_passes_while_its_place_is_unknown_is_not_clean() -> None:
     rig = cleaning()
-    coverage = rig.mission.cleaning.coverage  # type: ignore[union-attr]
+    coverage = rig.mission.cleaning.ledger.coverage  # type: ignore[union-attr]
     swept = coverage.swept_cells
     rig.tick(knowledge=Knowledge.SEARCHING)
     rig.tick(3, pose=Pose(1.2, 0.6, 0.0))
@@ -293,10 +293,10 @@ def test_with_a_full_bin_it_returns_and_sweeps_nothing() -> None:
     assert (rig.phase, rig.mission.state.errand) == (Phase.RETURNING, Errand.CLEAN)
     assert not rig.mission.sweeps
     assert rig.mission.message.startswith("bin full: ")
-    swept = cleaning_under_way.coverage.swept.copy()
+    swept = cleaning_under_way.ledger.coverage.swept.copy()
     dirt = rig.mission.dirt.way.copy()
     rig.tick(20, pose=Pose(1.6, 0.6, 0.0), grains=5.0)
-    assert (cleaning_under_way.coverage.swept == swept).all()
+    assert (cleaning_under_way.ledger.coverage.swept == swept).all()
     assert (rig.mission.dirt.way == dirt).all()
 
 
@@ -376,12 +376,12 @@ def test_floor_that_was_swept_without_a_grain_by_an_almost_full_bin_is_not_clean
     assert under_way is not None
     lanes = [(x, 0.2 + 0.1 * (row // 2)) for row, x in enumerate((0.2, 2.8, 2.8, 0.2) * 5)]
     drive(rig, lanes, grains=900.0, in_bin=0.9 * FULL)
-    swept = under_way.coverage.swept_area
+    swept = under_way.ledger.coverage.swept_area
     assert swept > 2.0
     drive(rig, [(x, y + 1.1) for x, y in lanes], grains=0.0)
     assert rig.phase is Phase.RETURNING
     # But for the last metre of it.
-    assert 0.85 * swept < under_way.coverage.swept_area < 1.1 * swept
+    assert 0.85 * swept < under_way.ledger.coverage.swept_area < 1.1 * swept
 
 
 def drive(rig: Rig, points: list[tuple[float, float]], **changes: object) -> None:

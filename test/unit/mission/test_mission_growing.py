@@ -47,7 +47,7 @@ def cleaning(request: CleanRequest | None = None, known: OccupancyMap = HALL) ->
 def swept(rig: Rig) -> None:
     """All that is wanted is clean, and the path over it driven to its end."""
     assert rig.mission.cleaning is not None
-    coverage = rig.mission.cleaning.coverage
+    coverage = rig.mission.cleaning.ledger.coverage
     coverage.cells[coverage.wanted] |= np.uint8(SWEPT)
     coverage.count_again()
     rig.mission.driver = None
@@ -107,7 +107,7 @@ def test_while_the_map_grows_it_keeps_farther_from_walls_and_leaves_the_edges() 
         for at in points
     ]
     assert min(gaps) > ROBOT.body.radius + CONFIG.exploring.cleaning_clearance - 0.001
-    coverage, width = mission.cleaning.coverage, ROBOT.brush.width
+    coverage, width = mission.cleaning.ledger.coverage, ROBOT.brush.width
     tried = (coverage.cells & TRIED) > 0
     rows, columns = np.nonzero(tried)
     inside_x, inside_y = coverage.frame.centres(rows, columns)
@@ -173,13 +173,13 @@ def test_killed_it_goes_on_with_what_the_map_shows_by_then(later: OccupancyMap) 
     rig.tick(pose=Pose(1.2, 1.0, 0.0))
     values = json.loads(json.dumps(rig.mission.checkpoint(rig.senses)))
     assert rig.mission.cleaning is not None
-    clean = rig.mission.cleaning.clean_area
+    clean = rig.mission.cleaning.ledger.clean_area
     assert clean > 0.02
     again = Rig(AWAY, later)
     again.mission.restore(values, again.senses)
     assert again.mission.cleaning is not None
     assert again.mission.exploration is not None
-    assert again.mission.cleaning.clean_area == pytest.approx(clean)
+    assert again.mission.cleaning.ledger.clean_area == pytest.approx(clean)
     again.tick(5)
     assert again.phase is Phase.CLEANING
 
@@ -187,13 +187,13 @@ def test_killed_it_goes_on_with_what_the_map_shows_by_then(later: OccupancyMap) 
 def test_a_look_that_is_cut_short_is_no_round_that_was_broken_off() -> None:
     rig = cleaning()
     assert rig.mission.cleaning is not None
-    coverage = rig.mission.cleaning.coverage
+    coverage = rig.mission.cleaning.ledger.coverage
     coverage.cells[coverage.wanted] |= np.uint8(TRIED)
     rig.grow(known_to(WALL_X + 0.3))
     rig.grow(WHOLE)
     assert rig.mission.driver is None
     context = rig.mission.context
-    coverage = rig.mission.cleaning.coverage
+    coverage = rig.mission.cleaning.ledger.coverage
     columns = np.nonzero(coverage.wanted & (coverage.cells & TRIED == 0))[1]
     # The hall was planned once.
     assert context.frame.centre_of(0, int(columns.min()))[0] > WALL_X - 0.3
@@ -243,7 +243,7 @@ def test_dirt_that_is_met_on_a_newer_map_is_cleaned_once_more() -> None:
     rig.tick(3)
     assert rig.phase is Phase.CLEANING
     assert rig.mission.driver is not None
-    assert rig.mission.cleaning.coverage.fraction < 1.0
+    assert rig.mission.cleaning.ledger.coverage.fraction < 1.0
 
 
 def test_dirt_beside_the_path_is_cleaned_once_more_before_it_goes_on() -> None:
@@ -268,7 +268,7 @@ def test_dirt_beside_the_path_is_cleaned_once_more_before_it_goes_on() -> None:
     assert rig.mission.driver is not driver
     points = rig.mission.driver.tracker.course.points
     assert points[-1] == pytest.approx(end)
-    assert clean.coverage.fraction < 1.0
+    assert clean.ledger.coverage.fraction < 1.0
 
 
 def test_killed_while_the_map_became_whole_it_looks_for_no_more() -> None:

@@ -66,7 +66,7 @@ def test_the_present_room_may_come_later_and_nothing_of_it_is_swept_twice() -> N
     cleaning = robot.mission.cleaning
     assert cleaning is not None
     hall = robot.context.in_room(HALL) & robot.context.coverable()
-    left = cleaning.left / cleaning.coverage.cell_area
+    left = cleaning.ledger.left / cleaning.ledger.coverage.cell_area
     assert left < np.count_nonzero(hall) - 0.8 * np.count_nonzero(hall & swept)
     assert_all_clean(robot, robot.run())
 
@@ -86,8 +86,8 @@ def test_passes_of_a_room_that_is_added_are_its_own() -> None:
     robot.mission.change_rooms((HALL, DEN), (RoomWay(1), RoomWay(2)))
     cleaning = robot.mission.cleaning
     assert cleaning is not None
-    assert [stage.name for stage in cleaning.stages] == [HALL, DEN, DEN]
-    assert cleaning.request.way_of(DEN).passes == 2
+    assert [stage.name for stage in cleaning.ledger.stages] == [HALL, DEN, DEN]
+    assert cleaning.ledger.request.way_of(DEN).passes == 2
 
 
 def test_a_killed_robot_goes_on_with_the_rooms_as_they_were_changed() -> None:

@@ -136,7 +136,8 @@ def test_the_map_shows_slanted_walls_as_steps(angle: float) -> None:
     whole = inside > 0.999 * frame.resolution**2
     assert whole.sum() > 0.8 * HOME.solid.size
     shown = turned.map.values
-    assert np.abs(shown[whole] - OCCUPIED * share[whole]).max() < 12.0
+    # An edge that is hardly aslant takes a whole row of nine, and shares are rounded up.
+    assert np.abs(shown[whole] - OCCUPIED * share[whole]).max() < OCCUPIED / 9 + 1.0
     assert (shown[whole & (share > 0.03)] > FREE).all()
     assert (shown[whole & (share < 1e-6)] == FREE).all()
     assert turned.solid[whole & (share > 0.03)].all()

@@ -87,8 +87,8 @@ def vacuum_snapshot(robot: Embodied) -> VacuumSnapshot:
     mission, cleaning = robot.mission, robot.mission.cleaning
     covered = wanted = fraction = 0.0
     if cleaning is not None:
-        covered = cleaning.clean_area
-        wanted = cleaning.coverage.wanted_area
+        covered = cleaning.ledger.clean_area
+        wanted = cleaning.ledger.coverage.wanted_area
         fraction = share_of(covered, wanted)
     pose = robot.brain.pose
     phase = mission.state.phase

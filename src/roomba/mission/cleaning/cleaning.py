@@ -32,7 +32,7 @@ from roomba.mission.cleaning.worth import (
 )
 from roomba.mission.driving.gaps import closed_gaps
 from roomba.mission.inputs.planning_context import PlanningContext
-from roomba.perception.swept.coverage_map import CoverageMap, patches_of
+from roomba.perception.swept.coverage_map import patches_of
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.path.costmap import Point, RoundObstacle
@@ -45,7 +45,7 @@ Mask = NDArray[np.bool_]
 
 
 class Cleaning:
-    """Plans piece by piece; ``coverage`` is what was swept of the present pass.
+    """Plans piece by piece; ``ledger`` tells what is wanted, and what of it is clean.
 
     ``is_again``: the present path is one of a later round, over what the first one left.
     ``mean_passes`` is how often the floor is asked for, in the mean.
@@ -63,8 +63,8 @@ class Cleaning:
         self._context, self._config = context, config
         self.dirty = DirtyFloor(dirt, config)
         """What is so dirty that it is swept once more."""
-        self._ledger = CoverageLedger(request, context, dirt, here)
-        if not (self.coverage.wanted_cells or self.explores):
+        self.ledger = CoverageLedger(request, context, dirt, here)
+        if not (self.ledger.coverage.wanted_cells or self.explores):
             raise CleanRefusedError(
                 "expected floor that can be reached, got none: it is outside of the map, in "
                 "furniture, or in a no-go zone"
@@ -80,61 +80,17 @@ class Cleaning:
         """m; of the last path that was not driven to its end, what was left then."""
 
     @property
-    def request(self) -> CleanRequest:
-        """What was asked for."""
-        return self._ledger.request
-
-    @property
-    def coverage(self) -> CoverageMap:
-        """What is wanted, and swept of the present pass."""
-        return self._ledger.coverage
-
-    @property
-    def stages(self) -> list[Stage]:
-        """The parts in their order."""
-        return self._ledger.stages
-
-    @property
-    def stage(self) -> Stage | None:
-        """The one that it is at, or None at the end."""
-        return self._ledger.stage
-
-    @property
-    def stage_number(self) -> int:
-        """Which of them that is, from 0."""
-        return self._ledger.stage_number
-
-    @property
-    def left(self) -> float:
-        """Floor that is still to be cleaned, m2, stages and passes to come included."""
-        return self._ledger.left
-
-    @property
-    def clean(self) -> Mask:
-        """What was ever swept of what is wanted."""
-        return self._ledger.clean
-
-    @property
-    def clean_area(self) -> float:
-        """What was ever swept of what is wanted, m2; only edits of zones make it less."""
-        return self._ledger.clean_area
-
-    @property
     def explores(self) -> bool:
         """Whether it goes to see, for more floor, what the map does not show yet."""
-        return self._context.is_growing and self.request.mode in (CleanMode.WHOLE, CleanMode.EDGES)
-
-    @property
-    def queue(self) -> tuple[str, ...]:
-        """The rooms that are still to be cleaned, the present one first; none without rooms."""
-        return self._ledger.queue
+        may_be_more = self.ledger.request.mode in (CleanMode.WHOLE, CleanMode.EDGES)
+        return self._context.is_growing and may_be_more
 
     def change_rooms(self, names: Sequence[str], each: Sequence[RoomWay] = ()) -> bool:
         """Clean these rooms from now on, in this order; return whether another path is wanted.
 
         ``each`` is how each of them is cleaned, else as before. Raises CleanRefusedError.
         """
-        is_another = self._ledger.change_rooms(names, each)
+        is_another = self.ledger.change_rooms(names, each)
         self._count_passes()
         return is_another
 
@@ -151,7 +107,7 @@ class Cleaning:
         obstacles = obstacles + closed_gaps(obstacles, self._context.reach, self._context.gap_spare)
         if self._context.is_growing:
             return self._next_of_known(here, obstacles)
-        while (stage := self.stage) is not None:
+        while (stage := self.ledger.stage) is not None:
             points = self._next_round(stage, here, obstacles)
             if points is not None:
                 return points
@@ -161,7 +117,7 @@ class Cleaning:
     @property
     def watches_dirt(self) -> bool:
         """Whether dirty floor close by gets its other pass before the robot goes on."""
-        return self.stage is not None and not self._context.is_growing
+        return self.ledger.stage is not None and not self._context.is_growing
 
     def dirty_at_hand(
         self, here: Pose, rest: Floats, obstacles: list[RoundObstacle], now: float
@@ -171,9 +127,9 @@ class Cleaning:
         That is floor which was swept by ``now``, s. ``rest``, float64 [n, 2], m, is the path before
         the robot.
         """
-        stage = self.stage
+        stage = self.ledger.stage
         assert stage is not None
-        patches = self.dirty.at_hand(self.coverage, stage.floor, (here.x, here.y), now)
+        patches = self.dirty.at_hand(self.ledger.coverage, stage.floor, (here.x, here.y), now)
         if not patches:
             return None
         obstacles = obstacles + closed_gaps(obstacles, self._context.reach, self._context.gap_spare)
@@ -183,7 +139,7 @@ class Cleaning:
             if longer is not None:
                 path = again = longer
                 self.dirty.note_again(patch)
-                self._ledger.sweep_anew(patch.floor)
+                self.ledger.sweep_anew(patch.floor)
         return again
 
     def _with_dirty(
@@ -191,8 +147,8 @@ class Cleaning:
     ) -> Floats | None:
         """Return a path, float64 [n, 2], m, with a way over a patch put in, or None if too long."""
         coverage, config = self._context.coverage, self._config
-        edges_only = self.request.mode is CleanMode.EDGES
-        area = float(np.count_nonzero(patch.floor)) * self.coverage.cell_area
+        edges_only = self.ledger.request.mode is CleanMode.EDGES
+        area = float(np.count_nonzero(patch.floor)) * self.ledger.coverage.cell_area
         return with_detour(
             path,
             self.dirty.places_of(patch),
@@ -206,15 +162,15 @@ class Cleaning:
 
         What is out of reach because of ``lasting`` things alone, which stay, is left out.
         """
-        if self._looked_again or not self._unreachable or self.stage is not None:
+        if self._looked_again or not self._unreachable or self.ledger.stage is not None:
             return False
         self._looked_again, self._unreachable = True, False
         staging = (self._context.staging.x, self._context.staging.y)
-        left = self.coverage.wanted & ~self.clean & self._reachable(staging, lasting)
-        large = large_patches(left, self.coverage.frame, self._config.least_area_to_retry)
+        left = self.ledger.coverage.wanted & ~self.ledger.clean & self._reachable(staging, lasting)
+        large = large_patches(left, self.ledger.coverage.frame, self._config.least_area_to_retry)
         if not large.any():
             return False
-        self._ledger.add(Stage("what was out of reach", large))
+        self.ledger.add(Stage("what was out of reach", large))
         self._begin_stage()
         return True
 
@@ -247,7 +203,7 @@ class Cleaning:
         """Do not count the last plan, of which there is a ``rest``, as a round."""
         self._rest = rest
         self._rounds.begin_anew()
-        self._ledger.try_again()
+        self.ledger.try_again()
 
     def use_context(self, context: PlanningContext, dirt: DirtMap) -> None:
         """Go on with other zones or rooms, or with more of the map; what is swept stays so.
@@ -259,12 +215,12 @@ class Cleaning:
             self._begin_stage(is_driven=not context.is_growing)
         self._context = context
         self.dirty.begin(dirt)
-        self._ledger.use_context(context, dirt)
+        self.ledger.use_context(context, dirt)
 
     def values(self) -> Values:
         """Return all that must be remembered to go on, as plain values."""
         return {
-            **self._ledger.values(),
+            **self.ledger.values(),
             "looked_again": self._looked_again,
             "unreachable": self._unreachable,
             "scrubbed": self._scrubbed,
@@ -275,7 +231,7 @@ class Cleaning:
 
         Raises CheckpointError, and others for junk.
         """
-        self._ledger.restore(values)
+        self.ledger.restore(values)
         self._looked_again = bool(values["looked_again"])
         self._unreachable, self._scrubbed = bool(values["unreachable"]), bool(values["scrubbed"])
 
@@ -289,7 +245,7 @@ class Cleaning:
 
         ``is_over``: it went on to the end; ``edges`` are ``obstacles`` where the floor ends.
         """
-        left, least = self.coverage.wanted & ~self.clean, self._config.least_patch
+        left, least = self.ledger.coverage.wanted & ~self.ledger.clean, self._config.least_patch
         return missed_floor(left, least, self._context, obstacles, edges, is_over=is_over)
 
     def _next_of_known(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
@@ -298,12 +254,12 @@ class Cleaning:
         planner = self._context.growing_coverage
         floor = planner.floor.with_obstacles(obstacles).coverable(at)
         # Edges are driven along on the whole map, by which the place is known better.
-        todo = self._ledger.untried & floor & ~edges_of(floor, self._context)
-        todo = large_patches(todo, self.coverage.frame, self._config.least_while_growing)
+        todo = self.ledger.untried & floor & ~edges_of(floor, self._context)
+        todo = large_patches(todo, self.ledger.coverage.frame, self._config.least_while_growing)
         if not todo.any():
             return None
-        self._ledger.note_tried(todo)
-        edges_only = self.request.mode is CleanMode.EDGES
+        self.ledger.note_tried(todo)
+        edges_only = self.ledger.request.mode is CleanMode.EDGES
         try:
             plan = planner.plan(at, None, todo, obstacles, edges_only=edges_only)
         except NoPathError:
@@ -314,10 +270,10 @@ class Cleaning:
         self, stage: Stage, here: Pose, obstacles: list[RoundObstacle]
     ) -> Floats | None:
         """Plan what is missed of a stage, if that is worth it."""
-        todo = stage.floor & self.coverage.missed
-        missed, config = float(np.count_nonzero(todo)) * self.coverage.cell_area, self._config
+        todo = stage.floor & self.ledger.coverage.missed
+        missed = float(np.count_nonzero(todo)) * self.ledger.coverage.cell_area
         is_anew = self._rounds.takes_anew()
-        frame, least = self.coverage.frame, config.least_for_round
+        frame, least = self.ledger.coverage.frame, self._config.least_for_round
         large = large_patches(todo, frame, least) if is_anew else todo
         plan_over = made_once(lambda floor: self._plan_over(stage, floor, here, obstacles))
         if is_anew and large.any():
@@ -332,13 +288,13 @@ class Cleaning:
         if not todo.any():
             return None
         self._rounds.begin(missed)
-        edges_only = self.request.mode is CleanMode.EDGES
+        edges_only = self.ledger.request.mode is CleanMode.EDGES
         try:
             plan = self._planned(todo, here, obstacles, plan_over)
         except NoPathError:
             self._unreachable = True
             todo &= self._reachable((here.x, here.y), obstacles)
-            if patches_of(todo, self.coverage.frame, self._config.least_area_to_retry):
+            if patches_of(todo, self.ledger.coverage.frame, self._config.least_area_to_retry):
                 # The way home is shut, perhaps by a door: meanwhile it cleans where it is.
                 plan = self._context.coverage.plan(
                     (here.x, here.y), None, todo, obstacles, edges_only=edges_only
@@ -360,9 +316,9 @@ class Cleaning:
         rest, self._rest = self._rest, None
         if rest is None:
             return plan_over(todo)
-        frame, config = self.coverage.frame, self._config
+        frame, config = self.ledger.coverage.frame, self._config
         floor = todo & self._reachable((here.x, here.y), obstacles)
-        slivers = slivers_of(floor, self.coverage.along(rest), frame, config.least_for_round)
+        slivers = slivers_of(floor, self.ledger.coverage.along(rest), frame, config.least_for_round)
         return plan_worth_its_way(plan_over, todo, slivers, frame, config.worth_way)
 
     def _plan_over(
@@ -373,8 +329,8 @@ class Cleaning:
             (here.x, here.y),
             todo,
             obstacles,
-            edges_only=self.request.mode is CleanMode.EDGES,
-            end=self._ledger.way_out_of(stage),
+            edges_only=self.ledger.request.mode is CleanMode.EDGES,
+            end=self.ledger.way_out_of(stage),
         )
 
     def _worth_it(
@@ -391,7 +347,7 @@ class Cleaning:
         """
         staging = (self._context.staging.x, self._context.staging.y)
         reachable = self._reachable(staging, obstacles)
-        if not reachable[self.coverage.frame.cell_of(here.x, here.y)]:
+        if not reachable[self.ledger.coverage.frame.cell_of(here.x, here.y)]:
             # Wherever it is shut in, there it can clean, and from there it has to get out.
             reachable |= self._reachable((here.x, here.y), obstacles)
         self._note_out_of_reach(todo & ~reachable, obstacles)
@@ -402,14 +358,14 @@ class Cleaning:
         is_enough = share >= config.enough
         least = config.least_for_round if is_enough else config.least_patch
         worth = config.worth_way if is_enough else config.worth_way_to_enough
-        patches = large_patches(todo, self.coverage.frame, least)
-        frame = self.coverage.frame
+        patches = large_patches(todo, self.ledger.coverage.frame, least)
+        frame = self.ledger.coverage.frame
         is_worth_it = patches.any() and is_worth_its_way(plan_over, patches, frame, worth)
         return patches & is_worth_it
 
     def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:
         """Remember floor that a person may open later: it is tried again before the end."""
-        patches = patches_of(floor, self.coverage.frame, self._config.least_area_to_retry)
+        patches = patches_of(floor, self.ledger.coverage.frame, self._config.least_area_to_retry)
         if not all(is_hidden(patch, self._context, obstacles) for patch in patches):
             self._unreachable = True
 
@@ -422,29 +378,31 @@ class Cleaning:
         try:
             return self._context.coverage.rounded_off(here, obstacles)
         except NoPathError:
-            return np.zeros(self.coverage.frame.shape, np.bool_)
+            return np.zeros(self.ledger.coverage.frame.shape, np.bool_)
 
     def _dirty_again(self, stage: Stage, plan_over: PlanOver) -> Mask:
         """Return what was so dirty that it gets another pass, once a stage, and is worth it."""
         self._scrubbed = True
-        frame, worth = self.coverage.frame, self._config.worth_way_again
+        frame, worth = self.ledger.coverage.frame, self._config.worth_way_again
         again = np.zeros(frame.shape, np.bool_)
-        for patch in self.dirty.left(self.coverage, stage.floor):
+        for patch in self.dirty.left(self.ledger.coverage, stage.floor):
             if is_worth_its_way(plan_over, patch.floor, frame, worth):
                 again |= patch.floor
         if again.any():
-            self._ledger.sweep_anew(again)
+            self.ledger.sweep_anew(again)
             self._rounds.expect_gain()
         return again
 
     def _next_stage(self) -> None:
-        self._ledger.next_stage()
+        self.ledger.next_stage()
         self.begin_room()
 
     def _count_passes(self) -> None:
-        wanted = self.coverage.wanted_cells
-        asked = sum(stage.cells for stage in self.stages)
-        self.mean_passes = asked / wanted if wanted and not self.explores else self.request.passes
+        wanted = self.ledger.coverage.wanted_cells
+        asked = sum(stage.cells for stage in self.ledger.stages)
+        self.mean_passes = (
+            asked / wanted if wanted and not self.explores else self.ledger.request.passes
+        )
 
     def _begin_stage(self, *, is_driven: bool = False) -> None:
         self._rounds.begin_stage(is_driven=is_driven)

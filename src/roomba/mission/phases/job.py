@@ -98,12 +98,12 @@ class Job:
         # A full bin takes nothing up.
         sweeps = sweeps and not self.bin.is_full
         if not (sweeps and senses.knowledge.is_usable):
-            self.cleaning.coverage.lift()
+            self.cleaning.ledger.coverage.lift()
             return
         pose = senses.pose
         way = pose.distance_to(last.pose.x, last.pose.y)
         elapsed = min(max(passed, 0.0), LONGEST_TICK)
-        coverage = self.cleaning.coverage
+        coverage = self.cleaning.ledger.coverage
         swept = coverage.swept_cells
         coverage.sweep(pose.x, pose.y)
         self.bin.note(pose.x, pose.y, senses.grains, way, coverage.swept_cells - swept)
@@ -111,9 +111,9 @@ class Job:
 
     def look_at_bin(self, senses: Senses) -> None:
         """Find out whether the bin is full; what was swept in vain is not clean."""
-        cell = 0.0 if self.cleaning is None else self.cleaning.coverage.cell_area
+        cell = 0.0 if self.cleaning is None else self.cleaning.ledger.coverage.cell_area
         if self.bin.look(senses.in_bin, cell, self.dirt.usual) and self.cleaning is not None:
-            self.cleaning.coverage.take_back(self.bin.swept_in_vain())
+            self.cleaning.ledger.coverage.take_back(self.bin.swept_in_vain())
 
     def needed_energy(self, tool_width: float) -> float:
         """Return what the rest of it takes, Wh; of an exploration this is not known."""
@@ -122,7 +122,7 @@ class Job:
         if self.cleaning is None:
             return 0.0
         # Behind a few patches that are still missed there may be a long way.
-        way = max(self.cleaning.left / tool_width, self.cleaning.broken_off)
+        way = max(self.cleaning.ledger.left / tool_width, self.cleaning.broken_off)
         return self.ledger.per_metre * self._config.cleaning.detours * way
 
     def end(
@@ -165,9 +165,9 @@ class Job:
         senses: Senses,
     ) -> CleanResult:
         missed = cleaning.missed(
-            obstacles.standing(senses.now), cleaning.stage is None, obstacles.edges()
+            obstacles.standing(senses.now), cleaning.ledger.stage is None, obstacles.edges()
         )
-        wanted, covered = cleaning.coverage.wanted_area, cleaning.clean_area
+        wanted, covered = cleaning.ledger.coverage.wanted_area, cleaning.ledger.clean_area
         if outcome is CleanOutcome.COMPLETED:
             message = message or what_is_not_clean(wanted, covered, missed)
         return CleanResult(
@@ -181,7 +181,7 @@ class Job:
             energy=self.ledger.energy,
             missed=missed,
             times=self.times.spent(cleaning.mean_passes * covered, context.tool_width),
-            rooms=dirt_of_rooms(cleaning.clean, context, self.dirt),
+            rooms=dirt_of_rooms(cleaning.ledger.clean, context, self.dirt),
         )
 
     def forget(self) -> None:

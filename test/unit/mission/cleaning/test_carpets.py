@@ -102,10 +102,10 @@ def test_edges_are_cleaned_before_the_rest_or_after_it(order: EdgeOrder) -> None
     robot.mission.clean(CleanRequest(edges=order), robot.senses())
     cleaning = robot.mission.cleaning
     assert cleaning is not None
-    until(robot, lambda: cleaning.stage_number == 1, 400.0)
+    until(robot, lambda: cleaning.ledger.stage_number == 1, 400.0)
     context = robot.mission.context
     edges = edges_of(context.coverable(), context)
-    swept = cleaning.clean
+    swept = cleaning.ledger.clean
     first, other = (edges, ~edges) if order is EdgeOrder.FIRST else (~edges, edges)
     wanted = context.coverable()
     assert (swept & first & wanted).sum() > 0.98 * (first & wanted).sum()

@@ -20,12 +20,12 @@ from roomba.vocabulary import CleanMode
 
 def test_one_path_driven_exactly_is_all() -> None:
     clean = cleaning()
-    assert clean.coverage.fraction == 0.0
-    wanted = clean.left
-    assert wanted == pytest.approx(clean.coverage.wanted_area)
+    assert clean.ledger.coverage.fraction == 0.0
+    wanted = clean.ledger.left
+    assert wanted == pytest.approx(clean.ledger.coverage.wanted_area)
     assert finish(clean, []) == 1
-    assert clean.coverage.fraction > 0.995
-    assert clean.left == 0.0
+    assert clean.ledger.coverage.fraction > 0.995
+    assert clean.ledger.left == 0.0
     assert clean.missed([], True) == ()
 
 
@@ -35,15 +35,15 @@ def test_what_was_not_driven_is_planned_again() -> None:
     assert points is not None
     here = drive(clean, points, 0.5)
     clean.interrupted(ahead(1.0))
-    left = clean.left
-    assert 0.1 < left / clean.coverage.wanted_area < 0.9
+    left = clean.ledger.left
+    assert 0.1 < left / clean.ledger.coverage.wanted_area < 0.9
     again = clean.next_path(here, [])
     assert again is not None
     # Not everything anew.
     length = [float(np.hypot(*np.diff(way, axis=0).T).sum()) for way in (points, again)]
     assert length[1] < 0.9 * length[0]
     drive(clean, again)
-    assert clean.coverage.fraction > 0.995
+    assert clean.ledger.coverage.fraction > 0.995
 
 
 def test_rounds_that_gain_nothing_come_to_an_end() -> None:
@@ -51,11 +51,11 @@ def test_rounds_that_gain_nothing_come_to_an_end() -> None:
     rounds = 0
     while clean.next_path(HERE, []) is not None and rounds < 20:
         rounds += 1
-    assert clean.stage is None
+    assert clean.ledger.stage is None
     assert 1 <= rounds <= MissionConfig().cleaning.most_rounds + 1
     (missed,) = clean.missed([], True)
     assert missed.reason is MissReason.LEFT_OVER
-    assert missed.area == pytest.approx(clean.coverage.wanted_area)
+    assert missed.area == pytest.approx(clean.ledger.coverage.wanted_area)
     assert clean.missed([], False)[0].reason is MissReason.STOPPED
 
 
@@ -75,29 +75,29 @@ def test_rooms_are_its_stages() -> None:
     place = context(TWO_ROOMS)
     request = CleanRequest(CleanMode.ROOMS, rooms=(DEN, HALL, DEN), in_order=True)
     clean = cleaning(request, place)
-    assert [stage.name for stage in clean.stages] == [DEN, HALL]
-    assert (clean.stages[0].floor == (place.coverable() & place.in_room(DEN))).all()
+    assert [stage.name for stage in clean.ledger.stages] == [DEN, HALL]
+    assert (clean.ledger.stages[0].floor == (place.coverable() & place.in_room(DEN))).all()
     one = cleaning(CleanRequest(CleanMode.ROOMS, rooms=(DEN,)), place)
-    assert (one.coverage.wanted == clean.stages[0].floor).all()
+    assert (one.ledger.coverage.wanted == clean.ledger.stages[0].floor).all()
 
 
 def test_passes_are_stages_and_each_sweeps_all_anew() -> None:
     clean = cleaning(CleanRequest(passes=3))
-    wanted = clean.coverage.wanted_area
-    assert clean.left == pytest.approx(3.0 * wanted)
+    wanted = clean.ledger.coverage.wanted_area
+    assert clean.ledger.left == pytest.approx(3.0 * wanted)
     for number in range(3):
-        assert clean.stage_number == number
+        assert clean.ledger.stage_number == number
         points = clean.next_path(HERE, [])
         assert points is not None
-        assert clean.coverage.fraction == 0.0
+        assert clean.ledger.coverage.fraction == 0.0
         drive(clean, points)
-        assert clean.coverage.fraction > 0.995
-        assert np.count_nonzero(clean.clean) > 0.995 * clean.coverage.wanted_cells
+        assert clean.ledger.coverage.fraction > 0.995
+        assert np.count_nonzero(clean.ledger.clean) > 0.995 * clean.ledger.coverage.wanted_cells
         if number < 2:
             assert clean.next_path(HERE, []) is not None
-            assert clean.stage_number == number + 1
+            assert clean.ledger.stage_number == number + 1
             # What was clean once stays told as clean.
-            assert np.count_nonzero(clean.clean) > 0.995 * clean.coverage.wanted_cells
+            assert np.count_nonzero(clean.ledger.clean) > 0.995 * clean.ledger.coverage.wanted_cells
             clean.interrupted(ahead(1.0))
     assert clean.next_path(HERE, []) is None
 
@@ -109,8 +109,8 @@ def test_the_dirtiest_room_comes_first_and_all_are_cleaned() -> None:
         dirt.note(x, 1.0, 500.0, 0.3)
         dirt.end_run()
         clean = cleaning(CleanRequest(CleanMode.DIRTIEST), place, dirt)
-        assert clean.stages[0].name == dirty
-        floor = np.logical_or.reduce([stage.floor for stage in clean.stages])
+        assert clean.ledger.stages[0].name == dirty
+        floor = np.logical_or.reduce([stage.floor for stage in clean.ledger.stages])
         assert (floor == place.coverable()).all()
 
 
@@ -159,11 +159,11 @@ def with_dirty_patch() -> Cleaning:
 
 def test_dirty_floor_at_hand_is_cleaned_once_more_where_that_takes_the_least_way() -> None:
     clean = with_dirty_patch()
-    swept, here, end = clean.coverage.fraction, Pose(1.0, 1.6, 0.0), (1.0, 2.2)
+    swept, here, end = clean.ledger.coverage.fraction, Pose(1.0, 1.6, 0.0), (1.0, 2.2)
     rest = np.array([(1.0, 0.9), end])
     path = clean.dirty_at_hand(here, rest, [], 0.0)
     assert path is not None
-    assert clean.coverage.fraction < swept
+    assert clean.ledger.coverage.fraction < swept
     assert path[0] == pytest.approx((here.x, here.y))
     assert path[-1] == pytest.approx(end)
     # It branches off after 0.7 m, where the path turns back, and not at once.
@@ -171,7 +171,7 @@ def test_dirty_floor_at_hand_is_cleaned_once_more_where_that_takes_the_least_way
     legs = float(np.hypot(*np.diff(path, axis=0).T).sum())
     assert 2.0 < legs < 2.0 + MissionConfig().cleaning.worth_way_again * 0.24
     drive(clean, path)
-    assert clean.coverage.fraction == pytest.approx(swept, abs=0.001)
+    assert clean.ledger.coverage.fraction == pytest.approx(swept, abs=0.001)
     # Neither again in passing nor at the end.
     assert clean.dirty_at_hand(here, rest, [], 0.0) is None
     assert clean.next_path(HERE, []) is None
@@ -188,17 +188,17 @@ def test_dirty_floor_that_no_way_leads_to_is_left() -> None:
 
 def test_along_edges_there_is_less_to_do() -> None:
     edges, whole = cleaning(CleanRequest(CleanMode.EDGES)), cleaning()
-    assert 0.2 < edges.coverage.wanted_area / whole.coverage.wanted_area < 0.7
-    assert not (edges.coverage.wanted & ~whole.coverage.wanted).any()
+    assert 0.2 < edges.ledger.coverage.wanted_area / whole.ledger.coverage.wanted_area < 0.7
+    assert not (edges.ledger.coverage.wanted & ~whole.ledger.coverage.wanted).any()
     assert finish(edges, []) <= 3
-    assert edges.coverage.fraction > 0.95
+    assert edges.ledger.coverage.fraction > 0.95
 
 
 def test_zones_are_cut_to_the_floor_that_there_is() -> None:
     clean = cleaning(CleanRequest(CleanMode.ZONES, zones=((-5.0, -5.0, 1.0, 5.0),)))
-    x = HOME.map.frame.origin_x + (np.nonzero(clean.coverage.wanted)[1] + 0.5) * 0.01
+    x = HOME.map.frame.origin_x + (np.nonzero(clean.ledger.coverage.wanted)[1] + 0.5) * 0.01
     assert x.max() < 1.0
-    assert not (clean.coverage.wanted & ~context().coverable()).any()
+    assert not (clean.ledger.coverage.wanted & ~context().coverable()).any()
 
 
 @pytest.mark.parametrize(
@@ -218,17 +218,17 @@ def test_with_another_context_it_goes_on_and_wants_less() -> None:
     points = clean.next_path(HERE, [])
     assert points is not None
     drive(clean, points, 0.3)
-    swept = clean.coverage.swept.copy()
+    swept = clean.ledger.coverage.swept.copy()
     wall = Zone("wall", ZoneKind.WALL, ((1.5, 0.0), (1.5, 2.5)))
     walled = context(zones=Zones((wall,)))
     clean.use_context(walled, DirtMap(walled.occupancy))
     clean.interrupted(ahead(1.0))
-    assert (clean.coverage.swept == swept).all()
-    assert not (clean.coverage.wanted & ~walled.coverable()).any()
+    assert (clean.ledger.coverage.swept == swept).all()
+    assert not (clean.ledger.coverage.wanted & ~walled.coverable()).any()
     assert finish(clean, []) >= 1
-    assert clean.coverage.fraction > 0.99
-    assert clean.coverage.swept_cells == np.count_nonzero(
-        clean.coverage.swept & clean.coverage.wanted
+    assert clean.ledger.coverage.fraction > 0.99
+    assert clean.ledger.coverage.swept_cells == np.count_nonzero(
+        clean.ledger.coverage.swept & clean.ledger.coverage.wanted
     )
 
 
@@ -238,14 +238,16 @@ def test_values_bring_all_of_it_back(passes: int) -> None:
     for _ in range(passes):
         points = clean.next_path(HERE, [])
         assert points is not None
-        drive(clean, points, 0.6 if clean.stage_number == passes - 1 else 1.0)
-    again = cleaning(clean.request)
+        drive(clean, points, 0.6 if clean.ledger.stage_number == passes - 1 else 1.0)
+    again = cleaning(clean.ledger.request)
     again.restore(json.loads(json.dumps(clean.values())))
-    assert (again.coverage.cells == clean.coverage.cells).all()
-    assert again.coverage.swept_cells == clean.coverage.swept_cells
-    assert (again.clean == clean.clean).all()
-    assert again.stage_number == clean.stage_number
-    assert again.left == pytest.approx(clean.left)
-    assert [(s.name, s.again) for s in again.stages] == [(s.name, s.again) for s in clean.stages]
+    assert (again.ledger.coverage.cells == clean.ledger.coverage.cells).all()
+    assert again.ledger.coverage.swept_cells == clean.ledger.coverage.swept_cells
+    assert (again.ledger.clean == clean.ledger.clean).all()
+    assert again.ledger.stage_number == clean.ledger.stage_number
+    assert again.ledger.left == pytest.approx(clean.ledger.left)
+    assert [(s.name, s.again) for s in again.ledger.stages] == [
+        (s.name, s.again) for s in clean.ledger.stages
+    ]
     assert finish(again, []) >= 1
-    assert again.coverage.fraction > 0.99
+    assert again.ledger.coverage.fraction > 0.99

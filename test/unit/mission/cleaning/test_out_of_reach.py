@@ -25,7 +25,7 @@ def test_what_is_behind_a_shut_door_is_told_and_looked_for_once_more() -> None:
     assert clean.wants_another_look([])
     # Opened by now, it is cleaned, too.
     assert finish(clean, []) >= 1
-    assert clean.coverage.fraction > 0.99
+    assert clean.ledger.coverage.fraction > 0.99
     assert not clean.wants_another_look([])
 
 
@@ -57,10 +57,10 @@ def test_cut_off_what_is_left_is_looked_for_again() -> None:
         if clean.next_path(HERE, []) is None:
             break
         clean.cut_off()
-    assert clean.stage is None
+    assert clean.ledger.stage is None
     assert clean.wants_another_look([])
     assert finish(clean, []) >= 1
-    assert clean.coverage.fraction > 0.99
+    assert clean.ledger.coverage.fraction > 0.99
 
 
 def test_below_a_thing_it_is_told_as_missed_for_that_thing() -> None:
@@ -96,14 +96,14 @@ def test_a_path_on_which_something_stands_is_planned_anew_now_and_then() -> None
     here = drive(clean, points, 0.4)
     assert not clean.plans_anew(100.0, ahead(3.0)), "so near to the end that is not worth it"
     assert clean.plans_anew(100.0, ahead(20.0))
-    missed = clean.left
+    missed = clean.ledger.left
     again = clean.next_path(here, [(1.2, 0.6, 0.1)])
     assert again is not None
     assert again[0] == pytest.approx((here.x, here.y))
     length = [float(np.hypot(*np.diff(way, axis=0).T).sum()) for way in (points, again)]
     assert length[1] < 0.9 * length[0]
     drive(clean, again)
-    assert clean.left < 0.1 * missed
+    assert clean.ledger.left < 0.1 * missed
     assert not clean.plans_anew(105.0, ahead(20.0)), "it was planned only just"
     assert clean.plans_anew(200.0, ahead(20.0))
 
@@ -132,12 +132,12 @@ def test_a_small_patch_far_away_is_worth_no_round() -> None:
         points = clean.next_path(HERE, [])
         assert points is not None
         drive(clean, points)
-        frame = clean.coverage.frame
+        frame = clean.ledger.coverage.frame
         row, column = frame.cell_of(2.4, 1.9)
         patch = np.zeros(frame.shape, np.bool_)
         patch[row - 5 : row + 5, column - size // 2 : column + size // 2] = True
-        clean.coverage.cells[patch] &= np.uint8(~SWEPT & 0xFF)
-        clean.coverage.count_again()
+        clean.ledger.coverage.cells[patch] &= np.uint8(~SWEPT & 0xFF)
+        clean.ledger.coverage.count_again()
         assert (clean.next_path(HERE, []) is not None) is is_worth
 
 
@@ -151,8 +151,8 @@ def test_planned_anew_at_the_end_it_comes_to_an_end() -> None:
         here = drive(clean, points)
         now += 100.0
         clean.plans_anew(now, ahead(20.0))
-    assert clean.stage is None
-    assert clean.coverage.fraction > 0.995
+    assert clean.ledger.stage is None
+    assert clean.ledger.coverage.fraction > 0.995
 
 
 def test_with_no_way_home_it_cleans_where_it_is() -> None:
@@ -163,8 +163,8 @@ def test_with_no_way_home_it_cleans_where_it_is() -> None:
     assert points is not None
     assert points[:, 0].min() > WALL_X
     drive(clean, points)
-    den = clean.coverage.wanted & context(TWO_ROOMS).in_room(DEN)
-    assert np.count_nonzero(clean.clean & den) > 0.9 * np.count_nonzero(den)
+    den = clean.ledger.coverage.wanted & context(TWO_ROOMS).in_room(DEN)
+    assert np.count_nonzero(clean.ledger.clean & den) > 0.9 * np.count_nonzero(den)
 
 
 def test_shut_in_it_says_so_a_few_times_before_it_gives_up() -> None:
@@ -184,7 +184,7 @@ def test_shut_in_it_says_so_a_few_times_before_it_gives_up() -> None:
     # Let out by then, it goes on; what was left out is looked for again.
     assert clean.wants_another_look([])
     assert finish(clean, []) >= 1
-    assert clean.coverage.fraction > 0.99
+    assert clean.ledger.coverage.fraction > 0.99
 
 
 def test_let_out_again_it_goes_on_where_it_was() -> None:
@@ -194,12 +194,12 @@ def test_let_out_again_it_goes_on_where_it_was() -> None:
     drive(clean, points, 0.3)
     assert clean.plans_anew(100.0, ahead(20.0))
     # In the den, which is clean, when the door shuts behind it.
-    den = clean.coverage.wanted & context(TWO_ROOMS).in_room(DEN)
-    clean.coverage.cells[den] |= np.uint8(SWEPT)
-    clean.coverage.count_again()
+    den = clean.ledger.coverage.wanted & context(TWO_ROOMS).in_room(DEN)
+    clean.ledger.coverage.cells[den] |= np.uint8(SWEPT)
+    clean.ledger.coverage.count_again()
     here = Pose(2.8, 1.2, 0.0)
     for _ in range(3):
         with pytest.raises(NoPathError):
             clean.next_path(here, FENCE)
     assert finish(clean, [], here) >= 1
-    assert clean.coverage.fraction > 0.99
+    assert clean.ledger.coverage.fraction > 0.99

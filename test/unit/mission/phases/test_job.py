@@ -59,8 +59,8 @@ def test_with_nothing_cleaned_a_completed_clean_says_why() -> None:
 def test_with_all_cleaned_there_is_nothing_to_say() -> None:
     job = cleaning_job()
     assert job.cleaning is not None
-    job.cleaning.coverage.cells[:] |= SWEPT
-    job.cleaning.coverage.count_again()
+    job.cleaning.ledger.coverage.cells[:] |= SWEPT
+    job.cleaning.ledger.coverage.count_again()
     end(job, CleanOutcome.COMPLETED)
     result = job.take_result()
     assert result is not None
@@ -93,7 +93,7 @@ def test_a_result_is_told_once_and_after_going_on_there_is_another_one() -> None
 def test_what_it_passes_is_swept_where_its_place_is_known_and_it_drives() -> None:
     job = cleaning_job()
     assert job.cleaning is not None
-    coverage = job.cleaning.coverage
+    coverage = job.cleaning.ledger.coverage
     there = replace(AWAY, now=0.05, pose=Pose(1.05, 0.6, 0.0))
     job.account(there, AWAY, sweeps=False)
     job.account(replace(there, knowledge=Knowledge.SEARCHING), AWAY, sweeps=True)

@@ -136,7 +136,7 @@ def test_with_nothing_left_the_clean_is_finished_after_another_look() -> None:
     here = replace(IN_THE_DEN, pose=Pose(0.8, 1.2, 0.0))
     job.begin_clean(Cleaning(CleanRequest(), SITE, job.dirt, CONFIG.cleaning, here.pose), here)
     assert job.cleaning is not None
-    coverage = job.cleaning.coverage
+    coverage = job.cleaning.ledger.coverage
     hall = slice(0, SITE.frame.cell_of(WALL_X, 0.0)[1])
     coverage.cells[:, hall] |= SWEPT
     coverage.count_again()
