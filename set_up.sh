@@ -112,7 +112,7 @@ compile_other_loops() {
   stamp=$(compiled_stamp)
   enter_what_there_is
   # Of what pip installed; a package may bring files for another Python.
-  "$VENV/bin/python3" -m compileall -q "$VENV"/lib/python3*/site-packages || true
+  "$VENV/bin/python3" -m compileall -qq -j 0 "$VENV"/lib/python3*/site-packages || true
   for module in trials.warm map.warm "warm_up others"; do
     # shellcheck disable=SC2086 # a word of its own
     python3 -m roomba.commands.$module && count_loops_left "$stamp" || return 1
