@@ -14,7 +14,7 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.nodes import DeadlinesConfig, PeriodsConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
-from roomba.mission.cleaning.cleaning import Cleaning
+from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.mission import Mission
@@ -171,7 +171,7 @@ def test_a_state_is_told_before_the_result_of_a_goal_that_ended(
 
 def test_the_clean_floor_is_counted_once_for_a_state(monkeypatch: pytest.MonkeyPatch) -> None:
     rig, areas = Rig(monkeypatch), iter((1.0, 1.5, 2.0))
-    monkeypatch.setattr(Cleaning, "clean_area", property(lambda _: next(areas)))
+    monkeypatch.setattr(CoverageLedger, "clean_area", property(lambda _: next(areas)))
     rig.ask(CleaningGoal, CleanGoal())
     told = [call.args[0] for call in rig.world.state.publish.call_args_list]
     assert [state.covered for state in told] == [1.0, 1.5][: len(told)]
