@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import socket
 import sys
 import tempfile
 import uuid
@@ -45,6 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(f"usage: ./roomba run [--isolated] [name:=value ...]\n\n{described(file)}")
             return 0
         launch = read_launch(file, given)
+        _require_host_of_master()
         _refuse_second(launch)
     except RoombaError as error:
         print(f"./roomba run: {error}", file=sys.stderr)
@@ -80,6 +82,18 @@ def _run(launch: Launch, scripts: Path) -> int:
             return supervisor.run()
         finally:
             supervisor.end_all()
+
+
+def _require_host_of_master() -> None:
+    """Raise RoombaError when the master's host has no address, as in a minimal system."""
+    host = urlparse(rosgraph.get_master_uri()).hostname
+    try:
+        socket.getaddrinfo(host, None)
+    except OSError as error:
+        raise RoombaError(
+            f"expected the host of the master, {host}, to have an address: {error}; add a line for "
+            "it to /etc/hosts, such as '127.0.0.1 localhost', or set ROS_MASTER_URI"
+        ) from error
 
 
 def _refuse_second(launch: Launch) -> None:

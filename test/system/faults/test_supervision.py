@@ -22,6 +22,9 @@ from roomba_robot.srv import EmergencyStop
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
+from roomba_ros.supervision.run import USAGE
+from roomba_ros.supervision.run import main as be_robot
+
 NOTICED = 1.0
 """s of wall time; by then a process that ended or is stopped is told of."""
 BACK = 5.0
@@ -145,6 +148,14 @@ def test_ctrl_c_during_the_start_ends_it_without_a_traceback(
         # Before it has begun, the signal ends it as any program.
         assert run.ends(10.0) in (0, -signal.SIGINT)
         assert "Traceback" not in run.output, run.output
+
+
+def test_a_master_whose_host_has_no_address_is_refused(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ROS_MASTER_URI", "http://nowhere.invalid:11311")
+    assert be_robot([]) == USAGE
+    assert "expected the host of the master, nowhere.invalid, to have" in capfd.readouterr().err
 
 
 def test_a_second_run_beside_the_first_is_refused(shared_robot: RosGraph) -> None:
