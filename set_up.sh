@@ -94,18 +94,18 @@ compiled_stamp() {
 # First what the first clean needs, in two halves at once, for two cores, each in an order in which the other half finds
 # much compiled.
 compile_loops() { # library|runtime|dev
-  local clean ticks=bursts stamp
+  local clean half=bursts stamp
   stamp=$(compiled_stamp)
   enter_what_there_is
-  [[ $1 == library ]] || ticks=ticks # what ROS calls tick by tick needs no bursts yet
-  python3 -m roomba.commands.trials.warm "$ticks" &
+  [[ $1 == library ]] || half=ticks # what ROS calls tick by tick needs no bursts yet
+  python3 -m roomba.commands.trials.warm "$half" &
   clean=$!
   if python3 -m roomba.commands.warm_up && wait "$clean"; then
     count_loops_left "$stamp" || true
   fi
 }
 
-# Bytecode first, then loops, one process at a time. numba touches the folders that it looks into: the old ones are of
+# Bytecode on all cores, then loops, one process at a time. numba touches the folders that it looks into: the old ones are of
 # sources that are no more.
 compile_other_loops() {
   local module stamp

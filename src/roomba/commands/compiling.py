@@ -17,8 +17,8 @@ from numba.extending import is_jitted
 
 from roomba.compiled_sources import PACKAGE
 
-_SELDOM: Final = 7000
-"""Objects made until Python looks for garbage, ten times as many as usual: compiling makes millions
+_SELDOM: Final = 10
+"""Times as many objects as usual are made until Python looks for garbage: compiling makes millions
 that stay, and looking through them took a tenth of it."""
 
 
@@ -28,12 +28,18 @@ def compiled_functions_told() -> Iterator[None]:
 
     What is loaded from the cache on disk is not told.
     """
+    with _garbage_looked_for_seldom(), event.install_listener("numba:compile", _Teller()):
+        yield
+
+
+@contextlib.contextmanager
+def _garbage_looked_for_seldom() -> Iterator[None]:
+    """Pass over all objects that there are, and look at new ones more seldom."""
     usual = gc.get_threshold()
     gc.freeze()
-    gc.set_threshold(_SELDOM)
+    gc.set_threshold(_SELDOM * usual[0], *usual[1:])
     try:
-        with event.install_listener("numba:compile", _Teller()):
-            yield
+        yield
     finally:
         gc.set_threshold(*usual)
         gc.unfreeze()

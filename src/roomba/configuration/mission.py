@@ -148,7 +148,7 @@ class CleaningConfig(Frozen):
     dirty_near: Positive = 1.5
     """m; dirty floor as near as this is cleaned once more in passing."""
     dirty_ahead: Positive = 25.0
-    """m of the path ahead on which the place is looked for from where that takes the least way."""
+    """m of the path ahead on which the place that is nearest to such floor is looked for."""
     dirty_period: Positive = 5.0
     """s; from one look for dirty floor close by to the next."""
     least_dirty: Positive = 0.08

@@ -134,7 +134,7 @@ class Burst:
         row["cell_area"] = (
             self._truth.cell_area
             if mission.cleaning is None
-            else (mission.cleaning.ledger.coverage.cell_area)
+            else mission.cleaning.ledger.coverage.cell_area
         )
         if steady.driver is not None:
             row["off_path"] = brain.config.driving.off_path

@@ -86,10 +86,13 @@ def _run(launch: Launch, scripts: Path) -> int:
 
 def _require_host_of_master() -> None:
     """Raise RoombaError when the master's host has no address, as in a minimal system."""
-    host = urlparse(rosgraph.get_master_uri()).hostname
+    uri = rosgraph.get_master_uri()
+    host = urlparse(uri).hostname
+    if host is None:
+        raise RoombaError(f"expected ROS_MASTER_URI to be http://HOST:PORT, got {uri!r}")
     try:
         socket.getaddrinfo(host, None)
-    except OSError as error:
+    except (OSError, UnicodeError) as error:  # the latter of names that cannot be any
         raise RoombaError(
             f"expected the host of the master, {host}, to have an address: {error}; add a line for "
             "it to /etc/hosts, such as '127.0.0.1 localhost', or set ROS_MASTER_URI"

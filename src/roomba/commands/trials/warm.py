@@ -1,9 +1,13 @@
-"""Loads or compiles all that a clean needs, by cleaning a closet: then a clean is timed alone."""
+"""Loads or compiles all that a clean needs, by cleaning a closet: then a clean is timed alone.
+
+``python3 -m roomba.commands.trials.warm [ticks|bursts]``: tick by tick as nodes clean, by bursts as
+the headless robot does, or both.
+"""
 
 from __future__ import annotations
 
+import argparse
 import functools
-import sys
 
 import numpy as np
 
@@ -65,5 +69,8 @@ def _finish_a_plan() -> None:
 
 if __name__ == "__main__":
     halves = {"ticks": 0, "bursts": LONGEST_BURST}
+    parser = argparse.ArgumentParser(description="Compile what a clean needs.")
+    parser.add_argument("half", nargs="?", choices=halves)
+    half = parser.parse_args().half
     with compiled_functions_told():
-        warm_up_half(halves[sys.argv[1]]) if sys.argv[1:] else warm_up()
+        warm_up() if half is None else warm_up_half(halves[half])

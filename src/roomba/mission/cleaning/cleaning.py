@@ -116,7 +116,7 @@ class Cleaning:
 
     @property
     def watches_dirt(self) -> bool:
-        """Whether dirty floor close by gets its other pass before the robot goes on."""
+        """Whether dirty floor close by, which gets another pass, is put into the path."""
         return self.ledger.stage is not None and not self._context.is_growing
 
     def dirty_at_hand(
@@ -133,26 +133,31 @@ class Cleaning:
         if not patches:
             return None
         obstacles = obstacles + closed_gaps(obstacles, self._context.reach, self._context.gap_spare)
+        reachable = self._reachable((here.x, here.y), obstacles)
         path, again = np.vstack(((here.x, here.y), rest)), None
         for patch in patches:
-            longer = self._with_dirty(path, patch, obstacles)
+            floor = patch.floor & reachable
+            longer = self._with_dirty(path, patch, floor, obstacles) if floor.any() else None
             if longer is not None:
                 path = again = longer
                 self.dirty.note_again(patch)
-                self.ledger.sweep_anew(patch.floor)
+                self.ledger.sweep_anew(floor)
         return again
 
     def _with_dirty(
-        self, path: Floats, patch: DirtyPatch, obstacles: list[RoundObstacle]
+        self, path: Floats, patch: DirtyPatch, floor: Mask, obstacles: list[RoundObstacle]
     ) -> Floats | None:
-        """Return a path, float64 [n, 2], m, with a way over a patch put in, or None if too long."""
+        """Return a path, float64 [n, 2], m, with a way over the ``floor`` of a patch put in.
+
+        None if that is too long, or no way leads there.
+        """
         coverage, config = self._context.coverage, self._config
         edges_only = self.ledger.request.mode is CleanMode.EDGES
-        area = float(np.count_nonzero(patch.floor)) * self.ledger.coverage.cell_area
+        area = float(np.count_nonzero(floor)) * self.ledger.coverage.cell_area
         return with_detour(
             path,
             self.dirty.places_of(patch),
-            lambda at: coverage.plan(at, at, patch.floor, obstacles, edges_only=edges_only),
+            lambda at: coverage.plan(at, at, floor, obstacles, edges_only=edges_only),
             config.dirty_ahead,
             config.worth_way_again * area,
         )
@@ -284,7 +289,7 @@ class Cleaning:
             if self._rounds.is_over(missed):
                 todo[:] = False
         if not self._rounds.is_first and not todo.any() and not self._scrubbed:
-            todo = self._dirty_again(stage, plan_over)
+            todo = self._dirty_again(stage, self._reachable((here.x, here.y), obstacles), plan_over)
         if not todo.any():
             return None
         self._rounds.begin(missed)
@@ -358,8 +363,8 @@ class Cleaning:
         is_enough = share >= config.enough
         least = config.least_for_round if is_enough else config.least_patch
         worth = config.worth_way if is_enough else config.worth_way_to_enough
-        patches = large_patches(todo, self.ledger.coverage.frame, least)
         frame = self.ledger.coverage.frame
+        patches = large_patches(todo, frame, least)
         is_worth_it = patches.any() and is_worth_its_way(plan_over, patches, frame, worth)
         return patches & is_worth_it
 
@@ -380,17 +385,20 @@ class Cleaning:
         except NoPathError:
             return np.zeros(self.ledger.coverage.frame.shape, np.bool_)
 
-    def _dirty_again(self, stage: Stage, plan_over: PlanOver) -> Mask:
-        """Return what was so dirty that it gets another pass, once a stage, and is worth it."""
+    def _dirty_again(self, stage: Stage, reachable: Mask, plan_over: PlanOver) -> Mask:
+        """Return what was so dirty that it gets another pass, once a stage, and is worth it.
+
+        What is not ``reachable`` is not.
+        """
         self._scrubbed = True
-        frame, worth = self.ledger.coverage.frame, self._config.worth_way_again
-        again = np.zeros(frame.shape, np.bool_)
-        for patch in self.dirty.left(self.ledger.coverage, stage.floor):
-            if is_worth_its_way(plan_over, patch.floor, frame, worth):
-                again |= patch.floor
+        coverage, worth = self.ledger.coverage, self._config.worth_way_again
+        again = np.zeros(coverage.frame.shape, np.bool_)
+        for patch in self.dirty.left(coverage, stage.floor):
+            floor = patch.floor & reachable
+            if floor.any() and is_worth_its_way(plan_over, floor, coverage.frame, worth):
+                again |= floor
         if again.any():
             self.ledger.sweep_anew(again)
-            self._rounds.expect_gain()
         return again
 
     def _next_stage(self) -> None:

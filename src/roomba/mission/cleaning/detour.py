@@ -1,4 +1,4 @@
-"""A way of its own over some floor, put into a path where that takes the least."""
+"""A way of its own over some floor, put into a path where that comes nearest to it."""
 
 from __future__ import annotations
 

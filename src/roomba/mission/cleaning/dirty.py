@@ -78,8 +78,8 @@ class DirtyFloor:
     ) -> list[DirtyPatch]:
         """Return the dirty patches of a floor close by that are swept as a whole.
 
-        Each is told once; :meth:`note_again` tells that it is swept again. None while too little
-        was swept to tell what is usual. ``now`` is the time, s.
+        Each is told once; :meth:`note_again` tells that it is swept again. No patch while too
+        little was swept to tell what is usual. ``now`` is the time, s.
         """
         self._measure(now)
         cells = self.dirt.cells_from(float(self.watch["dirty_from"][0])) & ~self.done

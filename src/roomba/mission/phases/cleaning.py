@@ -136,7 +136,7 @@ class CleanPhase:
         return PhaseStep(failure=Failure(CleanOutcome.FAULT, _NO_WHOLE_MAP))
 
     def _clean_dirty_at_hand(self, cleaning: Cleaning, senses: Senses) -> None:
-        """Let the path lead over dirty floor close by once more before it goes on."""
+        """Let the path lead over dirty floor close by once more."""
         drives = self._drives
         assert drives.driver is not None
         if not (drives.is_round and drives.driver.is_tracking and cleaning.watches_dirt):

@@ -9,12 +9,13 @@ import pytest
 from fixtures.robots.driven_cleans import HERE, ahead, cleaning, context, drive, finish
 from fixtures.robots.missions import DEN, HALL, HOME, TWO_ROOMS
 
-from roomba.configuration.mission import MissionConfig
+from roomba.configuration.mission import CleaningConfig, MissionConfig
 from roomba.geometry import Pose
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, MissReason
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.dirt_map import DirtMap
+from roomba.planning.path.costmap import RoundObstacle
 from roomba.vocabulary import CleanMode
 
 
@@ -142,11 +143,11 @@ def test_where_it_was_very_dirty_it_cleans_once_more() -> None:
     assert clean.next_path(HERE, []) is None
 
 
-def with_dirty_patch() -> Cleaning:
+def with_dirty_patch(config: CleaningConfig | None = None) -> Cleaning:
     """A clean that drove over all of HOME, and found six cells dirty."""
     place = context()
     dirt = DirtMap(place.occupancy)
-    clean = cleaning(place=place, dirt=dirt)
+    clean = cleaning(place=place, dirt=dirt, config=config)
     for y in np.arange(0.1, 2.4, 0.2):
         for x in np.arange(0.1, 2.9, 0.2):
             dirt.note(float(x), float(y), 20.0, 0.2)
@@ -177,13 +178,25 @@ def test_dirty_floor_at_hand_is_cleaned_once_more_where_that_takes_the_least_way
     assert clean.next_path(HERE, []) is None
 
 
-def test_dirty_floor_that_no_way_leads_to_is_left() -> None:
-    clean = with_dirty_patch()
-    # Things stand all around it.
+def around_the_dirty_patch() -> list[RoundObstacle]:
     ring = [(x, y, 0.05) for x in np.arange(0.5, 1.8, 0.1) for y in (0.25, 1.05)]
-    ring += [(x, y, 0.05) for x in (0.5, 1.7) for y in np.arange(0.25, 1.1, 0.1)]
+    return ring + [(x, y, 0.05) for x in (0.5, 1.7) for y in np.arange(0.25, 1.1, 0.1)]
+
+
+def test_dirty_floor_that_no_way_leads_to_is_left() -> None:
     here, rest = Pose(1.0, 1.6, 0.0), np.array([(1.0, 2.2)])
-    assert clean.dirty_at_hand(here, rest, ring, 0.0) is None
+    clean = with_dirty_patch()
+    assert clean.dirty_at_hand(here, rest, around_the_dirty_patch(), 0.0) is None
+    clean = with_dirty_patch()
+    swept = clean.ledger.coverage.fraction
+    assert clean.next_path(here, around_the_dirty_patch()) is None
+    assert clean.ledger.coverage.fraction == swept
+
+
+def test_dirty_floor_that_is_not_worth_the_way_is_left_at_the_end() -> None:
+    assert with_dirty_patch().next_path(HERE, []) is not None
+    dear = MissionConfig().cleaning.model_copy(update={"worth_way_again": 0.1})
+    assert with_dirty_patch(dear).next_path(HERE, []) is None
 
 
 def test_along_edges_there_is_less_to_do() -> None:

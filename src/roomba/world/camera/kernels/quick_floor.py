@@ -34,7 +34,7 @@ from roomba.world.camera.scene.arrays import (
 LEAST_LEVEL = 4.0
 """No crumb is seen at less dirt than this; see :func:`roomba.world.home.crumbs.crumbs`."""
 NEARLY_HALF = np.float32(0.4)
-"""Halvings of a texture: it is halved once more where all but 0.6 of that would suit."""
+"""Halvings of a texture: it is halved once more where 0.6 of that would suit."""
 SEVERAL = -1
 """Instead of a surface: there is more than one."""
 
@@ -74,7 +74,7 @@ def tile_surface(
     near: float,
     far: float,
 ) -> int:
-    """Return the surface of a tile's floor between two depths, or ``SEVERAL``."""
+    """Return the surface at the corners of a tile's floor between two depths, or ``SEVERAL``."""
     first = (view.middle - begin - 0.5) / view.focal
     last = (view.middle - begin - TILE + 0.5) / view.focal
     left_x, left_y = cosine - first * sine, sine + first * cosine
