@@ -105,14 +105,21 @@ compile_loops() { # library|runtime|dev
   fi
 }
 
+# Bytecode of what was installed since it was last made; a package may bring files for another Python.
+compile_packages() {
+  local -a packages=("$VENV"/lib/python3*/site-packages)
+  [[ ! $VENV/.bytecode -nt ${packages[0]} ]] || return 0
+  "$VENV/bin/python3" -m compileall -qq -j 0 "${packages[@]}" || true
+  touch "$VENV/.bytecode"
+}
+
 # Bytecode on all cores, then loops, one process at a time. numba touches the folders that it looks into: the old ones are of
 # sources that are no more.
 compile_other_loops() {
   local module stamp
   stamp=$(compiled_stamp)
   enter_what_there_is
-  # Of what pip installed; a package may bring files for another Python.
-  "$VENV/bin/python3" -m compileall -qq -j 0 "$VENV"/lib/python3*/site-packages || true
+  compile_packages
   for module in trials.warm map.warm "warm_up others"; do
     # shellcheck disable=SC2086 # a word of its own
     python3 -m roomba.commands.$module && count_loops_left "$stamp" || return 1

@@ -29,6 +29,7 @@ from roomba.mission.cleaning.worth import (
     made_once,
     plan_worth_its_way,
     slivers_of,
+    way_worth,
 )
 from roomba.mission.driving.gaps import closed_gaps
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -104,7 +105,7 @@ class Cleaning:
 
         Raises NoPathError while it is shut in, so that it has to get out first.
         """
-        obstacles = obstacles + closed_gaps(obstacles, self._context.reach, self._context.gap_spare)
+        obstacles = self._with_closed_gaps(obstacles)
         if self._context.is_growing:
             return self._next_of_known(here, obstacles)
         while (stage := self.ledger.stage) is not None:
@@ -132,7 +133,7 @@ class Cleaning:
         patches = self.dirty.at_hand(self.ledger.coverage, stage.floor, (here.x, here.y), now)
         if not patches:
             return None
-        obstacles = obstacles + closed_gaps(obstacles, self._context.reach, self._context.gap_spare)
+        obstacles = self._with_closed_gaps(obstacles)
         reachable = self._reachable((here.x, here.y), obstacles)
         path, again = np.vstack(((here.x, here.y), rest)), None
         for patch in patches:
@@ -152,14 +153,12 @@ class Cleaning:
         None if that is too long, or no way leads there.
         """
         coverage, config = self._context.coverage, self._config
-        edges_only = self.ledger.request.mode is CleanMode.EDGES
-        area = float(np.count_nonzero(floor)) * self.ledger.coverage.cell_area
         return with_detour(
             path,
             self.dirty.places_of(patch),
-            lambda at: coverage.plan(at, at, floor, obstacles, edges_only=edges_only),
+            lambda at: coverage.plan(at, at, floor, obstacles, edges_only=self._edges_only),
             config.dirty_ahead,
-            config.worth_way_again * area,
+            way_worth(floor, self.ledger.coverage.frame, config.worth_way_again),
         )
 
     def wants_another_look(self, lasting: list[RoundObstacle]) -> bool:
@@ -264,9 +263,8 @@ class Cleaning:
         if not todo.any():
             return None
         self.ledger.note_tried(todo)
-        edges_only = self.ledger.request.mode is CleanMode.EDGES
         try:
-            plan = planner.plan(at, None, todo, obstacles, edges_only=edges_only)
+            plan = planner.plan(at, None, todo, obstacles, edges_only=self._edges_only)
         except NoPathError:
             return None
         return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
@@ -293,7 +291,6 @@ class Cleaning:
         if not todo.any():
             return None
         self._rounds.begin(missed)
-        edges_only = self.ledger.request.mode is CleanMode.EDGES
         try:
             plan = self._planned(todo, here, obstacles, plan_over)
         except NoPathError:
@@ -302,7 +299,7 @@ class Cleaning:
             if patches_of(todo, self.ledger.coverage.frame, self._config.least_area_to_retry):
                 # The way home is shut, perhaps by a door: meanwhile it cleans where it is.
                 plan = self._context.coverage.plan(
-                    (here.x, here.y), None, todo, obstacles, edges_only=edges_only
+                    (here.x, here.y), None, todo, obstacles, edges_only=self._edges_only
                 )
             elif self._rounds.tries_to_get_out():
                 self._rounds.take_back()
@@ -334,7 +331,7 @@ class Cleaning:
             (here.x, here.y),
             todo,
             obstacles,
-            edges_only=self.ledger.request.mode is CleanMode.EDGES,
+            edges_only=self._edges_only,
             end=self.ledger.way_out_of(stage),
         )
 
@@ -367,6 +364,14 @@ class Cleaning:
         patches = large_patches(todo, frame, least)
         is_worth_it = patches.any() and is_worth_its_way(plan_over, patches, frame, worth)
         return patches & is_worth_it
+
+    @property
+    def _edges_only(self) -> bool:
+        return self.ledger.request.mode is CleanMode.EDGES
+
+    def _with_closed_gaps(self, obstacles: list[RoundObstacle]) -> list[RoundObstacle]:
+        """Return the obstacles, and what closes gaps between them that are too narrow."""
+        return obstacles + closed_gaps(obstacles, self._context.reach, self._context.gap_spare)
 
     def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:
         """Remember floor that a person may open later: it is tried again before the end."""

@@ -61,7 +61,8 @@ def plan_worth_its_way(
     if not (slivers.any() and rest.any()):
         return plan
     shorter = plan_over(rest)
-    return plan if _is_worth(slivers, frame, plan.length - shorter.length, worth) else shorter
+    longer = plan.length - shorter.length
+    return plan if longer <= way_worth(slivers, frame, worth) else shorter
 
 
 def is_worth_its_way(plan_over: PlanOver, floor: Mask, frame: GridFrame, worth: float) -> bool:
@@ -71,8 +72,9 @@ def is_worth_its_way(plan_over: PlanOver, floor: Mask, frame: GridFrame, worth: 
         way = plan_over(floor).length - plan_over(np.zeros_like(floor)).length
     except NoPathError:
         return True
-    return _is_worth(floor, frame, way, worth)
+    return way <= way_worth(floor, frame, worth)
 
 
-def _is_worth(floor: Mask, frame: GridFrame, way: float, worth: float) -> bool:
-    return bool(way <= worth * float(np.count_nonzero(floor)) * frame.resolution**2)
+def way_worth(floor: Mask, frame: GridFrame, worth: float) -> float:
+    """Return how much way a floor, bool over ``frame``, is worth, m: ``worth`` m for each m2."""
+    return worth * float(np.count_nonzero(floor)) * frame.resolution**2

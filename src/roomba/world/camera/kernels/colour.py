@@ -29,7 +29,7 @@ def blended(colour: int, other: int, share: int) -> int:
 
 @compiled(**INLINE)
 def mixed(colour: np.uint32, other: np.uint32, share: np.int32) -> np.uint32:
-    """Return the same, rounded once instead of twice, in numbers of 32 bits throughout."""
+    """Return what :func:`blended` does, rounded once instead of twice, by numbers of 32 bits."""
     one, two = np.uint32(256 - share), np.uint32(share)
     red_blue = np.uint32((colour & RED_BLUE) * one) + np.uint32((other & RED_BLUE) * two)
     green = np.uint32((colour & GREEN) * one) + np.uint32((other & GREEN) * two)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import compiled
+from roomba.world.camera.kernels.colour import GREEN, RED_BLUE
 from roomba.world.camera.kernels.compilation import INLINE, INNER, KERNEL
 from roomba.world.camera.scene.arrays import STRIP
 
@@ -13,7 +14,7 @@ BLOCK = 16
 """Columns that are turned into rows together: what fits the nearest cache."""
 TURNED = 8
 """Columns of a strip that are turned into rows together."""
-RED_BLUE, GREEN, TWO = np.uint32(0xFF00FF), np.uint32(0x00FF00), np.uint32(2)
+TWO = np.uint32(2)
 
 
 @compiled(**KERNEL)

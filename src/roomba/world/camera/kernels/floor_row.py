@@ -15,8 +15,9 @@ from roomba.compilation import compiled
 from roomba.world.camera.kernels.colour import mixed
 from roomba.world.camera.kernels.compilation import INLINE, INNER
 from roomba.world.camera.kernels.dirt import CRUMB_BLOCK, CRUMB_MASK, CRUMB_TEXELS
-from roomba.world.camera.kernels.quick_upright import GREY_BITS, GREY_SHIFT
 from roomba.world.camera.scene.arrays import (
+    GREY_BITS,
+    GREY_SHIFT,
     SHADES,
     STRIP,
     TILE,
@@ -28,7 +29,8 @@ from roomba.world.camera.scene.arrays import (
 PER_COLUMN = np.float32(1.0 / TILE)
 HALF = np.float32(0.5)
 TEXELS = np.float32(CRUMB_TEXELS)
-CRUMB_BITS, BLOCK_BITS = 10, 7
+CRUMB_BITS = CRUMB_MASK.bit_length()
+BLOCK_BITS = CRUMB_BITS - CRUMB_BLOCK
 """Base 2 logarithms of the widths of the tables of crumbs and of the fewest of them."""
 DUST_ROW = 16 * SHADES
 """Where the colours of dust begin among those of crumbs."""
@@ -105,7 +107,7 @@ def feel_light_and_dust(
 def feel_dirt(
     knots: NDArray[np.float32], k: int, part: np.float32, level: NDArray[np.int32]
 ) -> None:
-    """Fill in the levels of dirt; arguments as above."""
+    """Fill in the levels of dirt; arguments as of :func:`feel_light_and_dust`."""
     for tile in range(0, STRIP, TILE):
         spread(knots[tile // TILE], knots[tile // TILE + 1], k, OF_DIRT, part, tile, level)
 

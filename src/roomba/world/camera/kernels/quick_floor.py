@@ -40,14 +40,16 @@ SEVERAL = -1
 
 
 @compiled(**INLINE)
-def place_in(at: np.float32, origin: np.float32, cell: np.float32, count: int) -> int:
+def place_in(
+    at: np.float32 | float, origin: np.float32 | float, cell: np.float32 | float, count: int
+) -> int:
     """Return the cell, 0..count - 1, that a place, m, lies in, or the nearest one."""
     return min(max(int(np.int32((at - origin) / cell)), 0), count - 1)
 
 
 @compiled(**INLINE)
 def surface_within(floor: FloorSurfaces, x: np.float32, y: np.float32) -> int:
-    """Return the surface of the floor in a pixel; the nearest one outside the map."""
+    """Return what :func:`surface_at` does, for a pixel, by numbers of 32 bits."""
     cell = np.float32(floor.cell)
     row = place_in(y, np.float32(floor.origin_y), cell, floor.surfaces.shape[0])
     column = place_in(x, np.float32(floor.origin_x), cell, floor.surfaces.shape[1])
@@ -57,8 +59,8 @@ def surface_within(floor: FloorSurfaces, x: np.float32, y: np.float32) -> int:
 @compiled(**INLINE)
 def surface_at(floor: FloorSurfaces, x: float, y: float) -> int:
     """Return the surface of the floor at a place, m; the nearest one outside the map."""
-    row = min(max(int((y - floor.origin_y) / floor.cell), 0), floor.surfaces.shape[0] - 1)
-    column = min(max(int((x - floor.origin_x) / floor.cell), 0), floor.surfaces.shape[1] - 1)
+    row = place_in(y, floor.origin_y, floor.cell, floor.surfaces.shape[0])
+    column = place_in(x, floor.origin_x, floor.cell, floor.surfaces.shape[1])
     return int(floor.surfaces[np.uint64(row), np.uint64(column)])
 
 

@@ -12,6 +12,8 @@ from roomba.world.camera.kernels.colour import level_of
 from roomba.world.camera.kernels.compilation import INLINE, INNER
 from roomba.world.camera.kernels.span import column_spans
 from roomba.world.camera.scene.arrays import (
+    GREY_BITS,
+    GREY_SHIFT,
     GREYS,
     PLANE,
     SHADES,
@@ -24,9 +26,6 @@ from roomba.world.camera.scene.arrays import (
 )
 
 LIGHT = SHADES - 1.0
-GREY_BITS = 6
-GREY_SHIFT = 2
-"""From the greys of a texture to the fewer that a surface's colours are kept in."""
 POINT = 16
 """Bits behind the point of numbers in fixed point."""
 TOGETHER = 16

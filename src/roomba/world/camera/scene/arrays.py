@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 SHADES = 128
 GREYS = 64
 """How many lights and greys a surface's toned colours are kept in."""
+GREY_BITS = GREYS.bit_length() - 1
+GREY_SHIFT = 8 - GREY_BITS
+"""From the greys of a texture, bytes, to these."""
 TILE = 16
 """Columns of a picture between which light and dirt are felt."""
 STRIP = 64
