@@ -14,6 +14,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.raster.distance import distance_to_nearest
 from roomba.world.engine.lidar.edges import LidarEdges, lidar_edges
+from roomba.world.engine.lidar.free_squares import free_squares
 from roomba.world.engine.state.arrays import (
     BOX,
     CARPET,
@@ -149,6 +150,7 @@ def _cells(home: Home) -> Rows:
     cells["solid"] = home.solid.ravel()
     near = home.solid if home.free_walls is None else home.solid | home.free_walls.touched
     cells["room"] = room_around(near, home.frame.resolution).ravel()
+    cells["free"] = free_squares(home.solid).ravel()
     if home.surfaces is not None:
         cells["surface"] = home.surfaces.ravel()
     ground = np.full(home.frame.shape, FLOOR, np.uint8)

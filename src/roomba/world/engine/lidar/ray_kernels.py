@@ -10,14 +10,13 @@ import math
 from typing import Final
 
 from roomba.compilation import inner_part, part
+from roomba.world.engine.lidar.free_squares import LARGEST, RIGHT, UP
 from roomba.world.engine.state.arrays import Row, Rows, Solid
 
-_HALF_DIAGONAL: Final = 0.7072
-"""Cells; from the middle of a cell to its corner, rounded up."""
 _TINY: Final = 1e-12
 """A direction with a smaller component never comes to a line across it."""
-_PAST: Final = 1e-9
-"""m; so far past a line between cells a ray is in the next one."""
+_NEVER: Final = 1e30
+"""Cells of way for each cell along an axis that a ray goes across."""
 
 
 @inner_part
@@ -26,35 +25,45 @@ def ray_to_cells(
 ) -> tuple[float, float]:
     """Return the way to the nearest solid cell, m, and the cosine of the angle to its normal.
 
-    All outside of the grid is solid; what is farther than ``reach`` is (inf, 1). Where the nearest
-    solid cell is far the ray leaps as far as all is free, elsewhere it goes from cell to cell.
+    All outside of the grid is solid; what is farther than ``reach`` is (inf, 1). The ray goes from
+    free square to free square (:mod:`.free_squares`), counted in cells; never back to a column or
+    row before, as rounding at a corner would have it.
     """
-    resolution = home.resolution
-    x, y = x - home.left, y - home.bottom
-    along = 0.0
-    facing = 1.0
-    while along <= reach:
-        here_x, here_y = x + along * cosine, y + along * sine
-        column, row = math.floor(here_x / resolution), math.floor(here_y / resolution)
-        if column < 0 or column >= home.columns or row < 0 or row >= home.rows:
-            return max(0.0, along - _PAST), facing
-        cell = cells[home.cells_at + row * home.columns + column]
-        if cell.solid:
-            return max(0.0, along - _PAST), facing
-        leap = cell.room - _HALF_DIAGONAL * resolution
-        if leap > resolution:
-            along += leap
-            continue
-        across_x = across_y = math.inf
-        if abs(cosine) > _TINY:
-            line = (column + (1 if cosine > 0.0 else 0)) * resolution
-            across_x = (line - here_x) / cosine
-        if abs(sine) > _TINY:
-            line = (row + (1 if sine > 0.0 else 0)) * resolution
-            across_y = (line - here_y) / sine
-        facing = abs(cosine) if across_x < across_y else abs(sine)
-        along += max(0.0, min(across_x, across_y)) + _PAST
+    x, y = (x - home.left) / home.resolution, (y - home.bottom) / home.resolution
+    column, row = math.floor(x), math.floor(y)
+    goes_right, goes_up = cosine > 0.0, sine > 0.0
+    shift = (RIGHT if goes_right else 0) + (UP if goes_up else 0)
+    per_column, per_row = way_for_each(cosine), way_for_each(sine)
+    farthest = reach / home.resolution
+    along, facing = 0.0, 1.0
+    while along <= farthest:
+        if not (0 <= column < home.columns and 0 <= row < home.rows):
+            return along * home.resolution, facing
+        side = int(cells[home.cells_at + row * home.columns + column].free >> shift) & LARGEST
+        if side == 0:
+            return along * home.resolution, facing
+        line_x = column + side if goes_right else column + 1 - side
+        line_y = row + side if goes_up else row + 1 - side
+        across_x, across_y = (line_x - x) * per_column, (line_y - y) * per_row
+        if across_x < across_y:
+            along, facing = max(along, across_x), abs(cosine)
+            column = line_x if goes_right else line_x - 1
+            beside = math.floor(y + along * sine)
+            row = max(row, beside) if goes_up else min(row, beside)
+        else:
+            along, facing = max(along, across_y), abs(sine)
+            row = line_y if goes_up else line_y - 1
+            beside = math.floor(x + along * cosine)
+            column = max(column, beside) if goes_right else min(column, beside)
     return math.inf, 1.0
+
+
+@inner_part
+def way_for_each(component: float) -> float:
+    """Return the way along a ray for each unit along an axis, signed as its component of that."""
+    if abs(component) > _TINY:
+        return 1.0 / component
+    return _NEVER if component > 0.0 else -_NEVER
 
 
 @part

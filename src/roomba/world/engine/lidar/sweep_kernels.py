@@ -23,6 +23,8 @@ Floats = NDArray[np.float32]
 
 _SLACK: Final = 1e-9
 """s; a beam is due when the time is as near to it as this."""
+_STRAIGHT: Final = 1e-9
+"""rad; a step that turns by less counts as straight: the middle of its arc is too far away."""
 _FLATTEST: Final = 0.1
 """Cosine; no beam counts as more grazing than this."""
 _UNIT_16: Final = 1.0 / (1 << 16)
@@ -95,27 +97,44 @@ def deliver(body: Row, robot: int, underway: Floats, arrived: Floats) -> None:
 
 @inner_part
 def measure_beams(around: Surroundings, ranges: Floats, due: int, dt: float) -> None:
-    """Measure the beams from the next one to before ``due``, each where the robot was at its time.
+    """Measure the beams from the next one to before ``due``, each where the lidar was at its time.
 
-    Between the poses before and after the step the body goes along an arc.
+    Between its poses before and after the step it goes along an arc.
     """
     world, numbers = around.world, around.numbers
     body = around.solid.robots[around.robot]
-    turn = wrapped(body.theta - body.before_theta)
-    chord_x, chord_y = body.x - body.before_x, body.y - body.before_y
+    first_x, first_y, first_theta = lidar_at(
+        body, numbers, body.before_x, body.before_y, body.before_theta
+    )
+    last_x, last_y, last_theta = lidar_at(body, numbers, body.x, body.y, body.theta)
+    turn = wrapped(last_theta - first_theta)
+    chord_x, chord_y = last_x - first_x, last_y - first_y
+    spoke_x, spoke_y = spoke_of(chord_x, chord_y, turn)
     for beam in range(int(body.next_beam), due):
         time = body.sweep_start + beam * numbers.time_increment
         share = min(max((time - (world.time - dt)) / dt, 0.0), 1.0)
-        # The chord to a point of an arc: shorter than that to its end, and turned against it.
-        bend = 0.5 * (share - 1.0) * turn
-        scale = share if abs(turn) < 1e-9 else math.sin(0.5 * share * turn) / math.sin(0.5 * turn)
-        cosine, sine = scale * math.cos(bend), scale * math.sin(bend)
-        x = body.before_x + cosine * chord_x - sine * chord_y
-        y = body.before_y + sine * chord_x + cosine * chord_y
-        theta = body.before_theta + share * turn
-        x, y, theta = lidar_at(body, numbers, x, y, theta)
-        ranges[around.robot, beam] = measure(around, beam, x, y, theta)
+        way_x, way_y = share * chord_x, share * chord_y
+        if abs(turn) > _STRAIGHT:
+            ahead, aside = math.cos(share * turn) - 1.0, math.sin(share * turn)
+            way_x = ahead * spoke_x - aside * spoke_y
+            way_y = aside * spoke_x + ahead * spoke_y
+        theta = first_theta + share * turn
+        ranges[around.robot, beam] = measure(around, beam, first_x + way_x, first_y + way_y, theta)
     body.next_beam = due
+
+
+@inner_part
+def spoke_of(chord_x: float, chord_y: float, turn: float) -> tuple[float, float]:
+    """Return the vector from the middle of an arc, which turns by ``turn``, rad, to its start.
+
+    As complex numbers: the spoke times ``exp(i turn)``, less the spoke, is the chord.
+    """
+    ahead, aside = math.cos(turn) - 1.0, math.sin(turn)
+    square = ahead * ahead + aside * aside
+    return (
+        (chord_x * ahead + chord_y * aside) / square,
+        (chord_y * ahead - chord_x * aside) / square,
+    )
 
 
 @inner_part

@@ -55,6 +55,7 @@ HOME: Final = np.dtype(
 CELL: Final = np.dtype(
     [
         ("room", "f4"),  # no solid cell is nearer than this to the cell's middle
+        ("free", "u4"),  # sides of the free squares that begin here, see lidar.free_squares
         ("solid", "?"),
         ("ground", "u1"),
         ("surface", "u1"),  # what it does to light, 0: as its place says

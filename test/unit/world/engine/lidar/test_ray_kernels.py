@@ -1,0 +1,92 @@
+"""Single rays among cells, against plain geometry; boxes and discs are tested with whole sweeps."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from fixtures.references.slow_lidar import ranges_to_cells
+from fixtures.thoroughness import examples
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from roomba.compilation import entry
+from roomba.grid import GridFrame
+from roomba.world.engine.lidar import ray_kernels
+from roomba.world.engine.lidar.free_squares import free_squares
+from roomba.world.engine.state.arrays import CELL, HOME, Rows
+
+SIZE = 0.05
+REACH = 30.0
+
+
+@entry
+def ray(
+    cells: Rows, homes: Rows, x: float, y: float, angle: float, reach: float
+) -> tuple[float, float]:
+    return ray_kernels.ray_to_cells(cells, homes[0], x, y, math.cos(angle), math.sin(angle), reach)
+
+
+def home_of(solid: NDArray[np.bool_], left: float, bottom: float) -> tuple[Rows, Rows]:
+    """The cells and the row of a home."""
+    cells, homes = np.zeros(solid.size, CELL), np.zeros(1, HOME)
+    cells["solid"], cells["free"] = solid.ravel(), free_squares(solid).ravel()
+    homes["rows"], homes["columns"] = solid.shape
+    homes["resolution"], homes["left"], homes["bottom"] = SIZE, left, bottom
+    return cells.view(np.recarray), homes.view(np.recarray)
+
+
+@settings(max_examples=examples(60))
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.01, 0.1, 0.4]))
+def test_a_ray_ends_where_plain_geometry_has_it(seed: int, density: float) -> None:
+    """Each beam of all around, turned by chance; also along the axes and the diagonals."""
+    random = np.random.default_rng(seed)
+    solid = random.random((31, 43)) < density
+    row, column = random.integers(31), random.integers(43)
+    solid[row, column] = False
+    frame = GridFrame(SIZE, -1.0, 0.5, 31, 43)
+    x = frame.origin_x + SIZE * (column + random.uniform(0.01, 0.99))
+    y = frame.origin_y + SIZE * (row + random.uniform(0.01, 0.99))
+    turn = random.choice([0.0, random.uniform(-math.pi, math.pi)])
+    expected = ranges_to_cells(solid, frame, x, y, turn, 64)
+    cells, homes = home_of(solid, -1.0, 0.5)
+    for beam, way in enumerate(expected.tolist()):
+        found, facing = ray(cells, homes, x, y, turn + beam * math.pi / 32.0, REACH)
+        assert found == pytest.approx(way, abs=1e-6)
+        assert 0.0 <= facing <= 1.0
+
+
+def test_it_tells_how_squarely_it_meets_a_wall() -> None:
+    cells, homes = home_of(np.zeros((20, 20), np.bool_), 0.0, 0.0)
+    for angle in (0.3, math.pi - 0.3, math.pi + 0.3, -0.3):
+        assert ray(cells, homes, 0.5, 0.5, angle, REACH)[1] == pytest.approx(math.cos(0.3))
+        assert ray(cells, homes, 0.5, 0.5, angle + math.pi / 2, REACH)[1] == pytest.approx(
+            math.cos(0.3)
+        )
+
+
+def test_what_is_beyond_its_reach_is_not_met() -> None:
+    cells, homes = home_of(np.zeros((20, 20), np.bool_), 0.0, 0.0)
+    assert ray(cells, homes, 0.5, 0.5, 0.0, 0.49) == (math.inf, 1.0)
+    assert ray(cells, homes, 0.5, 0.5, 0.0, 0.51)[0] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("place", [(-0.1, 0.5), (0.5, 1.1), (0.5, 0.5)])
+def test_outside_and_in_what_is_solid_it_ends_at_once(place: tuple[float, float]) -> None:
+    cells, homes = home_of(np.ones((20, 20), np.bool_), 0.0, 0.0)
+    assert ray(cells, homes, *place, 0.3, REACH)[0] == 0.0
+
+
+@settings(max_examples=examples(60))
+@given(st.integers(0, 7), st.integers(0, 400), st.integers(1, 400), st.integers(0, 3))
+def test_through_corners_of_cells_it_comes_to_an_end(
+    eighth: int, first: int, size: int, nudge: int
+) -> None:
+    """From corners, along diagonals and axes, where rounding may take it to either side."""
+    cells, homes = home_of(np.zeros((20, 20), np.bool_), -first / 7.0, size / 3.0)
+    angle = eighth * math.pi / 4.0 + nudge * 1e-16
+    x, y = -first / 7.0 + 10 * SIZE, size / 3.0 + 10 * SIZE
+    found, _ = ray(cells, homes, x, y, angle, REACH)
+    assert found == pytest.approx(0.5 * (math.sqrt(2.0) if eighth % 2 else 1.0), abs=1e-6)
