@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -101,27 +102,63 @@ def pose_at(path: ReckonedPath, stamp: float, pose: Floats) -> bool:
     return False
 
 
-@inner_part
-def pose_beyond(path: ReckonedPath, stamp: float, pose: Floats) -> None:
-    """Fill ``pose`` [3] with that at a time, also a little before or beyond all that are known.
+class Stretch(NamedTuple):
+    """A part of the path along which the robot goes on evenly.
 
-    Before them it is the oldest one; beyond them the robot goes on as between the newest two.
+    Its pose at ``stamp``, s, in m and rad, what of each passes in a second, and until when, s.
+    """
+
+    stamp: float
+    x: float
+    y: float
+    theta: float
+    to_x: float
+    to_y: float
+    turn: float
+    until: float
+
+
+@inner_part
+def stretch_at(path: ReckonedPath, stamp: float) -> Stretch:
+    """Return where the robot is from a time on, also a little before or beyond all that is known.
+
+    Before all poses it stands at the oldest one; beyond them it goes on as between the newest two,
+    for _AHEAD s, and stands then.
     """
     rows, ends = path.rows, path.ends
     size, newest, count = rows.shape[0], ends[_NEWEST], ends[_COUNT]
     if count == 0:
-        pose[:] = 0.0
-        return
-    beyond = min(stamp - rows[newest, 0], _AHEAD)
-    if beyond <= 0.0 or count == 1:
-        if not pose_at(path, stamp, pose):
-            oldest = (newest + 1 - count) % size
-            for axis in range(3):
-                pose[axis] = rows[oldest, 1 + axis]
-        return
-    earlier = (newest - 1) % size
-    share = beyond / (rows[newest, 0] - rows[earlier, 0])
-    for axis in range(1, 3):
-        pose[axis - 1] = rows[newest, axis] + share * (rows[newest, axis] - rows[earlier, axis])
-    turn = wrapped(rows[newest, 3] - rows[earlier, 3])
-    pose[2] = wrapped(rows[newest, 3] + share * turn)
+        return Stretch(stamp, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, math.inf)
+    earlier, later = newest, -1
+    for back in range(count):
+        earlier = (newest - back) % size
+        if rows[earlier, 0] <= stamp:
+            break
+        later = earlier
+    begin, x, y, theta = rows[earlier, 0], rows[earlier, 1], rows[earlier, 2], rows[earlier, 3]
+    if begin > stamp:
+        return Stretch(begin, x, y, theta, 0.0, 0.0, 0.0, begin)
+    until = rows[later, 0]
+    if later < 0:
+        if count == 1:
+            return Stretch(begin, x, y, theta, 0.0, 0.0, 0.0, math.inf)
+        earlier, later, until = (newest - 1) % size, newest, begin + _AHEAD
+    seconds = rows[later, 0] - rows[earlier, 0]
+    to_x = (rows[later, 1] - rows[earlier, 1]) / seconds
+    to_y = (rows[later, 2] - rows[earlier, 2]) / seconds
+    turn = wrapped(rows[later, 3] - rows[earlier, 3]) / seconds
+    if stamp < until:
+        return Stretch(begin, x, y, theta, to_x, to_y, turn, until)
+    x, y, theta = x + _AHEAD * to_x, y + _AHEAD * to_y, theta + _AHEAD * turn
+    return Stretch(until, x, y, theta, 0.0, 0.0, 0.0, math.inf)
+
+
+@inner_part
+def pose_in(stretch: Stretch, stamp: float) -> tuple[float, float, float]:
+    """Return the pose at a time within a stretch; theta is not wrapped."""
+    since = stamp - stretch.stamp
+    return (
+        stretch.x + since * stretch.to_x,
+        stretch.y + since * stretch.to_y,
+        stretch.theta + since * stretch.turn,
+    )

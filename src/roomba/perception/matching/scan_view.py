@@ -122,7 +122,7 @@ class LidarModel:
             return ranges
         if self._arrays is None:
             self._arrays = self.arrays()
-        still, work = np.empty(self.beams, np.float32), np.empty((SWEEP_WORK, max(self.beams, 3)))
+        still, work = np.empty(self.beams, np.float32), np.empty((SWEEP_WORK, self.beams))
         at_once(plain_ranges(ranges), self._arrays, path, stamp, still, work)
         return still
 

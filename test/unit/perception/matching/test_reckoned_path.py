@@ -9,11 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roomba.geometry import wrap_angle
 from roomba.perception.matching.reckoned_path import (
     ReckonedPath,
     forget_path,
     pose_at,
+    pose_in,
     remember,
+    stretch_at,
 )
 
 
@@ -70,3 +73,54 @@ def test_of_many_poses_in_a_second_the_newest_thousand_are_kept() -> None:
     assert at(path, 4.9985) == pytest.approx([4998.5, 0.0, 0.0])
     assert at(path, 4.0) == pytest.approx([4000.0, 0.0, 0.0])
     assert at(path, 3.9) is None
+
+
+TURN = st.floats(-math.pi, math.pi)
+
+
+def going_on(path: ReckonedPath, stamp: float) -> list[float]:
+    x, y, theta = pose_in(stretch_at(path, stamp), stamp)
+    return [x, y, wrap_angle(theta)]
+
+
+@given(
+    st.lists(st.tuples(st.floats(0.001, 0.3), TURN), min_size=1, max_size=9), st.floats(0.0, 1.0)
+)
+def test_along_a_stretch_is_where_a_search_finds_the_robot(
+    steps: list[tuple[float, float]], share: float
+) -> None:
+    stamps = np.cumsum([step for step, _ in steps])
+    path = told(
+        *(
+            (float(t), 0.3 * float(t), -float(t), turn)
+            for t, (_, turn) in zip(stamps, steps, strict=True)
+        )
+    )
+    asked = float(stamps[0] + share * (stamps[-1] - stamps[0]))
+    found, expected = going_on(path, asked), at(path, asked)
+    assert expected is not None
+    assert found[:2] == pytest.approx(expected[:2], abs=1e-9)
+    assert wrap_angle(found[2] - expected[2]) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_stretch_holds_until_the_next_pose() -> None:
+    path = told((1.0, 0.0, 0.0, 0.0), (2.0, 1.0, 0.0, 0.0), (3.0, 1.0, 1.0, 0.0))
+    first = stretch_at(path, 1.5)
+    assert first.until == 2.0
+    assert pose_in(first, 1.75) == pytest.approx((0.75, 0.0, 0.0))
+    assert stretch_at(path, first.until).until == 3.0
+
+
+def test_before_all_poses_the_robot_stands_and_beyond_them_it_goes_on_for_half_a_second() -> None:
+    path = told((1.0, 0.0, 0.0, 3.0), (1.2, 0.2, 0.1, -3.0))
+    turn = 2.0 * math.pi - 6.0
+    assert going_on(path, 0.9) == [0.0, 0.0, 3.0]
+    assert stretch_at(path, 0.9).until == 1.0
+    assert going_on(path, 1.3) == pytest.approx([0.3, 0.15, -3.0 + 0.5 * turn])
+    for late in (1.7, 1.8, 9.0):
+        assert going_on(path, late) == pytest.approx([0.7, 0.35, -3.0 + 2.5 * turn])
+
+
+def test_one_pose_or_none_is_where_the_robot_stands() -> None:
+    assert going_on(told((1.0, 0.5, 0.25, 2.0)), 4.0) == [0.5, 0.25, 2.0]
+    assert going_on(ReckonedPath.empty(), 4.0) == [0.0, 0.0, 0.0]

@@ -77,7 +77,7 @@ class ScanFollower:
             np.empty((count, POINT)),
             room_for_sums(count),
             np.empty(count, np.float32),
-            np.empty((SWEEP_WORK, max(count, 3))),
+            np.empty((SWEEP_WORK, count)),
         )
 
     def find_reckoned(self, stamp: float) -> bool:
