@@ -18,7 +18,7 @@ from roomba.headless.burst_kernels import run
 from roomba.headless.burst_state import BURST, Drive, Floor, PlaceParts, Sight, World
 from roomba.headless.rows import BELIEVED, PASSED
 from roomba.mission.cleaning.cleaning import Cleaning
-from roomba.mission.cleaning.dirty_kernels import WATCH
+from roomba.mission.cleaning.dirty.watch_kernels import WATCH
 from roomba.mission.driving.progress_kernels import PROGRESS
 from roomba.mission.driving.way_ahead_kernels import AHEAD
 from roomba.mission.steady import Steady

@@ -18,7 +18,7 @@ from roomba.control.tracking_kernels import along_of, off_path, track
 from roomba.headless.burst_place_kernels import believed, follow
 from roomba.headless.burst_state import Drive, Floats, Floor, PlaceParts, Rows, Sight, World
 from roomba.headless.rows import GYRO, TIME
-from roomba.mission.cleaning.dirty_kernels import may_be_dirty
+from roomba.mission.cleaning.dirty.watch_kernels import may_be_dirty
 from roomba.mission.driving.progress_kernels import mark_progress
 from roomba.mission.driving.way_ahead_kernels import is_blocked
 from roomba.mission.phases.carpet_kernels import changes_floor, note_current

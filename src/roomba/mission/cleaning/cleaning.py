@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from roomba.configuration.mission import CleaningConfig
 from roomba.geometry import Pose
 from roomba.mission.cleaning.checkpoint import Values
-from roomba.mission.cleaning.detour import with_detour
-from roomba.mission.cleaning.dirty import DirtyFloor, DirtyPatch
+from roomba.mission.cleaning.dirty.dirty_floor import DirtyFloor
 from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.missed import is_hidden, missed_floor
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, Missed
 from roomba.mission.cleaning.rounds import Rounds
+from roomba.mission.cleaning.second_pass import SecondPass
 from roomba.mission.cleaning.stages import Stage, edges_of
 from roomba.mission.cleaning.worth import (
     PlanOver,
@@ -29,9 +29,7 @@ from roomba.mission.cleaning.worth import (
     made_once,
     plan_worth_its_way,
     slivers_of,
-    way_worth,
 )
-from roomba.mission.driving.gaps import closed_gaps
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import patches_of
 from roomba.perception.swept.dirt_map import DirtMap
@@ -62,14 +60,15 @@ class Cleaning:
     ) -> None:
         """Find out what is wanted; raises CleanRefusedError when that is nothing."""
         self._context, self._config = context, config
-        self.dirty = DirtyFloor(dirt, config)
-        """What is so dirty that it is swept once more."""
         self.ledger = CoverageLedger(request, context, dirt, here)
         if not (self.ledger.coverage.wanted_cells or self.explores):
             raise CleanRefusedError(
                 "expected floor that can be reached, got none: it is outside of the map, in "
                 "furniture, or in a no-go zone"
             )
+        self.dirty = DirtyFloor(dirt, config)
+        """What is so dirty that it is swept once more."""
+        self._second_pass = SecondPass(self.dirty, self.ledger, config)
         self._count_passes()
         self.is_again = False
         self._rounds = Rounds(config)
@@ -105,7 +104,7 @@ class Cleaning:
 
         Raises NoPathError while it is shut in, so that it has to get out first.
         """
-        obstacles = self._with_closed_gaps(obstacles)
+        obstacles = self._context.with_closed_gaps(obstacles)
         if self._context.is_growing:
             return self._next_of_known(here, obstacles)
         while (stage := self.ledger.stage) is not None:
@@ -128,38 +127,7 @@ class Cleaning:
         That is floor which was swept by ``now``, s. ``rest``, float64 [n, 2], m, is the path before
         the robot.
         """
-        stage = self.ledger.stage
-        assert stage is not None
-        patches = self.dirty.at_hand(self.ledger.coverage, stage.floor, (here.x, here.y), now)
-        if not patches:
-            return None
-        obstacles = self._with_closed_gaps(obstacles)
-        reachable = self._reachable((here.x, here.y), obstacles)
-        path, again = np.vstack(((here.x, here.y), rest)), None
-        for patch in patches:
-            floor = patch.floor & reachable
-            longer = self._with_dirty(path, patch, floor, obstacles) if floor.any() else None
-            if longer is not None:
-                path = again = longer
-                self.dirty.note_again(patch)
-                self.ledger.sweep_anew(floor)
-        return again
-
-    def _with_dirty(
-        self, path: Floats, patch: DirtyPatch, floor: Mask, obstacles: list[RoundObstacle]
-    ) -> Floats | None:
-        """Return a path, float64 [n, 2], m, with a way over the ``floor`` of a patch put in.
-
-        None if that is too long, or no way leads there.
-        """
-        coverage, config = self._context.coverage, self._config
-        return with_detour(
-            path,
-            self.dirty.places_of(patch),
-            lambda at: coverage.plan(at, at, floor, obstacles, edges_only=self._edges_only),
-            config.dirty_ahead,
-            way_worth(floor, self.ledger.coverage.frame, config.worth_way_again),
-        )
+        return self._second_pass.at_hand(self._context, (here.x, here.y), rest, obstacles, now)
 
     def wants_another_look(self, lasting: list[RoundObstacle]) -> bool:
         """Whether floor was out of reach: once, before the end, it is to be looked for again.
@@ -170,7 +138,11 @@ class Cleaning:
             return False
         self._looked_again, self._unreachable = True, False
         staging = (self._context.staging.x, self._context.staging.y)
-        left = self.ledger.coverage.wanted & ~self.ledger.clean & self._reachable(staging, lasting)
+        left = (
+            self.ledger.coverage.wanted
+            & ~self.ledger.clean
+            & self._context.reachable(staging, lasting)
+        )
         large = large_patches(left, self.ledger.coverage.frame, self._config.least_area_to_retry)
         if not large.any():
             return False
@@ -264,7 +236,7 @@ class Cleaning:
             return None
         self.ledger.note_tried(todo)
         try:
-            plan = planner.plan(at, None, todo, obstacles, edges_only=self._edges_only)
+            plan = planner.plan(at, None, todo, obstacles, edges_only=self.ledger.edges_only)
         except NoPathError:
             return None
         return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
@@ -287,7 +259,9 @@ class Cleaning:
             if self._rounds.is_over(missed):
                 todo[:] = False
         if not self._rounds.is_first and not todo.any() and not self._scrubbed:
-            todo = self._dirty_again(stage, self._reachable((here.x, here.y), obstacles), plan_over)
+            self._scrubbed = True
+            reachable = self._context.reachable((here.x, here.y), obstacles)
+            todo = self._second_pass.at_the_end(stage.floor, reachable, plan_over)
         if not todo.any():
             return None
         self._rounds.begin(missed)
@@ -295,11 +269,11 @@ class Cleaning:
             plan = self._planned(todo, here, obstacles, plan_over)
         except NoPathError:
             self._unreachable = True
-            todo &= self._reachable((here.x, here.y), obstacles)
+            todo &= self._context.reachable((here.x, here.y), obstacles)
             if patches_of(todo, self.ledger.coverage.frame, self._config.least_area_to_retry):
                 # The way home is shut, perhaps by a door: meanwhile it cleans where it is.
                 plan = self._context.coverage.plan(
-                    (here.x, here.y), None, todo, obstacles, edges_only=self._edges_only
+                    (here.x, here.y), None, todo, obstacles, edges_only=self.ledger.edges_only
                 )
             elif self._rounds.tries_to_get_out():
                 self._rounds.take_back()
@@ -319,7 +293,7 @@ class Cleaning:
         if rest is None:
             return plan_over(todo)
         frame, config = self.ledger.coverage.frame, self._config
-        floor = todo & self._reachable((here.x, here.y), obstacles)
+        floor = todo & self._context.reachable((here.x, here.y), obstacles)
         slivers = slivers_of(floor, self.ledger.coverage.along(rest), frame, config.least_for_round)
         return plan_worth_its_way(plan_over, todo, slivers, frame, config.worth_way)
 
@@ -331,7 +305,7 @@ class Cleaning:
             (here.x, here.y),
             todo,
             obstacles,
-            edges_only=self._edges_only,
+            edges_only=self.ledger.edges_only,
             end=self.ledger.way_out_of(stage),
         )
 
@@ -348,10 +322,10 @@ class Cleaning:
         Behind and below what stands in the way nothing can be done now.
         """
         staging = (self._context.staging.x, self._context.staging.y)
-        reachable = self._reachable(staging, obstacles)
+        reachable = self._context.reachable(staging, obstacles)
         if not reachable[self.ledger.coverage.frame.cell_of(here.x, here.y)]:
             # Wherever it is shut in, there it can clean, and from there it has to get out.
-            reachable |= self._reachable((here.x, here.y), obstacles)
+            reachable |= self._context.reachable((here.x, here.y), obstacles)
         self._note_out_of_reach(todo & ~reachable, obstacles)
         todo &= reachable & ~self._rounded_off((here.x, here.y), obstacles)
         wanted = max(int(np.count_nonzero(stage.floor & reachable)), 1)
@@ -365,23 +339,11 @@ class Cleaning:
         is_worth_it = patches.any() and is_worth_its_way(plan_over, patches, frame, worth)
         return patches & is_worth_it
 
-    @property
-    def _edges_only(self) -> bool:
-        return self.ledger.request.mode is CleanMode.EDGES
-
-    def _with_closed_gaps(self, obstacles: list[RoundObstacle]) -> list[RoundObstacle]:
-        """Return the obstacles, and what closes gaps between them that are too narrow."""
-        return obstacles + closed_gaps(obstacles, self._context.reach, self._context.gap_spare)
-
     def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:
         """Remember floor that a person may open later: it is tried again before the end."""
         patches = patches_of(floor, self.ledger.coverage.frame, self._config.least_area_to_retry)
         if not all(is_hidden(patch, self._context, obstacles) for patch in patches):
             self._unreachable = True
-
-    def _reachable(self, here: Point, obstacles: list[RoundObstacle]) -> Mask:
-        """Return what can be cleaned from a place among what the map does not show."""
-        return self._context.floor.with_obstacles(obstacles).coverable(here)
 
     def _rounded_off(self, here: Point, obstacles: list[RoundObstacle]) -> Mask:
         """Return the floor that another plan would leave as well."""
@@ -389,22 +351,6 @@ class Cleaning:
             return self._context.coverage.rounded_off(here, obstacles)
         except NoPathError:
             return np.zeros(self.ledger.coverage.frame.shape, np.bool_)
-
-    def _dirty_again(self, stage: Stage, reachable: Mask, plan_over: PlanOver) -> Mask:
-        """Return what was so dirty that it gets another pass, once a stage, and is worth it.
-
-        What is not ``reachable`` is not.
-        """
-        self._scrubbed = True
-        coverage, worth = self.ledger.coverage, self._config.worth_way_again
-        again = np.zeros(coverage.frame.shape, np.bool_)
-        for patch in self.dirty.left(coverage, stage.floor):
-            floor = patch.floor & reachable
-            if floor.any() and is_worth_its_way(plan_over, floor, coverage.frame, worth):
-                again |= floor
-        if again.any():
-            self.ledger.sweep_anew(again)
-        return again
 
     def _next_stage(self) -> None:
         self.ledger.next_stage()

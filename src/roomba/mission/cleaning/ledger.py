@@ -27,7 +27,7 @@ from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.raster.carried import carried
 from roomba.raster.distance import distance_to_nearest
-from roomba.vocabulary import RoomWay, listed
+from roomba.vocabulary import CleanMode, RoomWay, listed
 
 Mask = NDArray[np.bool_]
 
@@ -52,6 +52,11 @@ class CoverageLedger:
         self.coverage = CoverageMap(context.frame, self._union(), context.tool_width)
         self._ever = np.zeros(context.frame.shape, np.bool_)
         self.stage_number = 0
+
+    @property
+    def edges_only(self) -> bool:
+        """Whether only edges are asked for."""
+        return self.request.mode is CleanMode.EDGES
 
     @property
     def stage(self) -> Stage | None:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from roomba.grid import GridFrame
 from roomba.mission.cleaning.request import Missed, MissReason
-from roomba.mission.driving.gaps import closed_gaps
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import Patch, patches_of
 from roomba.planning.path.costmap import RoundObstacle
@@ -111,8 +110,8 @@ def _why_hardly_any(covered: float, missed: Sequence[Missed]) -> str:
 
 def _reachable(context: PlanningContext, obstacles: Sequence[RoundObstacle]) -> Mask:
     """Return what can be cleaned from the station among what the map does not show."""
-    things = [*obstacles, *closed_gaps(obstacles, context.reach, context.gap_spare)]
-    return context.floor.with_obstacles(things).coverable((context.staging.x, context.staging.y))
+    staging = (context.staging.x, context.staging.y)
+    return context.reachable(staging, context.with_closed_gaps(obstacles))
 
 
 def _is_mostly_in(patch: Patch, floor: Mask) -> bool:

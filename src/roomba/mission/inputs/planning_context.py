@@ -17,6 +17,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.mission.docking.docking import staging_pose
+from roomba.mission.inputs.gaps import closed_gaps
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.planning.coverage.floor.floor import CoverageFloor
@@ -87,7 +88,7 @@ class PlanningContext:
         self.known = self.zones.kept_out(occupancy)
         self.staging = staging_pose(station, docking)
         driving, radius = mission.driving, robot.body.radius
-        self.reach, self.gap_spare = radius + driving.clearance, driving.gap_spare
+        self.reach, self._gap_spare = radius + driving.clearance, driving.gap_spare
         self._growing_reach = radius + mission.exploring.cleaning_clearance
         self.staging_tolerance = docking.place_tolerance
         self.spot_size = mission.cleaning.spot_size
@@ -149,6 +150,14 @@ class PlanningContext:
         finally:
             self.plans += 1
             self.planning_time += time.perf_counter() - began
+
+    def with_closed_gaps(self, obstacles: Sequence[RoundObstacle]) -> list[RoundObstacle]:
+        """Return the obstacles, and what closes gaps between them that are too narrow."""
+        return [*obstacles, *closed_gaps(obstacles, self.reach, self._gap_spare)]
+
+    def reachable(self, here: Point, obstacles: Sequence[RoundObstacle]) -> Mask:
+        """Return what can be cleaned from a place, over ``frame``, among what no map shows."""
+        return self.floor.with_obstacles(obstacles).coverable(here)
 
     def has_new_on(self, points: NDArray[np.float64], occupancy: OccupancyMap) -> bool:
         """Whether a newer map shows something new on a way, float64 [n, 2], m, through this one."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.clock import is_recent
 from roomba.configuration.mission import CleaningConfig
-from roomba.mission.cleaning.dirty_kernels import WATCH, may_be_dirty
+from roomba.mission.cleaning.dirty.watch_kernels import WATCH, may_be_dirty
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.swept.dirt_map import CELL, DirtMap
 from roomba.planning.path.costmap import Point

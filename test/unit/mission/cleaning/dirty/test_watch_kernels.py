@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.mission.cleaning.dirty_kernels import WATCH, may_be_dirty
+from roomba.mission.cleaning.dirty.watch_kernels import WATCH, may_be_dirty
 from roomba.perception.swept.dirt_map import CELL, LEAST_WAY
 
 Floats = NDArray[np.float32]

@@ -8,7 +8,7 @@ import pytest
 
 from roomba.configuration.mission import CleaningConfig
 from roomba.grid import FREE, GridFrame, OccupancyMap
-from roomba.mission.cleaning.dirty import DirtyFloor
+from roomba.mission.cleaning.dirty.dirty_floor import DirtyFloor
 from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.swept.dirt_map import CELL, DirtMap

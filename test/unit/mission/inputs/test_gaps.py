@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from roomba.mission.driving.gaps import closed_gaps
+from roomba.mission.inputs.gaps import closed_gaps
 from roomba.planning.path.costmap import RoundObstacle
 
 REACH, SPARE = 0.165, 0.06

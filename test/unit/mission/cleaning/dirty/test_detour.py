@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from roomba.mission.cleaning.detour import nearest_station, with_detour
+from roomba.mission.cleaning.dirty.detour import nearest_station, with_detour
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError, NoPathReason

@@ -1,0 +1,1 @@
+"""Dirty floor: where it is, when to look for it, and the way to it."""
