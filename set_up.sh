@@ -225,11 +225,15 @@ set_up() { # library|runtime|dev
 
 # ---------------------------------------------------------------- what is there
 
-# One line per step of the set-up: name, state, what is missing.
+# One line per step of the set-up: name, state, what is missing. Unavailable is what no set-up brings to this system.
 describe_steps() {
   local missing
   missing=$(system_words runtime)
-  describe_step "system packages" "$missing" test -z "$missing"
+  if distribution >/dev/null; then
+    describe_step "system packages" "$missing" test -z "$missing"
+  else
+    printf 'system packages\tunavailable\t%s\n' "$missing"
+  fi
   describe_step "Python packages" "" python_is_current runtime
   describe_step "catkin workspace" "" workspace_is_current
   describe_step "compiled loops" "" compiled_is_current

@@ -2,8 +2,9 @@
 
 Runs under the distribution's Python with nothing but the standard library, for it has to speak
 when nothing is set up. ``./roomba`` hands over the state of each step of the set-up as lines of
-``name, current or missing, detail`` between tabs on standard input; what a step cannot know
-about itself (do the parts import, may ROS be reached) is tried here.
+``name, state, detail`` between tabs on standard input, where the state is current, missing, or
+unavailable on this system; what a step cannot know about itself (do the parts import, may ROS be
+reached) is tried here.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ MODULE_OF_STEP = {
     "Python packages": ("numba", "numpy", "pydantic", "rich", "shapely"),
     "system packages": ("cv2", "cv_bridge", "rospy", "actionlib"),
 }
+RUN = "./roomba run"
+ELSEWHERE = "run in a container of Debian: docs/install.md; without ROS: ./roomba play, sim, map"
 LEAST_FREE_SPACE = 3.0  # GB; a set-up from nothing takes 2 GB, its downloads for a time 0.6 GB
 
 
@@ -52,7 +55,7 @@ class Finding:
 
 
 class BrokenReportError(ValueError):
-    """A line about a step is not ``name, current or missing, detail`` between tabs."""
+    """A line about a step is not ``name, state, detail`` between tabs."""
 
 
 def findings_of_steps(lines: Iterable[str]) -> list[Finding]:
@@ -60,14 +63,17 @@ def findings_of_steps(lines: Iterable[str]) -> list[Finding]:
 
     Raises BrokenReportError for a line of another form.
     """
-    findings = []
+    findings, mend = [], RUN
     for line in lines:
         fields = line.rstrip("\n").split("\t")
-        if len(fields) != 3 or fields[1] not in ("current", "missing"):
+        if len(fields) != 3 or fields[1] not in ("current", "missing", "unavailable"):
             raise BrokenReportError(
-                f"expected 'name<tab>current|missing<tab>detail', got {line!r}; run ./roomba doctor"
+                f"expected 'name<tab>current|missing|unavailable<tab>detail', got {line!r}; "
+                "run ./roomba doctor"
             )
         name, state, detail = fields
+        if state == "unavailable":  # then no set-up makes what comes after it either
+            mend = ELSEWHERE
         if state == "current":
             findings.append(Finding(name, StepState.FINE))
         elif name.endswith("for tests"):
@@ -78,7 +84,7 @@ def findings_of_steps(lines: Iterable[str]) -> list[Finding]:
             findings.append(Finding(name, StepState.NOTE, detail, "./roomba exec true"))
         else:
             detail = detail or "not set up, or not up to date"
-            findings.append(Finding(name, StepState.MISSING, detail, "./roomba run"))
+            findings.append(Finding(name, StepState.MISSING, detail, mend))
     return findings
 
 

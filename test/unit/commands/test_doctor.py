@@ -45,6 +45,14 @@ def test_missing_step_tells_how_to_mend_it(line: str, state: StepState, mend: st
     assert finding.detail
 
 
+def test_what_no_set_up_brings_is_mended_elsewhere() -> None:
+    lines = "system packages\tunavailable\tno ROS 1 here", "catkin workspace\tmissing\t"
+    findings = findings_of_steps(lines)
+    assert [finding.state for finding in findings] == [StepState.MISSING] * 2
+    assert all("docs/install.md" in finding.mend for finding in findings)
+    assert not any("./roomba run" in finding.mend for finding in findings)
+
+
 def test_missing_packages_are_named() -> None:
     (finding,) = findings_of_steps(["system packages\tmissing\tpython3-rospy rosout"])
     assert finding.detail == "python3-rospy rosout"

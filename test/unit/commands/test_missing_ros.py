@@ -119,6 +119,9 @@ def test_the_doctor_says_it_too(tmp_path: Path, system: str) -> None:
     assert done.returncode == 1
     (line,) = (line for line in done.stdout.splitlines() if "missing system packages: " in line)
     assert "whose own packages hold ROS 1; this is " in line
+    assert "to mend it: run in a container of Debian: docs/install.md" in done.stdout
+    lines = [line.strip() for line in done.stdout.splitlines()]
+    assert "to mend it: ./roomba run" not in lines
 
 
 def test_without_dpkg_nothing_counts_as_current(tmp_path: Path) -> None:
@@ -160,6 +163,14 @@ def test_the_container_starts_the_robot_with_arguments_that_there_are() -> None:
     assert port is not None
     assert f"page_port:={port[1]}" in words
     assert f":{port[1]} " in (ROOT / "docs" / "install.md").read_text(encoding="utf-8")
+
+
+def test_a_change_of_the_sources_installs_nothing_again() -> None:
+    text = containerfile()
+    assert text.index("&& ./install_dependencies.sh") < text.index("\nCOPY . .")
+    copied = re.search(r"^COPY (.+) \./$", text, re.MULTILINE)
+    assert copied is not None
+    assert copied[1].split() == ["install_dependencies.sh", "constraints.txt", "requirements*.txt"]
 
 
 def test_the_container_takes_nothing_that_was_made_on_this_machine() -> None:
