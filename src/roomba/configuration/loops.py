@@ -94,21 +94,23 @@ class TrackingConfig(Frozen):
     """s; a faster one takes in addition what it drives in this time."""
     heading_gain: Positive = 6.0
     turning_speed: Positive = 4.0
-    turning_braking: Ratio = 0.85
-    """Share of the body's angular acceleration with which a turn on the spot ends."""
+    turning_braking: Ratio = 0.8
+    """Share of the body's angular braking with which a turn on the spot ends."""
     corner_turning: Positive = 2.0
     """rad/s; the most in bends."""
     corner_acceleration: Positive = 7.0
-    """rad/s2; of the turning speed, in bends."""
+    """rad/s2; by which the turning speed grows, in bends."""
+    corner_braking: Positive = 10.0
+    """rad/s2; by which it falls, in bends."""
     slowest_corner: Positive = 0.08
     """m/s; in the tightest bends."""
     longest_blend: Positive = 0.05
     """m; each point of the curve is a mean over at most this way to each side."""
-    aimed: Positive = 0.01
+    aimed: Positive = 0.03
     arrival_tolerance: Positive = 0.003
     turn_in_place_angle: Acute = 0.6
     """rad; with a larger error of the heading it turns on the spot first."""
-    turning_delay: NotNegative = 0.06
+    turning_delay: NotNegative = 0.05
     """s; until the drive has the turning speed that it is told."""
     late_ticks: NotNegative = 2.0
     """Ticks; by so much the drive is expected to brake late."""

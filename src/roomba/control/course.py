@@ -66,7 +66,9 @@ def _limits(config: TrackingConfig, body: BodyConfig) -> Rows:
     limits = np.zeros(1, BENDING)
     limits["off_corner"], limits["longest_blend"] = config.off_corner, config.longest_blend
     limits["turning"] = config.corner_turning
-    limits["turning_acceleration"] = config.corner_acceleration
+    limits["turning_acceleration"] = min(config.corner_acceleration, body.max_angular_acceleration)
+    limits["turning_braking"] = min(config.corner_braking, body.max_angular_deceleration)
+    limits["half_track"] = 0.5 * body.wheel_separation
     limits["slowest"], limits["fastest"] = config.slowest_corner, body.max_speed
     limits["acceleration"], limits["braking"] = body.max_acceleration, config.braking
     return limits

@@ -50,8 +50,10 @@ BENDING: Final = np.dtype(
         ("longest_blend", "f8"),  # m; no mean is taken over more than this to each side
         ("turning", "f8"),  # rad/s
         ("turning_acceleration", "f8"),  # rad/s2
+        ("turning_braking", "f8"),  # rad/s2
+        ("half_track", "f8"),  # m; from the middle to a wheel
         ("slowest", "f8"),  # m/s; no bend is driven more slowly
-        ("fastest", "f8"),  # m/s
+        ("fastest", "f8"),  # m/s; of both wheels
         ("acceleration", "f8"),  # m/s2
         ("braking", "f8"),  # m/s2
     ]
@@ -221,17 +223,52 @@ def _limit_speeds(samples: Any, section: Row, step: float, limits: Row) -> None:
     """Fill in the speeds: of each bend by itself, then from where it can brake and speed up."""
     first, last = section.first, section.last
     for at in range(first, last + 1):
-        low, high = max(at - 1, first), min(at + 1, last)
-        change = abs(samples[high].curvature - samples[low].curvature) / ((high - low) * step)
-        # Where the curvature changes by c in a metre, the turning speed does by v^2 c in a second.
-        even = math.sqrt(limits.turning_acceleration / max(change, _NO_TURN))
-        turning = limits.turning / max(abs(samples[at].curvature), _NO_TURN)
-        samples[at].speed = max(min(even, turning, limits.fastest), limits.slowest)
+        tightening = _tightening(samples, first, last, at, step)
+        samples[at].speed = _bend_speed(abs(samples[at].curvature), tightening, limits)
     for at in range(last - 1, first - 1, -1):
         after = samples[at + 1].speed
         reached = math.sqrt(after * after + 2.0 * limits.braking * step)
         samples[at].speed = min(samples[at].speed, reached)
     for at in range(first + 1, last + 1):
-        before = samples[at - 1].speed
-        reached = math.sqrt(before * before + 2.0 * limits.acceleration * step)
+        before = samples[at - 1]
+        tightening = _tightening(samples, first, last, at - 1, step)
+        acceleration = _bend_acceleration(before, tightening, limits)
+        reached = math.sqrt(before.speed * before.speed + 2.0 * acceleration * step)
         samples[at].speed = min(samples[at].speed, reached)
+
+
+@inner_part
+def _tightening(samples: Any, first: int, last: int, at: int, step: float) -> float:
+    """Return by how much a bend tightens in a metre, 1/m2; less than 0 where it opens.
+
+    From one side to the other it tightens: the turning speed grows there, if to the other side.
+    """
+    low, high = max(at - 1, first), min(at + 1, last)
+    before, after = samples[low].curvature, samples[high].curvature
+    change = abs(after - before) if before * after < 0.0 else abs(after) - abs(before)
+    return float(change / ((high - low) * step))
+
+
+@inner_part
+def _bend_speed(bend: float, tightening: float, limits: Row) -> float:
+    """Return the fastest speed, m/s, at a curvature of ``bend``, 1/m, as it tightens, 1/m2.
+
+    Where the curvature changes by c in a metre, the turning speed does by v^2 c in a second. The
+    outer wheel is the fastest one.
+    """
+    most = limits.turning_acceleration if tightening > 0.0 else limits.turning_braking
+    even = math.sqrt(most / max(abs(tightening), _NO_TURN))
+    turning = limits.turning / max(bend, _NO_TURN)
+    outer = limits.fastest / (1.0 + limits.half_track * bend)
+    return float(max(min(even, turning, outer), limits.slowest))
+
+
+@inner_part
+def _bend_acceleration(sample: Row, tightening: float, limits: Row) -> float:
+    """Return by how much the speed may grow at a sample, m/s2.
+
+    There the turning speed grows with the speed, and with what the bend tightens, 1/m2.
+    """
+    left = limits.turning_acceleration - sample.speed * sample.speed * tightening
+    bend = max(abs(sample.curvature), _NO_TURN)
+    return float(min(max(left / bend, 0.0), limits.acceleration))

@@ -138,7 +138,8 @@ def between(section: Row, station: float) -> tuple[int, float]:
 def turn_speed(state: Row, error: float) -> float:
     """Return the turning speed, rad/s, that ends a turn on the spot without overshoot."""
     size = abs(error)
-    speed = min(state.turning_speed, math.sqrt(2.0 * state.turning_braking * size))
+    brakeable = stopping_speed(size, state.turning_braking, state.turning_delay)
+    speed = min(state.turning_speed, brakeable)
     # The rest at the end takes a few ticks more: the drive is a tick or two late.
     speed = max(min(speed, size / (1.7 * state.period)), 4.0 * state.slowest)
     return math.copysign(min(speed, size / state.period), error)
@@ -179,7 +180,8 @@ def speed_at(course: Course, section: Row, station: float) -> float:
 def arriving_speed(state: Row, left: float) -> float:
     """Return the speed, m/s, with which it stands after the ``left`` m of its section."""
     nearly = left / (2.2 * state.period)
-    return float(max(min(stopping_speed(state, left), nearly), state.slowest))
+    stopping = stopping_speed(left, state.braking, state.late * state.period)
+    return float(max(min(stopping, nearly), state.slowest))
 
 
 @inner_part
@@ -191,11 +193,10 @@ def answer(state: Row, speed: float) -> None:
 
 
 @inner_part
-def stopping_speed(state: Row, way: float) -> float:
-    """Return the speed, m/s, from which it stops within ``way``, m.
+def stopping_speed(way: float, braking: float, late: float) -> float:
+    """Return the speed from which it stops within ``way``: m/s and m, or rad/s and rad.
 
-    The drive obeys with a delay T, for which it goes on: v T + v^2 / (2 b) = way.
+    The drive obeys with a delay, s, for which it goes on: v T + v^2 / (2 b) = way.
     """
-    late, braking = state.late * state.period, state.braking
     speed: float = braking * (math.sqrt(late * late + 2.0 * max(way, 0.0) / braking) - late)
     return speed

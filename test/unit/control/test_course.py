@@ -130,9 +130,13 @@ def test_speeds_are_what_drive_and_brakes_can_do(legs: Legs) -> None:
     is_free = speeds > CONFIG.slowest_corner + ROUNDING
     turning = speeds * np.abs(samples["curvature"])
     assert (turning[is_free] <= CONFIG.corner_turning + ROUNDING).all()
-    change = np.abs(samples["curvature"][2:] - samples["curvature"][:-2]) / (2.0 * step)
-    faster = (speeds[1:-1] ** 2 * change)[is_free[1:-1]]
-    assert (faster <= CONFIG.corner_acceleration + 1e-6).all()
+    outer = speeds + 0.5 * BODY.wheel_separation * turning
+    assert (outer[is_free] <= BODY.max_speed + ROUNDING).all()
+    before, after = samples["curvature"][:-2], samples["curvature"][2:]
+    faster = speeds[1:-1] ** 2 * np.abs(after - before) / (2.0 * step)
+    opens = (before * after >= 0.0) & (np.abs(after) <= np.abs(before))
+    most = np.where(opens, CONFIG.corner_braking, CONFIG.corner_acceleration)
+    assert (faster <= most + 1e-6)[is_free[1:-1]].all()
 
 
 @given(st.floats(0.05, 0.3))
@@ -206,3 +210,31 @@ def test_headings_are_compared_around_the_circle() -> None:
     assert len(made.sections) == 1
     headings = made.samples["heading"]
     assert headings[-1] - headings[0] == pytest.approx(0.1)
+
+
+def test_it_speeds_up_in_a_bend_as_the_turning_speed_can() -> None:
+    # A tight corner, and an even bend behind it: there the turning speed grows with the speed.
+    samples = curve(course((0.0, 0.3), (0.48, 0.02), *[(0.1, 0.012)] * 20))
+    step = (0.3 + 0.02 + 20 * 0.012) / (len(samples) - 1)
+    speeds, bends = samples["speed"], np.abs(samples["curvature"])
+    gained = np.diff(speeds**2)[1:] / (2.0 * step)
+    tightening = (bends[2:] - bends[:-2]) / (2.0 * step)
+    rates = gained * bends[1:-1] + speeds[1:-1] ** 2 * tightening
+    is_free = (speeds[1:-1] > CONFIG.slowest_corner + ROUNDING) & (gained > 0.0)
+    assert is_free.sum() > 5
+    assert rates[is_free].max() <= CONFIG.corner_acceleration + 1e-6
+    # Without that, it would speed up as much as on a straight way.
+    assert gained[is_free].min() < 0.5 * BODY.max_acceleration
+
+
+def test_no_bend_is_taken_faster_than_the_body_turns_up_and_down() -> None:
+    slow = BODY.model_copy(update={"max_angular_acceleration": 2.0, "max_deceleration": 0.4})
+    corners = path((0.0, 0.3), *[(0.3, 0.02), (-0.3, 0.02)] * 5, (0.3, 0.3))
+    made = course_of(corners, CONFIG, slow)
+    samples = curve(made)
+    step = float(made.stations[-1]) / (len(samples) - 1)
+    bends, speeds = np.abs(samples["curvature"]), samples["speed"]
+    tightening = (bends[2:] - bends[:-2]) / (2.0 * step)
+    rates = (speeds[1:-1] ** 2 * tightening)[speeds[1:-1] > CONFIG.slowest_corner + ROUNDING]
+    assert rates.max() <= slow.max_angular_acceleration + 1e-6
+    assert -rates.min() <= slow.max_angular_deceleration + 1e-6
