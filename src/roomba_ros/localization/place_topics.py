@@ -60,15 +60,17 @@ class PlaceTopics:
         self._ticks += 1
         if self._ticks % self._periods.position_ticks == 0:
             self._position.publish(RobotPosition(estimate.pose.x, estimate.pose.y))
-            pose = covariance_pose_message(stamp or now, estimate, self._map_frame)
-            self._amcl_pose.publish(pose)
+            if self._amcl_pose.get_num_connections() > 0:
+                pose = covariance_pose_message(stamp or now, estimate, self._map_frame)
+                self._amcl_pose.publish(pose)
             if self._footprint.get_num_connections() > 0:
                 place = (estimate.pose, self._radius, self._map_frame)
                 self._footprint.publish(footprint_message(stamp or now, *place))
-            odometry = localizer.map_to_odometry
-            self._transforms.publish(
-                [transform_message(now, odometry, self._map_frame, self._odom_frame)]
-            )
+            if self._transforms.get_num_connections() > 0:
+                odometry = localizer.map_to_odometry
+                self._transforms.publish(
+                    [transform_message(now, odometry, self._map_frame, self._odom_frame)]
+                )
         if self._ticks % self._periods.cloud_ticks == 0 and self._cloud.get_num_connections() > 0:
             self._cloud.publish(poses_message(now, localizer.hypotheses, self._map_frame))
         self._tell_state(now, estimate)

@@ -73,7 +73,8 @@ class BodyTopics:
         self._odometry: deque[OdometryReading] = deque(maxlen=_KEPT)
         self._gyro: deque[GyroReading] = deque(maxlen=_KEPT)
         self._scans = WaitingScans()
-        self._others = Readings(0.0, Pose())
+        self._battery = Battery()
+        self._others: dict[str, Any] = {}
         self._heard: set[str] = set()
         self._lidars = CorrectedLidar()
 
@@ -119,21 +120,21 @@ class BodyTopics:
     def take(self) -> list[Readings]:
         """Return the readings since the last call, in the order of time."""
         with self._lock:
-            told, others, gyro = list(self._odometry), self._others, list(self._gyro)
+            told, gyro = list(self._odometry), list(self._gyro)
+            others = {**self._others, "battery": self._battery}
             self._odometry.clear()
-        readings = [
-            replace(
-                others,
-                time=each.stamp,
-                odometry=each.pose,
-                twist=each.twist,
-                turning=_turning_at(each.stamp, gyro),
+        newest = told[-1] if told else None
+        return [
+            Readings(
+                each.stamp,
+                each.pose,
+                each.twist,
+                _turning_at(each.stamp, gyro),
+                self._scan_by(each.stamp) if each is newest else None,
+                **others,
             )
             for each in told
         ]
-        if readings:
-            readings[-1] = replace(readings[-1], scan=self._scan_by(readings[-1].time))
-        return readings
 
     def _scan_by(self, stamp: float) -> ScanReading | None:
         """Return the newest scan of which all beams were measured by a time, s, if one is new.
@@ -159,7 +160,7 @@ class BodyTopics:
 
     def _note(self, **values: Any) -> None:
         with self._lock:
-            self._others = replace(self._others, **values)
+            self._others.update(values)
 
     def _on_odometry(self, told: OdometryReading) -> None:
         with self._lock:
@@ -183,13 +184,11 @@ class BodyTopics:
 
     def _on_battery(self, battery: Battery) -> None:
         with self._lock:
-            here = replace(battery, is_docked=self._others.battery.is_docked)
-            self._others = replace(self._others, battery=here)
+            self._battery = replace(battery, is_docked=self._battery.is_docked)
 
     def _on_dock(self, is_docked: bool) -> None:
         with self._lock:
-            here = replace(self._others.battery, is_docked=is_docked)
-            self._others = replace(self._others, battery=here)
+            self._battery = replace(self._battery, is_docked=is_docked)
 
     def _on_bin(self, level: float) -> None:
         self._note(in_bin=level * self._config.brush.bin_capacity)
@@ -197,7 +196,7 @@ class BodyTopics:
 
 def _turning_at(stamp: float, gyro: list[GyroReading]) -> float | None:
     """Return the gyro's sample of about that time, rad/s."""
-    if not gyro:
+    near = [sample for sample in gyro if abs(sample.stamp - stamp) < SAME_TIME]
+    if not near:
         return None
-    nearest = min(gyro, key=lambda sample: abs(sample.stamp - stamp))
-    return nearest.turning if abs(nearest.stamp - stamp) < SAME_TIME else None
+    return min(near, key=lambda sample: abs(sample.stamp - stamp)).turning

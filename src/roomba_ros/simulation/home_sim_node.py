@@ -164,22 +164,28 @@ class HomeSimNode:
         self._publish(now, observation)
 
     def _publish(self, now: float, observation: Observation) -> None:
-        if self._owns_clock:
-            self._clock_publisher.publish(rospy.Time(nsecs=self._clock))
         odometry = observation.odometry
         self._odometry.publish(
             odometry_message(
                 now, odometry, observation.odometry_twist, self._odom_frame, self._base_frame
             )
         )
-        transforms = [transform_message(now, odometry, self._odom_frame, self._base_frame)]
+        if self._transforms.get_num_connections() > 0:
+            self._tell_transforms(now, observation)
+        self._sensors.tell(now, self._ticks, observation)
+        self._station.tell(self._ticks)
+        self._truth.tell(now, self._ticks, observation)
+        if self._owns_clock:
+            # Last: who ticks by it has heard what was sensed.
+            self._clock_publisher.publish(rospy.Time(nsecs=self._clock))
+
+    def _tell_transforms(self, now: float, observation: Observation) -> None:
+        place = observation.odometry
+        transforms = [transform_message(now, place, self._odom_frame, self._base_frame)]
         if self._frames is not None:
             wheels = observation.wheels
             transforms += self._frames.wheels(now, wheels.left, wheels.right)
         self._transforms.publish(transforms)
-        self._sensors.tell(now, self._ticks, observation)
-        self._station.tell(self._ticks)
-        self._truth.tell(now, self._ticks, observation)
 
     def _now(self) -> float:
         """Return the time for stamps, s of the ROS clock."""

@@ -1,0 +1,41 @@
+"""The report's parameters are looked at as often as that makes a difference."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+import rospy
+
+from roomba_ros.runtime.parameters import LiveSeedParameters
+
+LIMITS = {"/robot_max_speed": 0.5, "/min_cordinate": -100.0, "/max_cordinate": 100.0}
+
+
+@pytest.fixture
+def told(monkeypatch: pytest.MonkeyPatch) -> dict[str, float]:
+    """What the master told of parameters; wall time stands at ``wall``."""
+    values = {**LIMITS, "wall": 10.0}
+    monkeypatch.setattr(
+        rospy, "search_param", lambda name: f"/{name}" if f"/{name}" in values else None
+    )
+    monkeypatch.setattr(rospy, "resolve_name", lambda name: f"/{name}")
+    monkeypatch.setattr(rospy, "get_param", values.__getitem__)
+    monkeypatch.setattr(rospy, "get_param_cached", lambda key: values.get(key, {}))
+    monkeypatch.setattr(rospy, "get_param_names", list)
+    monkeypatch.setattr(time, "monotonic", lambda: values["wall"])
+    return values
+
+
+def test_a_change_is_obeyed_at_the_next_tick_of_real_time(told: dict[str, float]) -> None:
+    parameters = LiveSeedParameters()
+    told["/robot_max_speed"] = 0.3
+    assert parameters.refresh().robot_max_speed == 0.5
+    told["wall"] += 0.05
+    assert parameters.refresh().robot_max_speed == 0.3
+
+
+def test_the_guardian_looks_at_each_tick(told: dict[str, float]) -> None:
+    parameters = LiveSeedParameters(guardian=True)
+    told["/robot_max_speed"] = 0.3
+    assert parameters.refresh().robot_max_speed == 0.3
