@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from roomba.configuration.frozen import Acute, Count, Frozen, NotNegative, Positive, Ratio
+from roomba.configuration.frozen import Acute, Count, Frozen, NotNegative, Positive
 
 
 class ControlConfig(Frozen):
@@ -94,8 +94,8 @@ class TrackingConfig(Frozen):
     """s; a faster one takes in addition what it drives in this time."""
     heading_gain: Positive = 6.0
     turning_speed: Positive = 4.0
-    turning_braking: Ratio = 0.8
-    """Share of the body's angular braking with which a turn on the spot ends."""
+    spot_braking: Positive = 13.6
+    """rad/s2; with which a turn on the spot ends."""
     corner_turning: Positive = 2.0
     """rad/s; the most in bends."""
     corner_acceleration: Positive = 7.0
@@ -106,7 +106,8 @@ class TrackingConfig(Frozen):
     """m/s; in the tightest bends."""
     longest_blend: Positive = 0.05
     """m; each point of the curve is a mean over at most this way to each side."""
-    aimed: Positive = 0.03
+    aimed: Positive = 0.02
+    """rad; what is left of a turn on the spot as it begins to drive."""
     arrival_tolerance: Positive = 0.003
     turn_in_place_angle: Acute = 0.6
     """rad; with a larger error of the heading it turns on the spot first."""

@@ -53,7 +53,7 @@ BENDING: Final = np.dtype(
         ("turning_braking", "f8"),  # rad/s2
         ("half_track", "f8"),  # m; from the middle to a wheel
         ("slowest", "f8"),  # m/s; no bend is driven more slowly
-        ("fastest", "f8"),  # m/s; of both wheels
+        ("fastest", "f8"),  # m/s; of a wheel
         ("acceleration", "f8"),  # m/s2
         ("braking", "f8"),  # m/s2
     ]
@@ -241,7 +241,7 @@ def _limit_speeds(samples: Any, section: Row, step: float, limits: Row) -> None:
 def _tightening(samples: Any, first: int, last: int, at: int, step: float) -> float:
     """Return by how much a bend tightens in a metre, 1/m2; less than 0 where it opens.
 
-    From one side to the other it tightens: the turning speed grows there, if to the other side.
+    Where it changes sides it counts as tightening: the turning speed grows there, to the other one.
     """
     low, high = max(at - 1, first), min(at + 1, last)
     before, after = samples[low].curvature, samples[high].curvature

@@ -36,7 +36,7 @@ class PathTracker:
         state.reach, state.reach_time = config.reach, config.reach_time
         state.gain = config.heading_gain
         state.turning_speed = min(config.turning_speed, body.max_angular_speed)
-        state.turning_braking = config.turning_braking * body.max_angular_deceleration
+        state.turning_braking = min(config.spot_braking, body.max_angular_deceleration)
         state.aimed = config.aimed
         state.there, state.period = config.arrival_tolerance, period
         state.askew, state.slowest = config.turn_in_place_angle, config.slowest

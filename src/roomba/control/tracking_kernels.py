@@ -193,10 +193,10 @@ def answer(state: Row, speed: float) -> None:
 
 
 @inner_part
-def stopping_speed(way: float, braking: float, late: float) -> float:
+def stopping_speed(way: float, braking: float, delay: float) -> float:
     """Return the speed from which it stops within ``way``: m/s and m, or rad/s and rad.
 
-    The drive obeys with a delay, s, for which it goes on: v T + v^2 / (2 b) = way.
+    The drive goes on for ``delay``, s, and brakes then: v delay + v^2 / (2 braking) = way.
     """
-    speed: float = braking * (math.sqrt(late * late + 2.0 * max(way, 0.0) / braking) - late)
+    speed: float = braking * (math.sqrt(delay * delay + 2.0 * max(way, 0.0) / braking) - delay)
     return speed

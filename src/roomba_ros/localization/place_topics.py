@@ -26,10 +26,10 @@ class PlaceTopics:
     """Tells where the robot is.
 
     Publishes: ``position`` (RobotPosition, 10 Hz), ``pose`` (PoseStamped, 20 Hz, map frame),
-    ``amcl_pose`` (PoseWithCovarianceStamped, 10 Hz), ``localization`` (Localization, at a change
-    and 1 Hz, latched), ``particlecloud`` (PoseArray, where it may be, 2 Hz while heard),
+    ``amcl_pose`` (PoseWithCovarianceStamped, 10 Hz while heard), ``localization`` (Localization, at
+    a change and 1 Hz, latched), ``particlecloud`` (PoseArray, where it may be, 2 Hz while heard),
     ``footprint`` (PolygonStamped, the body's outline on the map, 10 Hz while heard),
-    ``/tf`` (map -> odom, 10 Hz).
+    ``/tf`` (map -> odom, 10 Hz while heard).
     """
 
     def __init__(self, periods: PeriodsConfig, radius: float) -> None:

@@ -25,8 +25,8 @@ from roomba.files.shipped import CONFIGURATION
 _LOOK_PERIOD = 0.5
 """s of wall time between two looks for what may have been set newly."""
 _READ_PERIOD = 0.04
-"""s of wall time between two looks of a node that is no guardian: each tick in real time. Ticks of
-a clock that is faster would take a tenth longer by that."""
+"""s of wall time between two looks of a node that is no guardian: less than a tick in real time.
+By a faster clock a look at each tick would cost a tenth of it."""
 
 
 def read_seed_parameters() -> SeedParameters:
@@ -136,7 +136,10 @@ class LiveSeedParameters:
         self._seen = self._raw()
 
     def refresh(self) -> SeedParameters:
-        """Take over what was changed since the last look; return what is in force."""
+        """Take over what was changed since the last look; return what is in force.
+
+        But for the guardian there are 0.04 s of wall time between two looks.
+        """
         now = time.monotonic()
         if not self._guardian and now - self._read < _READ_PERIOD:
             return self.values

@@ -126,11 +126,11 @@ class BodyTopics:
         newest = told[-1] if told else None
         return [
             Readings(
-                each.stamp,
-                each.pose,
-                each.twist,
-                _turning_at(each.stamp, gyro),
-                self._scan_by(each.stamp) if each is newest else None,
+                time=each.stamp,
+                odometry=each.pose,
+                twist=each.twist,
+                turning=_turning_at(each.stamp, gyro),
+                scan=self._scan_by(each.stamp) if each is newest else None,
                 **others,
             )
             for each in told

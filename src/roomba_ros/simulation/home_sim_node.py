@@ -72,8 +72,8 @@ class HomeSimNode:
 
     Publishes: ``/clock`` (20 Hz), ``map`` (latched), ``station_pose`` (PoseStamped, latched: where
     the docked robot stands on that map, its nose to the station), ``odom`` (20 Hz, by the wheel
-    encoders), ``/tf`` (odom -> base_link, and of that the wheels), ``/tf_static`` (where the
-    sensors are on the body), and what :class:`SensorTopics`, :class:`StationLink`,
+    encoders), ``/tf`` (while heard: odom -> base_link, and of that the wheels), ``/tf_static``
+    (where the sensors are on the body), and what :class:`SensorTopics`, :class:`StationLink`,
     :class:`CameraTopics` and :class:`TruthTopics` tell.
     Subscribes: what :class:`DriveLink` hears (``cmd_vel_out``, ``emergency_stop``), and
     :class:`StationLink` (``emptying_wanted``); ``pose``
@@ -176,7 +176,7 @@ class HomeSimNode:
         self._station.tell(self._ticks)
         self._truth.tell(now, self._ticks, observation)
         if self._owns_clock:
-            # Last: who ticks by it has heard what was sensed.
+            # Last: a node that ticks by it mostly has what was sensed. Topics have no order.
             self._clock_publisher.publish(rospy.Time(nsecs=self._clock))
 
     def _tell_transforms(self, now: float, observation: Observation) -> None:

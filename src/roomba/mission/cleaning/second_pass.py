@@ -18,7 +18,7 @@ Mask = NDArray[np.bool_]
 
 
 class SecondPass:
-    """Has dirty floor swept once more where that is worth the way, each place once in a pass."""
+    """Plans another sweep over dirty floor where that is worth the way, once a pass for a place."""
 
     def __init__(self, dirty: DirtyFloor, ledger: CoverageLedger, config: CleaningConfig) -> None:
         """Look at what ``dirty`` tells; the ``ledger`` is told what is swept anew."""
@@ -47,7 +47,9 @@ class SecondPass:
         path, again = np.vstack((here, rest)), None
         for patch in patches:
             floor = patch.floor & reachable
-            longer = self._with(context, path, patch, floor, obstacles) if floor.any() else None
+            longer = (
+                self._with_detour(context, path, patch, floor, obstacles) if floor.any() else None
+            )
             if longer is not None:
                 path = again = longer
                 self._dirty.note_again(patch)
@@ -70,7 +72,7 @@ class SecondPass:
             self._ledger.sweep_anew(again)
         return again
 
-    def _with(
+    def _with_detour(
         self,
         context: PlanningContext,
         path: Floats,

@@ -156,7 +156,10 @@ class PlanningContext:
         return [*obstacles, *closed_gaps(obstacles, self.reach, self._gap_spare)]
 
     def reachable(self, here: Point, obstacles: Sequence[RoundObstacle]) -> Mask:
-        """Return what can be cleaned from a place, over ``frame``, among what no map shows."""
+        """Return what can be cleaned from a place, over ``frame``, among what no map shows.
+
+        Between ``obstacles`` all gaps count that the body fits through: see with_closed_gaps.
+        """
         return self.floor.with_obstacles(obstacles).coverable(here)
 
     def has_new_on(self, points: NDArray[np.float64], occupancy: OccupancyMap) -> bool:

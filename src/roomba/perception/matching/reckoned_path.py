@@ -105,16 +105,17 @@ def pose_at(path: ReckonedPath, stamp: float, pose: Floats) -> bool:
 class Stretch(NamedTuple):
     """A part of the path along which the robot goes on evenly.
 
-    Its pose at ``stamp``, s, in m and rad, what of each passes in a second, and until when, s.
+    It is at x, y, m, theta, rad, at ``stamp``, s, and moves by ``speed_x``, ``speed_y``, m/s, and
+    ``turning``, rad/s, before ``until``, s.
     """
 
     stamp: float
     x: float
     y: float
     theta: float
-    to_x: float
-    to_y: float
-    turn: float
+    speed_x: float
+    speed_y: float
+    turning: float
     until: float
 
 
@@ -123,7 +124,7 @@ def stretch_at(path: ReckonedPath, stamp: float) -> Stretch:
     """Return where the robot is from a time on, also a little before or beyond all that is known.
 
     Before all poses it stands at the oldest one; beyond them it goes on as between the newest two,
-    for _AHEAD s, and stands then.
+    for half a second, and stands then.
     """
     rows, ends = path.rows, path.ends
     size, newest, count = rows.shape[0], ends[_NEWEST], ends[_COUNT]
@@ -138,18 +139,19 @@ def stretch_at(path: ReckonedPath, stamp: float) -> Stretch:
     begin, x, y, theta = rows[earlier, 0], rows[earlier, 1], rows[earlier, 2], rows[earlier, 3]
     if begin > stamp:
         return Stretch(begin, x, y, theta, 0.0, 0.0, 0.0, begin)
-    until = rows[later, 0]
-    if later < 0:
-        if count == 1:
-            return Stretch(begin, x, y, theta, 0.0, 0.0, 0.0, math.inf)
+    if count == 1:
+        return Stretch(begin, x, y, theta, 0.0, 0.0, 0.0, math.inf)
+    if later >= 0:
+        until = rows[later, 0]
+    else:
         earlier, later, until = (newest - 1) % size, newest, begin + _AHEAD
     seconds = rows[later, 0] - rows[earlier, 0]
-    to_x = (rows[later, 1] - rows[earlier, 1]) / seconds
-    to_y = (rows[later, 2] - rows[earlier, 2]) / seconds
-    turn = wrapped(rows[later, 3] - rows[earlier, 3]) / seconds
+    speed_x = (rows[later, 1] - rows[earlier, 1]) / seconds
+    speed_y = (rows[later, 2] - rows[earlier, 2]) / seconds
+    turning = wrapped(rows[later, 3] - rows[earlier, 3]) / seconds
     if stamp < until:
-        return Stretch(begin, x, y, theta, to_x, to_y, turn, until)
-    x, y, theta = x + _AHEAD * to_x, y + _AHEAD * to_y, theta + _AHEAD * turn
+        return Stretch(begin, x, y, theta, speed_x, speed_y, turning, until)
+    x, y, theta = x + _AHEAD * speed_x, y + _AHEAD * speed_y, theta + _AHEAD * turning
     return Stretch(until, x, y, theta, 0.0, 0.0, 0.0, math.inf)
 
 
@@ -158,7 +160,7 @@ def pose_in(stretch: Stretch, stamp: float) -> tuple[float, float, float]:
     """Return the pose at a time within a stretch; theta is not wrapped."""
     since = stamp - stretch.stamp
     return (
-        stretch.x + since * stretch.to_x,
-        stretch.y + since * stretch.to_y,
-        stretch.theta + since * stretch.turn,
+        stretch.x + since * stretch.speed_x,
+        stretch.y + since * stretch.speed_y,
+        stretch.theta + since * stretch.turning,
     )

@@ -106,7 +106,7 @@ def _see_from_first(
         off_y = y - first_y + sine * arm_x + (cosine - 1.0) * arm_y
         away_x = back_cosine * off_x + back_sine * off_y
         away_y = back_cosine * off_y - back_sine * off_x
-        # The end in that frame, turned so that the beam's direction is ahead.
+        # The same, and the end, as seen along the beam's direction.
         along, across = lidar.directions[beam, 0], lidar.directions[beam, 1]
         ahead = length * cosine + along * away_x + across * away_y
         aside = length * sine + along * away_y - across * away_x

@@ -20,27 +20,6 @@ def note_dirty_patch(dirt: DirtMap) -> None:
             dirt.note(x, y, 4000.0, 0.2)
 
 
-def test_where_it_was_very_dirty_it_cleans_once_more() -> None:
-    place = context()
-    dirt = DirtMap(place.occupancy)
-    clean = cleaning(place=place, dirt=dirt)
-    for y in np.arange(0.1, 2.4, 0.2):
-        for x in np.arange(0.1, 2.9, 0.2):
-            dirt.note(float(x), float(y), 20.0, 0.2)
-    note_dirty_patch(dirt)
-    points = clean.next_path(HERE, [])
-    assert points is not None
-    here = drive(clean, points)
-    again = clean.next_path(here, [])
-    assert again is not None
-    near = np.hypot(*(again - (1.0, 0.5)).T).min()
-    assert near < 0.25
-    assert float(np.hypot(*np.diff(again, axis=0).T).sum()) < 6.0
-    drive(clean, again)
-    # Once is enough.
-    assert clean.next_path(HERE, []) is None
-
-
 def with_dirty_patch(config: CleaningConfig | None = None) -> Cleaning:
     """A clean that drove over all of HOME, and found six cells dirty."""
     place = context()
@@ -54,6 +33,18 @@ def with_dirty_patch(config: CleaningConfig | None = None) -> Cleaning:
     assert points is not None
     drive(clean, points)
     return clean
+
+
+def test_where_it_was_very_dirty_it_cleans_once_more() -> None:
+    clean = with_dirty_patch()
+    again = clean.next_path(HERE, [])
+    assert again is not None
+    near = np.hypot(*(again - (1.0, 0.5)).T).min()
+    assert near < 0.25
+    assert float(np.hypot(*np.diff(again, axis=0).T).sum()) < 6.0
+    drive(clean, again)
+    # Once is enough.
+    assert clean.next_path(HERE, []) is None
 
 
 def test_dirty_floor_at_hand_is_cleaned_once_more_where_that_takes_the_least_way() -> None:

@@ -1,8 +1,8 @@
 """How far rays of the lidar can go on from a cell without meeting anything solid.
 
 For each cell and each of the four quadrants of directions: the side of the largest square of free
-cells that begins with this cell and extends along both axes that way. A ray that is in the cell and
-points there meets nothing inside of that square.
+cells that has this cell in its corner and extends along both axes that way. A ray that is in the
+cell and points there meets nothing inside of that square.
 """
 
 from __future__ import annotations
@@ -33,8 +33,12 @@ def free_squares(solid: NDArray[np.bool_]) -> NDArray[np.uint32]:
 
 @entry
 def _note_squares(solid: NDArray[np.bool_], squares: NDArray[np.uint32]) -> None:
+    """Fill in all squares: one is a cell longer than the least of the three that begin next to it.
+
+    Those are the squares of the next cell along either axis, and of the one diagonally ahead.
+    """
     rows, columns = solid.shape
-    for shift in range(0, 32, RIGHT):
+    for shift in (0, RIGHT, UP, RIGHT + UP):
         to_column = 1 if shift & RIGHT else -1
         to_row = 1 if shift & UP else -1
         for i in range(rows):

@@ -16,7 +16,7 @@ from roomba.world.engine.state.arrays import Row, Rows, Solid
 _TINY: Final = 1e-12
 """A direction with a smaller component never comes to a line across it."""
 _NEVER: Final = 1e30
-"""Cells of way for each cell along an axis that a ray goes across."""
+"""Cells of a ray for each cell along an axis that it goes across."""
 
 
 @inner_part
@@ -31,9 +31,9 @@ def ray_to_cells(
     """
     x, y = (x - home.left) / home.resolution, (y - home.bottom) / home.resolution
     column, row = math.floor(x), math.floor(y)
-    goes_right, goes_up = cosine > 0.0, sine > 0.0
+    goes_right, goes_up = cosine >= 0.0, sine >= 0.0
     shift = (RIGHT if goes_right else 0) + (UP if goes_up else 0)
-    per_column, per_row = way_for_each(cosine), way_for_each(sine)
+    per_column, per_row = inverse_of(cosine), inverse_of(sine)
     farthest = reach / home.resolution
     along, facing = 0.0, 1.0
     while along <= farthest:
@@ -59,11 +59,11 @@ def ray_to_cells(
 
 
 @inner_part
-def way_for_each(component: float) -> float:
-    """Return the way along a ray for each unit along an axis, signed as its component of that."""
+def inverse_of(component: float) -> float:
+    """Return 1 / component; for next to nothing a very large number of its sign."""
     if abs(component) > _TINY:
         return 1.0 / component
-    return _NEVER if component > 0.0 else -_NEVER
+    return _NEVER if component >= 0.0 else -_NEVER
 
 
 @part

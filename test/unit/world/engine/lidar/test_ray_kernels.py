@@ -29,6 +29,13 @@ def ray(
     return ray_kernels.ray_to_cells(cells, homes[0], x, y, math.cos(angle), math.sin(angle), reach)
 
 
+@entry
+def straight(
+    cells: Rows, homes: Rows, x: float, y: float, cosine: float, sine: float
+) -> tuple[float, float]:
+    return ray_kernels.ray_to_cells(cells, homes[0], x, y, cosine, sine, REACH)
+
+
 def home_of(solid: NDArray[np.bool_], left: float, bottom: float) -> tuple[Rows, Rows]:
     """The cells and the row of a home."""
     cells, homes = np.zeros(solid.size, CELL), np.zeros(1, HOME)
@@ -58,6 +65,12 @@ def test_a_ray_ends_where_plain_geometry_has_it(seed: int, density: float) -> No
         assert 0.0 <= facing <= 1.0
 
 
+def test_squares_larger_than_a_byte_tells_are_gone_through_piece_by_piece() -> None:
+    cells, homes = home_of(np.zeros((600, 600), np.bool_), 0.0, 0.0)
+    for angle, expected in ((0.0, 29.0), (0.25 * math.pi, 29.0 * math.sqrt(2.0))):
+        assert ray(cells, homes, 1.0, 1.0, angle, 50.0)[0] == pytest.approx(expected)
+
+
 def test_it_tells_how_squarely_it_meets_a_wall() -> None:
     cells, homes = home_of(np.zeros((20, 20), np.bool_), 0.0, 0.0)
     for angle in (0.3, math.pi - 0.3, math.pi + 0.3, -0.3):
@@ -65,6 +78,17 @@ def test_it_tells_how_squarely_it_meets_a_wall() -> None:
         assert ray(cells, homes, 0.5, 0.5, angle + math.pi / 2, REACH)[1] == pytest.approx(
             math.cos(0.3)
         )
+
+
+@pytest.mark.parametrize("is_across", [False, True])
+def test_a_ray_on_a_line_between_cells_is_in_those_above_it_or_right_of_it(is_across: bool) -> None:
+    for wall, expected in ((9, 0.5), (10, 0.0)):
+        solid = np.zeros((20, 20), np.bool_)
+        solid[wall, 12:] = True
+        cells, homes = home_of(solid.T if is_across else solid, 0.0, 0.0)
+        cosine, sine = (0.0, 1.0) if is_across else (1.0, 0.0)
+        found, _ = straight(cells, homes, 0.5, 0.5, cosine, sine)
+        assert found == pytest.approx(expected if expected else 0.1)
 
 
 def test_what_is_beyond_its_reach_is_not_met() -> None:

@@ -57,13 +57,17 @@ def slow(x: float, y: float, theta: float, beams: int = 360) -> NDArray[np.float
     return np.minimum(found, ranges_to_disc(x, y, theta, beams, DISC))
 
 
-def test_each_beam_is_measured_where_the_robot_was_at_its_time() -> None:
+@pytest.mark.parametrize("ahead", [0.0, -0.1])
+@pytest.mark.parametrize(("speed", "turning"), [(0.25, 1.1), (0.25, -0.4), (0.0, 1.5), (0.25, 0.0)])
+def test_each_beam_is_measured_where_the_lidar_was_at_its_time(
+    ahead: float, speed: float, turning: float
+) -> None:
     home = room_home(
         blocks=((1.0, 1.0, 1.3, 1.2),), moving=[block_that_moves(pose=Pose(*BOX), size=SIZE)]
     )
-    world = Simulator(home, robot(), start=START)
+    lidar = LidarConfig(rate=4.0, sweep_time=0.25, mount_ahead=ahead)
+    world = Simulator(home, robot(lidar), start=START)
     world.place_obstacle(*DISC)
-    speed, turning = 0.25, 1.1
     for _ in range(5):
         scan = next_scan(world, Twist(speed, turning))
     seen = world.observe()
@@ -73,9 +77,10 @@ def test_each_beam_is_measured_where_the_robot_was_at_its_time() -> None:
         # At constant speeds the way is a circle; back from where the robot is now.
         ago = seen.time - (seen.scan_stamp + beam * 0.25 / 360)
         theta = seen.pose.theta - turning * ago
-        radius = speed / turning
-        x = seen.pose.x - radius * (math.sin(seen.pose.theta) - math.sin(theta))
-        y = seen.pose.y + radius * (math.cos(seen.pose.theta) - math.cos(theta))
+        chord = speed * ago * float(np.sinc(0.5 * turning * ago / math.pi))
+        along = seen.pose.theta - 0.5 * turning * ago
+        x = seen.pose.x - chord * math.cos(along) + ahead * math.cos(theta)
+        y = seen.pose.y - chord * math.sin(along) + ahead * math.sin(theta)
         wrong += abs(float(scan[beam]) - slow(x, y, theta)[beam]) > 1e-3
     # A beam that just grazes a corner may see past it.
     assert wrong <= 1
