@@ -1,4 +1,7 @@
-"""Single rays among cells, against plain geometry; boxes and discs are tested with whole sweeps."""
+"""Single rays among cells, against plain geometry; boxes and discs are tested with whole sweeps.
+
+What is compiled here is kept nowhere: outside of the package it would stay as its parts change.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.compilation import entry
+from roomba.compilation import compiled
 from roomba.grid import GridFrame
 from roomba.world.engine.lidar import ray_kernels
 from roomba.world.engine.lidar.free_squares import free_squares
@@ -22,14 +25,14 @@ SIZE = 0.05
 REACH = 30.0
 
 
-@entry
+@compiled()
 def ray(
     cells: Rows, homes: Rows, x: float, y: float, angle: float, reach: float
 ) -> tuple[float, float]:
     return ray_kernels.ray_to_cells(cells, homes[0], x, y, math.cos(angle), math.sin(angle), reach)
 
 
-@entry
+@compiled()
 def straight(
     cells: Rows, homes: Rows, x: float, y: float, cosine: float, sine: float
 ) -> tuple[float, float]:
