@@ -40,7 +40,7 @@ _LEAST_WAY = 0.05
 
 @dataclass(frozen=True)
 class Drive:
-    """A fleet at work: ``robots`` with a home each, lidar at ``scan_rate`` Hz.
+    """A fleet at work: ``robots`` with a home each, lidar at ``scan_rate`` Hz or another one.
 
     They drive straight on for a call, or turn on the spot for one, at random; so they bump. Their
     sensors are ideal, as those of all peers are, if not told otherwise.
@@ -50,13 +50,21 @@ class Drive:
     scan_rate: float = 10.0
     threads: int = 1
     sensors: Literal["ideal", "noisy"] = "ideal"
+    lidar: str | None = None
+
+    @property
+    def config(self) -> SimulatedRobotConfig:
+        """The robots as they are simulated."""
+        if self.lidar is not None:
+            return ROBOT.with_lidar(self.lidar).with_sensors(self.sensors)
+        return config_of(self.scan_rate, self.sensors)
 
     def work(self, home: Home) -> Work:
         """Return the work; units are steps of one robot."""
         floor = Floor(home.name, home.solid, home.frame)
         fleet = Fleet(
             [home] * self.robots,
-            config_of(self.scan_rate, self.sensors),
+            self.config,
             starts=free_poses(floor, self.robots, room=0.3),
             threads=self.threads,
         )

@@ -53,7 +53,7 @@ def measure(bench: Bench) -> list[Record]:
                 gain(row, "mujoco", _OVER_MUJOCO),
                 gain(row, "ir-sim (boxes)", _OVER_IRSIM),
             ]
-    records.append(_noise_row(bench, home))
+    records += [_noise_row(bench, home), _turning_lidar_row(bench, home)]
     bench.say("fleets")
     records += _fleet_rows(bench, home)
     records += _building_rows(bench)
@@ -93,6 +93,18 @@ def _noise_row(bench: Bench, home: Home) -> Record:
     peer = PeerFigure("ours, ideal sensors", "", without.rate, without.error)
     case = "apartment, 20 Hz steps, lidar at 10 Hz, one core, with noise"
     return _steps_row(case, with_noise, (peer,))
+
+
+def _turning_lidar_row(bench: Bench, home: Home) -> Record:
+    """Return steps with the default lidar, whose beams each have a pose, beside one without."""
+    at_once = Drive(robots=_TOGETHER, sensors="noisy")
+    turning = replace(at_once, lidar="lds_02")
+    of_turning, of_other = bench.compete(
+        [Local("ours", _maker(turning, home)), Local("ours, at once", _maker(at_once, home))]
+    )
+    peer = PeerFigure("ours, a lidar that measures at once", "", of_other.rate, of_other.error)
+    case = "apartment, 20 Hz steps, lidar lds_02 that turns, one core, with noise"
+    return _steps_row(case, of_turning, (peer,))
 
 
 def _fleet_rows(bench: Bench, home: Home) -> list[Record]:
