@@ -38,7 +38,7 @@ _IMPORT: Final = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class SourceFile:
-    """What a file is: its ``content`` hashed, and the files, from the package on, it imports from.
+    """What a file is: its ``content`` hashed, and the package's files it imports from, by path.
 
     It is known to be so while its time of change, ns, and its size, bytes, stay.
     """
@@ -59,8 +59,12 @@ class Sources:
         self._found: dict[str, SourceFile] = {}
 
     def key(self, file: Path) -> str:
-        """Return a name for the state of a file and of all that it imports, directly or not."""
-        first = str(file.relative_to(self._package))
+        """Return a name for the state of a file and of all that it imports, directly or not.
+
+        The file may be one of another folder, which imports from the package.
+        """
+        is_own = self._package in file.parents
+        first = str(file.relative_to(self._package) if is_own else file.absolute())
         reached, left = {first}, [first]
         while left:
             more = set(self._source(left.pop()).imports) - reached
@@ -130,14 +134,17 @@ def _read(known: Path) -> dict[str, SourceFile]:
 def kept_by_sources(file: Path) -> Iterator[None]:
     """Let numba keep what is compiled meanwhile of a file in the folder for its sources.
 
-    Without a folder that numba was told, and for files of others, it keeps that where it likes.
+    Without a folder that numba was told, and for what stands in no file, it keeps that where it
+    likes. A file of another folder, such as a stage of planning of a user's own, counts with the
+    parts of this package that it imports.
     """
     before = _NUMBA.CACHE_DIR
-    if not before or PACKAGE not in file.parents:
+    if not before or not file.is_file():
         yield
         return
     sources = _sources(before)
-    name = ".".join(file.relative_to(PACKAGE).with_suffix("").parts)
+    within = file.relative_to(PACKAGE) if PACKAGE in file.parents else Path("other", file.name)
+    name = ".".join(within.with_suffix("").parts)
     _NUMBA.CACHE_DIR = os.path.join(before, f"{name}-{sources.key(file)}")
     sources.remember()
     try:

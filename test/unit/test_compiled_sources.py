@@ -96,14 +96,26 @@ def test_what_is_known_may_be_damaged(package: Path, tmp_path: Path, text: str) 
     assert len(json.loads(known.read_text())) == 5
 
 
+def test_a_file_of_another_folder_counts_with_what_it_imports(package: Path) -> None:
+    other = package.parent / "other.py"
+    other.write_text("from roomba.b import one\n")
+    before = Sources(package).key(other)
+    assert before == Sources(package).key(other)
+    (package / "c/d.py").write_text("# not imported\n")
+    assert Sources(package).key(other) == before
+    (package / "e.py").write_text("number = 22\n")
+    assert Sources(package).key(other) != before
+
+
+@pytest.mark.parametrize("module", ["roomba.outer", "outer"])
 def test_a_part_that_changed_is_compiled_anew_and_one_that_changed_back_is_not(
-    tmp_path: Path,
+    tmp_path: Path, module: str
 ) -> None:
     package = tmp_path / "roomba"
     package.mkdir()
     for name in ("__init__.py", "compilation.py", "compiled_sources.py"):
         shutil.copy(PACKAGE / name, package)
-    (package / "outer.py").write_text(
+    (tmp_path / f"{module.replace('.', '/')}.py").write_text(
         "from roomba.compilation import entry\nfrom roomba.inner import added\n\n\n"
         "@entry\ndef more(value):\n    return added(value)\n"
     )
@@ -111,18 +123,18 @@ def test_a_part_that_changed_is_compiled_anew_and_one_that_changed_back_is_not(
     text = "from roomba.compilation import part\n\n\n@part\ndef added(value):\n"
     text += "    return value + 1.0\n"
     inner.write_text(text)
-    assert answer_of(tmp_path) == (3.0, 0, 1)
-    assert answer_of(tmp_path) == (3.0, 1, 0)
+    assert answer_of(module, tmp_path) == (3.0, 0, 1)
+    assert answer_of(module, tmp_path) == (3.0, 1, 0)
     inner.write_text(text.replace("1.0", "2.0"))
-    assert answer_of(tmp_path) == (4.0, 0, 1)
+    assert answer_of(module, tmp_path) == (4.0, 0, 1)
     inner.write_text(text)
-    assert answer_of(tmp_path) == (3.0, 1, 0)
+    assert answer_of(module, tmp_path) == (3.0, 1, 0)
 
 
-def answer_of(folder: Path) -> Answer:
-    """What a new process makes of ``outer`` of the package in a folder."""
+def answer_of(module: str, folder: Path) -> Answer:
+    """What a new process makes of ``more`` of a module that imports from a folder's package."""
     program = (
-        "from roomba.outer import more; import json; value = more(2.0); stats = more.stats; "
+        f"from {module} import more; import json; value = more(2.0); stats = more.stats; "
         "print(json.dumps([value, sum(stats.cache_hits.values()), "
         "sum(stats.cache_misses.values())]))"
     )
