@@ -59,12 +59,12 @@ def _draw_along(along: Axes, samples: NDArray[np.void]) -> None:
     stations = np.concatenate(([0.0], np.cumsum(steps)))
     along.plot(stations, samples["curvature"], color=BLUE, label="curvature, 1/m")
     along.plot([], [], color=GREEN, label="speed, m/s")
-    along.set(xlabel="along the curve, m", ylabel="curvature, 1/m", ylim=(-6.0, 24.0))
+    along.set(xlabel="along the curve, m", ylabel="curvature, 1/m", ylim=(-12.0, 24.0))
     speeds = along.twinx()
     speeds.plot(stations, np.minimum(samples["speed"], _SPEED), color=GREEN)
-    speeds.set(ylabel="speed, m/s", ylim=(-0.1, 0.4))
+    speeds.set(ylabel="speed, m/s", ylim=(-0.2, 0.4), yticks=(0.0, 0.1, 0.2, 0.3, 0.4))
     along.set_title("How it bends, and the speed that this allows")
-    along.legend(loc="upper right")
+    along.legend(loc="lower left")
 
 
 def _driven(home: Home, tracker: PathTracker) -> tuple[Floats, Floats]:
