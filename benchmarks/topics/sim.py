@@ -87,24 +87,26 @@ def _noise_row(bench: Bench, home: Home) -> Record:
     """Return steps with all sensors' noise, and wheels that slip, beside the same without."""
     ideal = Drive(robots=_TOGETHER)
     noisy = replace(ideal, sensors="noisy")
-    with_noise, without = bench.compete(
-        [Local("ours", _maker(noisy, home)), Local("ours, ideal sensors", _maker(ideal, home))]
-    )
-    peer = PeerFigure("ours, ideal sensors", "", without.rate, without.error)
     case = "apartment, 20 Hz steps, lidar at 10 Hz, one core, with noise"
-    return _steps_row(case, with_noise, (peer,))
+    return _row_beside(bench, home, case, noisy, "ours, ideal sensors", ideal)
 
 
 def _turning_lidar_row(bench: Bench, home: Home) -> Record:
     """Return steps with the default lidar, whose beams each have a pose, beside one without."""
     at_once = Drive(robots=_TOGETHER, sensors="noisy")
     turning = replace(at_once, lidar="lds_02")
-    of_turning, of_other = bench.compete(
-        [Local("ours", _maker(turning, home)), Local("ours, at once", _maker(at_once, home))]
-    )
-    peer = PeerFigure("ours, a lidar that measures at once", "", of_other.rate, of_other.error)
     case = "apartment, 20 Hz steps, lidar lds_02 that turns, one core, with noise"
-    return _steps_row(case, of_turning, (peer,))
+    return _row_beside(bench, home, case, turning, "ours, a lidar that measures at once", at_once)
+
+
+def _row_beside(
+    bench: Bench, home: Home, case: str, drive: Drive, name: str, other: Drive
+) -> Record:
+    """Return the steps of a drive beside those of another one of ours, of this name."""
+    ours, beside = bench.compete(
+        [Local("ours", _maker(drive, home)), Local(name, _maker(other, home))]
+    )
+    return _steps_row(case, ours, (PeerFigure(name, "", beside.rate, beside.error),))
 
 
 def _fleet_rows(bench: Bench, home: Home) -> list[Record]:

@@ -80,26 +80,36 @@ def pose_at(path: ReckonedPath, stamp: float, pose: Floats) -> bool:
 
     Returns whether it is known: not of a time before all of them.
     """
-    rows, ends = path.rows, path.ends
-    size, newest = rows.shape[0], ends[_NEWEST]
-    later = newest
-    for back in range(ends[_COUNT]):
-        earlier = (newest - back) % size
-        if rows[earlier, 0] > stamp:
-            later = earlier
-            continue
-        if back == 0:
-            for axis in range(3):
-                pose[axis] = rows[newest, 1 + axis]
-            return True
-        share = (stamp - rows[earlier, 0]) / (rows[later, 0] - rows[earlier, 0])
-        for axis in range(1, 3):
-            begin = rows[earlier, axis]
-            pose[axis - 1] = begin + share * (rows[later, axis] - begin)
-        turn = wrapped(rows[later, 3] - rows[earlier, 3])
-        pose[2] = wrapped(rows[earlier, 3] + share * turn)
+    rows = path.rows
+    earlier, later = _rows_around(path, stamp)
+    if earlier < 0:
+        return False
+    if later < 0:
+        for axis in range(3):
+            pose[axis] = rows[earlier, 1 + axis]
         return True
-    return False
+    share = (stamp - rows[earlier, 0]) / (rows[later, 0] - rows[earlier, 0])
+    for axis in range(1, 3):
+        begin = rows[earlier, axis]
+        pose[axis - 1] = begin + share * (rows[later, axis] - begin)
+    turn = wrapped(rows[later, 3] - rows[earlier, 3])
+    pose[2] = wrapped(rows[earlier, 3] + share * turn)
+    return True
+
+
+@inner_part
+def _rows_around(path: ReckonedPath, stamp: float) -> tuple[int, int]:
+    """Return the rows of the newest pose that is not after a time, and of the next one.
+
+    Either is -1 if there is none.
+    """
+    size, newest, later = path.rows.shape[0], path.ends[_NEWEST], -1
+    for back in range(path.ends[_COUNT]):
+        row = (newest - back) % size
+        if not path.rows[row, 0] > stamp:
+            return row, later
+        later = row
+    return -1, later
 
 
 class Stretch(NamedTuple):
@@ -130,14 +140,10 @@ def stretch_at(path: ReckonedPath, stamp: float) -> Stretch:
     size, newest, count = rows.shape[0], ends[_NEWEST], ends[_COUNT]
     if count == 0:
         return Stretch(stamp, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, math.inf)
-    earlier, later = newest, -1
-    for back in range(count):
-        earlier = (newest - back) % size
-        if rows[earlier, 0] <= stamp:
-            break
-        later = earlier
-    begin, x, y, theta = rows[earlier, 0], rows[earlier, 1], rows[earlier, 2], rows[earlier, 3]
-    if begin > stamp:
+    earlier, later = _rows_around(path, stamp)
+    row = earlier if earlier >= 0 else later
+    begin, x, y, theta = rows[row, 0], rows[row, 1], rows[row, 2], rows[row, 3]
+    if earlier < 0:
         return Stretch(begin, x, y, theta, 0.0, 0.0, 0.0, begin)
     if count == 1:
         return Stretch(begin, x, y, theta, 0.0, 0.0, 0.0, math.inf)
