@@ -91,16 +91,12 @@ compiled_stamp() {
 }
 
 # What does not compile is for the tests to report; a set-up can do without, it only makes the first start slow.
-# First what the first clean needs, in two halves at once, for two cores, each in an order in which the other half finds
-# much compiled.
 compile_loops() { # library|runtime|dev
-  local clean half=bursts stamp
+  local half=bursts stamp
   stamp=$(compiled_stamp)
   enter_what_there_is
   [[ $1 == library ]] || half=ticks # what ROS calls tick by tick needs no bursts yet
-  python3 -m roomba.commands.trials.warm "$half" &
-  clean=$!
-  if python3 -m roomba.commands.warm_up && wait "$clean"; then
+  if python3 -m roomba.commands.first_use "$half"; then
     count_loops_left "$stamp" || true
   fi
 }

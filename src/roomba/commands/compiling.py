@@ -72,11 +72,12 @@ def left_to_compile() -> list[str]:
         f"{module}.{name}"
         for module in modules
         for name, value in vars(importlib.import_module(module)).items()
-        if is_jitted(value) and value.__module__ == module and not _is_kept(value)
+        if is_jitted(value) and value.__module__ == module and not is_kept(value)
     ]
 
 
-def _is_kept(dispatcher: Any) -> bool:
+def is_kept(dispatcher: Any) -> bool:
+    """Tell whether a function's code is kept; one that nothing is kept of counts as if it were."""
     folder = dispatcher.stats.cache_path
     return folder is None or any(Path(folder).glob(f"*.{dispatcher.__qualname__}-*.nbi"))
 

@@ -9,7 +9,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.configuration.localization import RecentSightConfig
 from roomba.control.path_tracker import PathTracker
 from roomba.control.tracking_kernels import TRACK
 from roomba.geometry import Pose
@@ -23,9 +22,7 @@ from roomba.mission.driving.progress_kernels import PROGRESS
 from roomba.mission.driving.way_ahead_kernels import AHEAD
 from roomba.mission.steady import Steady
 from roomba.perception.localization.localizer import Localizer
-from roomba.perception.localization.recent_sight import RecentSight
 from roomba.perception.matching.sweep import SWEEP_WORK
-from roomba.perception.slam.following.scan_follower import not_following
 from roomba.perception.slam.mapper import Mapper
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.robot.brain import Brain
@@ -64,7 +61,6 @@ class Burst:
         self._nowhere = _nowhere(brain)
         count = body.lidar.beams
         self._sweep = np.empty(count, np.float32), np.empty((SWEEP_WORK, max(count, 3)))
-        self._not_following = not_following(brain.beams_of(body.lidar))
 
     def run(self) -> Floats:
         """Compute ticks until one is not steady; return their rows, float64 [ticks, PASSED]."""
@@ -143,7 +139,6 @@ class Burst:
         row["clock"] = brain.readings.time - self._body.simulator.time
         row["scans"], row["seen_at"] = self._body.scans, brain.keeper.scans.seen_at
         mapper = self._mapper
-        row["is_mapping"] = mapper is not None
         if mapper is not None:
             at = mapper.at_scan
             row["at_scan"] = at.x, at.y, at.theta
@@ -159,11 +154,9 @@ class Burst:
     def _place(self) -> PlaceParts:
         brain = self._brain
         beams = brain.beams_of(brain.keeper.lidar(self._body.lidar))
-        sights, following = _NO_SIGHTS, self._not_following
-        if brain.localizer is not None:
-            sights = brain.localizer.sights(self._body.lidar.beams)
-        if self._mapper is not None:
-            following = self._mapper.following
+        localizer, mapper = brain.localizer, self._mapper
+        sights = None if localizer is None else localizer.sights(self._body.lidar.beams)
+        following = None if mapper is None else mapper.following
         place = brain.keeper.place
         assert isinstance(place, Localizer | Mapper)
         return PlaceParts(
@@ -278,5 +271,3 @@ def _nowhere(brain: Brain) -> Drive:
 
 
 _UNWATCHED: Final = np.zeros(1, WATCH), np.zeros((1, 1), np.bool_)
-_NO_SIGHTS: Final = RecentSight(RecentSightConfig()).arrays
-"""A mapper doubts nothing."""

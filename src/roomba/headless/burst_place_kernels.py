@@ -1,4 +1,8 @@
-"""Knowing the place in a burst: wheels, gyro and scans, for a localizer and for a mapper."""
+"""Knowing the place in a burst: wheels, gyro and scans, for a localizer and for a mapper.
+
+A burst is compiled for one of the two. The other one's argument, ``sights`` of a localizer or
+``following`` of a mapper, is None, and numba leaves out what is done only where it is not.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import allocating_part, inner_part
-from roomba.headless.burst_state import PlaceParts, Sight, World
+from roomba.headless.burst_state import PlaceParts, Rows, Sight, World
 from roomba.perception.localization.belief.correct_kernels import (
     calibrate,
     correct,
@@ -16,21 +20,27 @@ from roomba.perception.localization.belief.correct_kernels import (
     is_calm,
 )
 from roomba.perception.localization.belief.reckon_kernels import reckon_on
-from roomba.perception.localization.recent_sight_kernels import note_sight
+from roomba.perception.localization.recent_sight_kernels import Sights, note_sight
 from roomba.perception.matching.pose_kernels import beyond, pose_then
 from roomba.perception.matching.sweep import at_once
 from roomba.perception.slam.following.follow_kernels import moved_since
-from roomba.perception.slam.following.scan_kernels import IS_DONE, IS_LEFT, take_scan
+from roomba.perception.slam.following.scan_kernels import IS_DONE, IS_LEFT, Following, take_scan
 from roomba.perception.things.kernels import note
 
 
 @inner_part
 def believed(burst: Any, place: PlaceParts) -> tuple[float, float, float]:
     """Return where the robot takes itself to be, x, y, theta, map."""
-    if burst.is_mapping:
+    return pose_of(burst, place.belief, place.following)
+
+
+@inner_part
+def pose_of(burst: Any, belief: Rows, following: Following | None) -> tuple[float, float, float]:
+    """Return the pose, x, y, theta, map, by what a localizer or a mapper knows of it."""
+    if following is not None:
         at = burst.at_scan
-        return moved_since(place.following.follower, place.belief, at[0], at[1], at[2])
-    pose: Any = place.belief[0].pose
+        return moved_since(following.follower, belief, at[0], at[1], at[2])
+    pose: Any = belief[0].pose
     return pose[0], pose[1], pose[2]
 
 
@@ -54,10 +64,33 @@ def follow(burst: Any, world: World, place: PlaceParts, sight: Sight, now: float
     if is_new and not 0.0 <= stamp - burst.seen_at < burst.apart:
         burst.seen_at = stamp
         ranges = world.state.ranges[0]
-        if burst.is_mapping:
-            return map_on(burst, place, sight, ranges, stamp)
-        return localize(burst, place, sight, ranges, stamp, now)
-    if burst.is_mapping:
+        return look(burst, place, place.sights, place.following, sight, ranges, stamp, now)
+    return is_sure(place, place.following, now)
+
+
+@allocating_part
+def look(
+    burst: Any,
+    place: PlaceParts,
+    sights: Sights | None,
+    following: Following | None,
+    sight: Sight,
+    ranges: NDArray[np.float32],
+    stamp: float,
+    now: float,
+) -> bool:
+    """Know the place better by a scan of a time, s; tell whether nothing is left to be done."""
+    if following is not None:
+        return map_on(burst, place, following, sight, ranges, stamp)
+    if sights is not None:
+        return localize(burst, place, sights, sight, ranges, stamp, now)
+    return False
+
+
+@inner_part
+def is_sure(place: PlaceParts, following: Following | None, now: float) -> bool:
+    """Tell whether the place is known well enough without a new scan; a mapper's always is."""
+    if following is not None:
         return True
     return bool(is_calm(place.belief, place.numbers, now))
 
@@ -66,6 +99,7 @@ def follow(burst: Any, world: World, place: PlaceParts, sight: Sight, now: float
 def localize(
     burst: Any,
     place: PlaceParts,
+    sights: Sights,
     sight: Sight,
     ranges: NDArray[np.float32],
     stamp: float,
@@ -88,7 +122,7 @@ def localize(
     if belief[0].calibration.is_lidar_due or not is_calm(belief, place.numbers, now):
         burst.is_left = True
         return False
-    note_sight(place.sights, stamp, reckoned, beams.ends, count)
+    note_sight(sights, stamp, reckoned, beams.ends, count)
     still, at = place.still if burst.is_late else ranges, burst.seen_from
     at[0], at[1], at[2] = pose_then(belief[0].pose, belief[0].reckoned, reckoned)
     note(sight.things, sight.field, sight.place, beams, still, ranges, at, burst.stride)
@@ -97,10 +131,14 @@ def localize(
 
 @inner_part
 def map_on(
-    burst: Any, place: PlaceParts, sight: Sight, ranges: NDArray[np.float32], stamp: float
+    burst: Any,
+    place: PlaceParts,
+    following: Following,
+    sight: Sight,
+    ranges: NDArray[np.float32],
+    stamp: float,
 ) -> bool:
     """Follow a mapper's place by a scan of a time, s; tell whether nothing is left to be done."""
-    following = place.following
     left = take_scan(following, stamp, ranges)
     if left != IS_DONE:
         burst.is_left, burst.is_followed = True, left != IS_LEFT

@@ -27,7 +27,6 @@ BURST: Final = np.dtype(
         ("apart", "f8"),  # s; at least, between two scans that are looked at
         ("stride", "i8"),  # scans that such a one stands for
         ("bin_capacity", "f8"),  # micrograms
-        ("is_mapping", "?"),  # whether the place is a mapper's
         ("is_late", "?"),  # whether scans are older than the tick at which they come
         ("is_turned", "?"),  # whether poses are told in another frame than the world's
         ("axes", "f8", (4,)),  # where the world's lies in it: x, y, cosine and sine of the turn
@@ -82,7 +81,7 @@ class World(NamedTuple):
 
 
 class PlaceParts(NamedTuple):
-    """What knows the place: ``sights`` counts for a localizer, ``following`` for a mapper.
+    """What knows the place: a localizer has ``sights``, a mapper what it is ``following``.
 
     In ``still``, float32 [beams], and ``work``, [SWEEP_WORK, beams], late scans are put together.
     """
@@ -91,8 +90,8 @@ class PlaceParts(NamedTuple):
     numbers: Rows
     path: ReckonedPath
     beams: LidarBeams
-    sights: Sights
-    following: Following
+    sights: Sights | None
+    following: Following | None
     still: NDArray[np.float32]
     work: Floats
 

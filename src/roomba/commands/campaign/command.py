@@ -66,9 +66,12 @@ def _run(options: CampaignOptions, words: Sequence[str]) -> int:
     from roomba.commands.campaign.running.runs import runs_of
     from roomba.commands.campaign.running.specification import read_campaign
     from roomba.commands.campaign.running.store import opened_store
+    from roomba.commands.first_use import require_compiled
 
     campaign = read_campaign(options.file)
     check_campaign(campaign, options.machines)
+    if options.machines.cluster is None:
+        require_compiled(is_quiet=options.quiet)
     runs = runs_of(campaign)
     with opened_store(options.out) as store:
         lost: Lost = []

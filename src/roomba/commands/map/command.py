@@ -67,8 +67,10 @@ def _without_bag(arguments: list[str] | None) -> list[str] | None:
 def _explore(options: MapOptions) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
     with nothing_thrown_away():
+        from roomba.commands.first_use import require_compiled
         from roomba.commands.map.runs import MapScene
 
+    require_compiled(is_quiet=options.output.quiet)
     scene = MapScene(options.trial)
     with progress("Exploring", options.output.quiet) as show:
         run = scene.run([_shown_by(show, scene)])

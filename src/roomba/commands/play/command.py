@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import Final
 
+from roomba.commands.first_use import require_compiled
 from roomba.commands.play.bumping import bumping_life
 from roomba.commands.play.living import add_robot_options, wanted_robot
 from roomba.commands.play.owned import (
@@ -46,6 +47,7 @@ def main(arguments: list[str] | None = None) -> int:
     end_as_by_ctrl_c()
     with contextlib.ExitStack() as until_end:
         try:
+            require_compiled(is_quiet=False)
             client, source, told = _robot(wanted, until_end, _repeat(arguments))
             file = wanted.smart_home
             smart_home = None if file is None else switched_on(client, file, _warn)

@@ -66,10 +66,12 @@ def _complain(text: str, status: int) -> int:
 def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
     with nothing_thrown_away():
+        from roomba.commands.first_use import require_compiled
         from roomba.commands.sim.state_samples import StateSamples
         from roomba.commands.trials.runs import TrialSetup
         from roomba.headless.burst import LONGEST_BURST
 
+    require_compiled(is_quiet=options.quiet)
     burst = LONGEST_BURST if options.bag is None else BAG_BURST
     setup, samples = TrialSetup(options.trial, burst), StateSamples()
     with contextlib.ExitStack() as stack:
@@ -128,8 +130,10 @@ def _tell_run(options: SimOptions, run: Run) -> None:
 
 
 def _run_homes(options: SimOptions, homes: int) -> int:
+    from roomba.commands.first_use import require_compiled
     from roomba.commands.trials.many import figures_of, run_many
 
+    require_compiled(is_quiet=options.quiet)
     first = options.trial.seed
     trials = [options.trial.with_seed(first + number) for number in range(homes)]
     figures: dict[int, Figures] = {}

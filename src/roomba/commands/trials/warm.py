@@ -50,21 +50,23 @@ def warm_up_half(longest_burst: int) -> None:
     """Walk, then clean it, with bursts of so many ticks; with 0, tick by tick as nodes do.
 
     First it walks: :mod:`roomba.commands.warm_up`, which may run beside it, begins with planning.
-    Then it makes a way shorter and rounds it off, which the other one comes to last: what both
-    begin to compile at once is compiled twice. The burst, the largest loop of all, comes last.
+    Then it does the last stages of a plan, which the other one comes to last: what both begin to
+    compile at once is compiled twice. The burst, the largest loop of all, comes last, and takes the
+    place of one of these stages, so that both halves take as long.
     """
     robot = HeadlessMission(closet(), longest_burst=longest_burst)
     robot.walk(0.9, 0.9)
-    _finish_a_plan()
+    _finish_a_plan(is_polished=not longest_burst)
     robot.clean()
 
 
-def _finish_a_plan() -> None:
+def _finish_a_plan(*, is_polished: bool) -> None:
     """Do the last stages of planning, on a way to and fro over free floor."""
     floor, config = np.ones((40, 40), np.bool_), CoverageConfig()
     way = np.array([[5.0, 5.0], [30.0, 5.0], [30.0, 12.0], [5.0, 12.0]])
-    for stage in (OUR_STAGES.polish, OUR_STAGES.rounding):
-        way = stage(way, floor, floor, 3.5, config)
+    if is_polished:
+        way = OUR_STAGES.polish(way, floor, floor, 3.5, config)
+    OUR_STAGES.rounding(way, floor, floor, 3.5, config)
 
 
 if __name__ == "__main__":

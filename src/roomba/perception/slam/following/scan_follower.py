@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mapping import FollowingConfig, MappingConfig
 from roomba.geometry import Pose
-from roomba.perception.localization.belief.belief import Rows, unknown_belief
+from roomba.perception.localization.belief.belief import Rows
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.range_noise import unknown_noise
-from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
+from roomba.perception.matching.reckoned_path import pose_at
 from roomba.perception.matching.sweep import SWEEP_WORK
-from roomba.perception.slam.following.finding_back_kernels import FINDING
 from roomba.perception.slam.following.follow_kernels import FOLLOWER, follow, moved_since
 from roomba.perception.slam.following.latency import no_latency
 from roomba.perception.slam.following.scan_kernels import (
@@ -26,7 +25,7 @@ from roomba.perception.slam.following.scan_kernels import (
     see_points,
 )
 from roomba.perception.slam.scan_matching.surface_kernels import POINT, room_for_sums
-from roomba.perception.slam.scan_matching.surfels import CELL, SurfelGrid
+from roomba.perception.slam.scan_matching.surfels import SurfelGrid
 
 Floats = NDArray[np.float64]
 
@@ -225,21 +224,3 @@ class ScanFollower:
 def least_points(beams: int, config: FollowingConfig) -> int:
     """Return how many points a scan of so many beams must have to count."""
     return min(config.least_points, max(config.fewest_points, beams // 4))
-
-
-def not_following(beams: LidarBeams) -> Following:
-    """Return what kernels get that follow no scans: a localizer needs none."""
-    return Following(
-        np.zeros(1, FOLLOWER),
-        unknown_belief(),
-        ReckonedPath.empty(),
-        unknown_noise(),
-        no_latency(),
-        np.zeros(1, FINDING),
-        SurfelGrid(CELL).arrays,
-        beams,
-        np.empty((0, POINT)),
-        room_for_sums(0),
-        np.empty(0, np.float32),
-        np.empty((SWEEP_WORK, 0)),
-    )
