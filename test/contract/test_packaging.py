@@ -1,12 +1,17 @@
-"""pyproject.toml, requirements.txt and setup.py agree about the Python packages."""
+"""What the files say of Python packages, and of the version, agrees."""
 
 from __future__ import annotations
 
 import re
 import subprocess
 import sys
+from datetime import datetime
 from pathlib import Path
 from xml.etree import ElementTree
+
+import pytest
+import yaml
+from catkin_pkg.changelog import get_changelog_from_path
 
 ROOT = Path(__file__).parents[2]
 OF_THE_DISTRIBUTION = {"numpy", "opencv-python-headless", "pyyaml", "tzdata"}
@@ -52,14 +57,50 @@ def test_package_xml_names_each_python_package() -> None:
     assert python == needed - {None}
 
 
-def test_the_version_is_that_of_package_xml() -> None:
+@pytest.mark.parametrize(
+    "command",
+    [(sys.executable, "setup.py", "--version"), ("./roomba", "version"), ("./roomba", "--version")],
+)
+def test_the_version_that_is_told_is_that_of_package_xml(command: tuple[str, ...]) -> None:
     done = subprocess.run(
-        [sys.executable, "setup.py", "--version"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=60.0,
+        command, cwd=ROOT, capture_output=True, text=True, check=True, timeout=60.0
     )
-    version = ElementTree.parse(ROOT / "package.xml").findtext("version")
-    assert done.stdout.split()[-1] == version
+    assert done.stdout.split()[-1] == version()
+
+
+def test_the_pages_name_that_version() -> None:
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    install = (ROOT / "docs" / "install.md").read_text(encoding="utf-8")
+    assert citation["version"] == version()
+    assert re.findall(r"roomba_robot-([0-9.]+)-py3", install) == [version()]
+
+
+def test_the_newest_release_of_the_changelog_is_that_version() -> None:
+    newest, date, _ = newest_release()
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert newest == version()
+    assert date.date() == citation["date-released"]
+
+
+def test_catkin_reads_each_entry_of_the_newest_release() -> None:
+    """It leaves out what is below a heading of its own."""
+    newest, date, content = newest_release()
+    text = (ROOT / "CHANGELOG.rst").read_text(encoding="utf-8")
+    sections = re.split(r"^(.+)\n-{5,}\n", text, flags=re.MULTILINE)
+    written = sections[sections.index(f"{newest} ({date:%Y-%m-%d})") + 1]
+    read = "\n".join(str(part) for part in content)
+    entries = re.compile(r"^\* ", re.MULTILINE)
+    assert len(entries.findall(written)) > 1
+    assert len(entries.findall(read)) == len(entries.findall(written))
+
+
+def newest_release() -> tuple[str, datetime, list[object]]:
+    """Return version, date and content of the newest release, as catkin reads the changelog."""
+    changelog = get_changelog_from_path(str(ROOT))
+    release: tuple[str, datetime, list[object]] = next(changelog.foreach_version(reverse=True))
+    return release
+
+
+def version() -> str | None:
+    """Return the version that package.xml says."""
+    return ElementTree.parse(ROOT / "package.xml").findtext("version")

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
-from fixtures.installation import Installation
+from fixtures.installation import REPOSITORY, Installation
 
 from roomba.files.shipped import HOMES
 
@@ -45,6 +46,11 @@ print(*sorted(path.relative_to(HOMES) for path in HOMES.rglob("*.*")))
     assert done.returncode == 0, done.stderr
     ours = sorted(str(path.relative_to(HOMES)) for path in HOMES.rglob("*.*"))
     assert done.stdout.split() == ours
+
+
+def test_it_tells_the_version_of_package_xml(installed: Installation) -> None:
+    version = ElementTree.parse(REPOSITORY / "package.xml").findtext("version")
+    assert installed.roomba("--version").stdout == f"roomba_robot {version}\n"
 
 
 def test_it_cleans_a_home_from_another_folder(installed: Installation) -> None:

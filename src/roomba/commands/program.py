@@ -9,6 +9,7 @@ import argparse
 import importlib
 import re
 import sys
+from importlib.metadata import version
 from pathlib import Path
 from typing import Final
 
@@ -71,6 +72,9 @@ def program() -> int:
     if command in ("help", "-h", "--help"):
         print(_usage(), end="")
         return 0
+    if command in ("version", "--version"):
+        print(f"roomba_robot {version('roomba_robot')}")
+        return 0
     if command in _DEMOS and "--demo" in arguments:
         return int(importlib.import_module(_DEMOS[command]).main(arguments))
     if command in _NEED_ROS:
@@ -106,7 +110,7 @@ def _usage() -> str:
     """Return the entries of the commands that are here."""
     _, listed, _ = _USAGE.read_text(encoding="utf-8").split("\n\n", 2)
     entries = re.split(r"\n(?=  \w)", listed)
-    here = {*_COMMANDS, *_DEMOS, "help"}
+    here = {*_COMMANDS, *_DEMOS, "version", "help"}
     kept = "\n".join(entry for entry in entries if entry.split()[0] in here)
     return f"usage: roomba COMMAND ...\n\n{kept.replace('./roomba', 'roomba')}\n\n{_ELSEWHERE}"
 
