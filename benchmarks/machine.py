@@ -10,6 +10,8 @@ from pathlib import Path
 import numba
 import numpy as np
 
+from roomba.cores import usable_cores
+
 
 @dataclass(frozen=True)
 class Machine:
@@ -23,7 +25,7 @@ class Machine:
     @classmethod
     def this(cls) -> Machine:
         """Describe this machine."""
-        return cls(_processor(), len(os.sched_getaffinity(0)), _memory(), os.getloadavg()[0])
+        return cls(_processor(), usable_cores(), _memory(), os.getloadavg()[0])
 
     def __str__(self) -> str:
         """Say it in a line."""

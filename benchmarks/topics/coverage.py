@@ -5,7 +5,6 @@ Everything is driven: closed loop with sensors, localization, planning and contr
 
 from __future__ import annotations
 
-import os
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from dataclasses import dataclass, field, replace
 from multiprocessing import get_context
@@ -41,6 +40,7 @@ from benchmarks.coverage.rows import (
 )
 from benchmarks.record import PeerFigure, Record
 from roomba.commands.trials.warm import warm_up
+from roomba.cores import usable_cores
 from roomba.world.home.home import Home
 
 _SHIPPED = ("empty", "lshape", "apartment", "flat", "studio", "family")
@@ -98,7 +98,7 @@ def measured(bench: Bench, extent: Extent) -> list[Record]:
             place.records += _timed_rows(place, extent)
         except Exception as error:
             place.records.append(broken_row(place.case.title, error))
-    at_once = len(os.sched_getaffinity(0))
+    at_once = usable_cores()
     # A fork would take over the locks of threads that are not there any more.
     with ProcessPoolExecutor(at_once, mp_context=get_context("spawn")) as pool:
         return _rest(bench, pool, places, extent)

@@ -6,7 +6,6 @@ learned, counts for the way, and not for how clean it is.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
@@ -15,6 +14,7 @@ from typing import Final
 from benchmarks.bench import Bench
 from benchmarks.dirt.month import PLANS, Life, live
 from benchmarks.record import Better, PeerFigure, Record
+from roomba.cores import usable_cores
 
 _TOPIC: Final = "dirt"
 _HOMES: Final = ("flat", "family")
@@ -35,7 +35,7 @@ def measure(bench: Bench) -> list[Record]:
     days = _QUICK_DAYS if bench.is_quick else _DAYS
     homes, seeds = (_HOMES[:1], _SEEDS[:1]) if bench.is_quick else (_HOMES, _SEEDS)
     records: list[Record] = []
-    at_once = len(os.sched_getaffinity(0))
+    at_once = usable_cores()
     with ProcessPoolExecutor(at_once, mp_context=get_context("spawn")) as pool:
         for home in homes:
             case = f"{home}, {days} days, {len(seeds)} seeds"

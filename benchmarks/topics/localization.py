@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from dataclasses import dataclass
@@ -21,6 +20,7 @@ from benchmarks.localization.peers import Followed, ScannedDrive, follow, match_
 from benchmarks.localization.plot import plot_drive, plot_spread
 from benchmarks.localization.rows import broken_row, drive_rows, kidnap_rows
 from benchmarks.record import Record
+from roomba.cores import usable_cores
 
 _SHIPPED = ("flat", "studio", "family", "apartment", "empty", "lshape", "hall")
 _CHANGED = ("flat", "apartment")
@@ -83,7 +83,7 @@ def measure(bench: Bench) -> list[Record]:
 
 def measured(bench: Bench, extent: Extent, homes: Sequence[Homes] | None = None) -> list[Record]:
     """Return the rows for some homes; by default the shipped ones and those of the maps."""
-    at_once = len(os.sched_getaffinity(0))
+    at_once = usable_cores()
     records = []
     # A fork would take over the locks of threads that are not there any more.
     with ProcessPoolExecutor(at_once, mp_context=get_context("spawn")) as pool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from dataclasses import dataclass
@@ -25,6 +24,7 @@ from benchmarks.mapping.rows import (
 )
 from benchmarks.record import Record
 from roomba.commands.map.warm import warm_up
+from roomba.cores import usable_cores
 
 _SHIPPED = ("flat", "studio", "family", "apartment", "empty", "lshape")
 """Not the hall: in a plane of 200 m the lidar sees nothing most of the time."""
@@ -58,7 +58,7 @@ def measured(bench: Bench, extent: Extent) -> list[Record]:
     """
     warm_up()
     records = _timed_rows(bench, extent)
-    at_once = len(os.sched_getaffinity(0))
+    at_once = usable_cores()
     # A fork would take over the locks of threads that are not there any more.
     with ProcessPoolExecutor(at_once, mp_context=get_context("spawn")) as pool:
         return records + _rest(bench, pool, extent)

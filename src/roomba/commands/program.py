@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import re
 import sys
 from importlib.metadata import version
@@ -21,6 +22,8 @@ from roomba.commands.doctor import (
     why_not_all_importable,
 )
 from roomba.commands.spelling import spelled
+
+_IS_WINDOWS: Final = os.name == "nt"
 
 _COMMANDS: Final = {
     "sim": "roomba.commands.sim.command",
@@ -45,6 +48,8 @@ _OF_VALETUDO: Final = {"export": "roomba.commands.valetudo.export_command"}
 """The same of a command whose first word is valetudo."""
 _DEMOS: Final = {"control": "roomba.commands.control.command"}
 """The same of a command that needs ROS, but not with ``--demo``."""
+_ON_WINDOWS: Final = ("sim", "doctor")
+"""The commands that keep no files in a folder of this program's own."""
 _NEED_ROS: Final = ("run", "control", "camera", "exec", "record")
 _NEED_CHECKOUT: Final = ("test", "bench", "exercise", "docs")
 _USAGE: Final = Path(__file__).with_name("usage.txt")
@@ -77,6 +82,12 @@ def program() -> int:
         return 0
     if command in _DEMOS and "--demo" in arguments:
         return int(importlib.import_module(_DEMOS[command]).main(arguments))
+    if _IS_WINDOWS and command not in _ON_WINDOWS:
+        here = ", ".join(_ON_WINDOWS)
+        return _refused(
+            f"{command}: expected Linux or macOS, got Windows, where {here} work, and the library "
+            "with its simulator, robot and Gymnasium environment; in WSL 2 all does"
+        )
     if command in _NEED_ROS:
         demo = f"; without it: roomba {command} --demo" if command in _DEMOS else ""
         why = "needs ROS, which only a checkout sets up"

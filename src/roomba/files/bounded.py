@@ -11,14 +11,18 @@ from typing import Final
 MOST_BYTES: Final = 100_000_000
 """Of a file that is read whole; the picture of the largest map has a fifth of that."""
 
+_FLAGS: Final = os.O_RDONLY | sum(
+    getattr(os, name, 0) for name in ("O_NONBLOCK", "O_CLOEXEC", "O_BINARY")
+)
+"""Without the first the opening of a pipe waits for a writer; Windows has the last one alone."""
+
 
 def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
     """Return what a file holds; raises OSError for none, for a larger one, for a pipe or device.
 
     ``/dev/null`` is an empty file.
     """
-    # Without O_NONBLOCK the opening of a pipe waits for a writer.
-    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    descriptor = os.open(path, _FLAGS)
     with open(descriptor, "rb") as file:
         found = os.fstat(descriptor)
         if not stat.S_ISREG(found.st_mode) and path != Path(os.devnull):

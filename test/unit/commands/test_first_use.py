@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from roomba.commands import first_use
-from roomba.commands.first_use import compile_for_a_clean, require_compiled
+from roomba.commands.first_use import Tell, compile_for_a_clean, require_compiled
 
 TELLS = "import sys; print('1: a.first', flush=True); print('2: a.' + sys.argv[-1], flush=True)\n"
 FAILS = "print('1: b.only', flush=True); raise SystemExit(1)\n"
@@ -69,10 +69,14 @@ def test_what_is_not_kept_is_compiled_and_told_in_a_pipe(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], is_quiet: bool
 ) -> None:
     compiled: list[str] = []
+
+    def compile_it(half: str, tell: Tell) -> bool:
+        compiled.append(half)
+        tell(1, "a.first")
+        return True
+
     monkeypatch.setattr(first_use, "is_kept", lambda _: False)
-    monkeypatch.setattr(
-        first_use, "compile_for_a_clean", lambda half, tell: compiled.append(half) or tell(1, "x")
-    )
+    monkeypatch.setattr(first_use, "compile_for_a_clean", compile_it)
     require_compiled(is_quiet=is_quiet)
     assert compiled == ["bursts"]
     told = capsys.readouterr()

@@ -92,3 +92,15 @@ def test_the_doctor_tells_of_each_module(
     assert {"numba", "cv2", "gymnasium"} <= rows.keys()
     assert rows["numba"] == "fine"
     assert status == ("missing" in rows.values())
+
+
+@pytest.mark.parametrize("command", ["map", "play", "campaign", "run"])
+def test_windows_is_told_what_works_there(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    monkeypatch.setattr("roomba.commands.program._IS_WINDOWS", True)
+    assert call(monkeypatch, command) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.startswith(f"roomba: {command}: expected Linux or macOS, got Windows")
+    assert len(told.err.splitlines()) == 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
@@ -35,6 +36,8 @@ PROGRAM: Final = spelled("sim")
 MOST_HOMES: Final = 100_000
 _LONGEST_WAIT: Final = 3600.0
 """s"""
+_CAN_KEEP: Final = find_spec("fcntl") is not None
+"""Whether what is kept can be locked, as Linux and macOS do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +82,7 @@ def options_of(arguments: list[str] | None) -> SimOptions:
         turned=given.turned,
     )
     return SimOptions(
-        trial, given.homes, given.json, given.plot, given.bag, given.quiet, given.keep
+        trial, given.homes, given.json, given.plot, given.bag, given.quiet, given.keep and _CAN_KEEP
     )
 
 
@@ -104,7 +107,8 @@ def _parser() -> Parser:
         "--no-history",
         dest="keep",
         action="store_false",
-        help="do not keep the run for `report` and `replay`; many runs are never kept",
+        help="do not keep the run for `report` and `replay`; many runs are never kept, and none in "
+        "Windows",
     )
     return parser
 

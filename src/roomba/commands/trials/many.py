@@ -19,6 +19,7 @@ from pebble import ProcessExpired, ProcessPool
 
 from roomba.commands.trials.figures import Figures
 from roomba.commands.trials.trial import Trial
+from roomba.cores import usable_cores
 from roomba.errors import RoombaError
 
 _Item = TypeVar("_Item")
@@ -85,7 +86,7 @@ def _run_in_pool(
 
     A pool breaks when a process dies that has nothing to do.
     """
-    count = min(processes or len(os.sched_getaffinity(0)), len(left))
+    count = min(processes or usable_cores(), len(left))
     pool = ProcessPool(count, context=multiprocessing.get_context(method))
     at_work: dict[Future[_Result], _Item] = {}
 
