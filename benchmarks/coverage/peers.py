@@ -74,10 +74,12 @@ def planned(home: Home, context: PlanningContext, floor: Reachable, rounds: int)
     """Plan the whole floor as a clean does at its start; of the CPU time the best round counts."""
     start = (context.staging.x, context.staging.y)
     width, todo = context.coverage.floor.tool_width, context.coverable()
+    sharp = ROBOT.tracking.sharp_corner
 
     def plan() -> CoveragePlan:
         # A planner keeps what it knows of the ground, so each time a new one.
-        return CoveragePlanner(context.known, context.reach, width, CONFIG).plan(start, start, todo)
+        planner = CoveragePlanner(context.known, context.reach, width, sharp, CONFIG)
+        return planner.plan(start, start, todo)
 
     made, cpu = plan(), float("inf")
     for _ in range(rounds):

@@ -51,6 +51,10 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/client/clock": ("unit/client/fake/test_robot.py", VALUES),
     "roomba/client/fake/": ("unit/client/fake/test_robot.py", "one robot in three files"),
     "roomba/client/household": ("unit/household/test_household.py", "an interface"),
+    "roomba/planning/coverage/tour/bends": (
+        "unit/planning/coverage/tour/test_rounding.py",
+        PART,
+    ),
     "roomba/plans/memory": ("unit/plans/test_scheduler.py", VALUES),
     "roomba/client/plain": ("unit/ui/web/test_app.py", VALUES),
     "roomba/client/ports": ("unit/commands/status/test_command.py", VALUES),
@@ -86,6 +90,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/commands/warm_up": ("system/test_one_command.py", WARM),
     "roomba/configuration/": ("unit/configuration/test_robot.py", "numbers with their limits"),
     "roomba/control/curve_kernels": ("unit/control/test_course.py", PART),
+    "roomba/control/curve_speed_kernels": ("unit/control/test_course.py", PART),
     "roomba/control/tracking_kernels": ("unit/control/test_path_tracker.py", PART),
     "roomba/errors": ("unit/world/test_simulator.py", VALUES),
     "roomba/drivers/create2/body": ("realtime/test_create2_body.py", "in real time"),

@@ -39,7 +39,7 @@ class CoverageConfig(Frozen):
     unswept: Positive = 1.0
     """Cells of way that a cell of floor is worth when the way is polished."""
     spare: Ratio = 0.0015
-    """Share of the floor that polishing may leave at most."""
+    """Share of the floor that polishing may leave at most, and as much again that bends may."""
     bend_worth: NotNegative = 12.0
     """Cells of way that a sharp corner is worth: a bend in place of it costs no more."""
     bend_unswept: Positive = 10.0

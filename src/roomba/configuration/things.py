@@ -16,8 +16,8 @@ class ThingConfig(Frozen):
 
     ``margin``, ``margin_share``
         A beam that ends nearer to a surface of the map saw that surface: the pose (0.01), half a
-        cell that a surveyed map is off, and 2 degrees that edges and the heading are off, which
-        count by the range. Noise of the range comes beside that.
+        cell that a surveyed map is off, and 0.7 degrees that edges and the heading are off,
+        which count by the range. Noise of the range comes beside that.
     ``sure``
         A range is off by no more than so many times the standard deviation of its noise, which is
         measured from the scans.

@@ -1,8 +1,9 @@
-"""Compiled rounding of a path's soft corners: a curve, how it bends, and how fast it can be driven.
+"""Compiled rounding of a path's soft corners: a curve, and how it bends.
 
 A curve's points are means of the path's points around them, weighted by a triangle. An even bend of
 the path stays an even bend, and a corner becomes one whose curvature rises and falls evenly, as a
-drive can follow it: the curve along which a turning speed changes evenly is a clothoid.
+drive can follow it: the curve along which a turning speed changes evenly is a clothoid. How fast it
+can be driven: :mod:`.curve_speed_kernels`.
 """
 
 from __future__ import annotations
@@ -15,10 +16,9 @@ from numpy.typing import NDArray
 
 from roomba.angles import wrapped
 from roomba.compilation import entry, inner_part
+from roomba.control.curve_speed_kernels import Row, limit_speeds
 
 Floats = NDArray[np.float64]
-Row = Any
-"""One row of an array, in a kernel."""
 
 SAMPLE: Final = np.dtype(
     [
@@ -26,6 +26,7 @@ SAMPLE: Final = np.dtype(
         ("y", "f8"),  # m
         ("heading", "f8"),  # rad; without jumps within a section
         ("curvature", "f8"),  # 1/m; positive to the left
+        ("tightening", "f8"),  # 1/m2; by which the curvature grows in a metre, to either side
         ("speed", "f8"),  # m/s; the fastest there
     ]
 )
@@ -64,8 +65,6 @@ _HALVINGS: Final = 10
 """Of the interval in which a mean's width is looked for."""
 _WIDENING: Final = 0.5
 """By so much of the way from one corner to the next the mean may widen."""
-_NO_TURN: Final = 1e-9
-"""1/m or 1/m2; a curvature, or its change, that is none."""
 
 
 class Course(NamedTuple):
@@ -95,7 +94,8 @@ def round_off(course: Course, turns: Floats, halves: Floats, raw: Floats, limits
         _lay_out(course, section, raw, step)
         _average(course, section, halves, raw, step)
         _bend(course.samples, section, step)
-        _limit_speeds(course.samples, section, step, limits[0])
+        _tighten(course.samples, section, step)
+        limit_speeds(course.samples, section, step, limits[0])
 
 
 @inner_part
@@ -219,56 +219,15 @@ def _bend(samples: Any, section: Row, step: float) -> None:
 
 
 @inner_part
-def _limit_speeds(samples: Any, section: Row, step: float, limits: Row) -> None:
-    """Fill in the speeds: of each bend by itself, then from where it can brake and speed up."""
+def _tighten(samples: Any, section: Row, step: float) -> None:
+    """Fill in by how much the bends of a section tighten; less than 0 where they open.
+
+    Where one changes sides it counts as tightening: the turning speed grows there, to the other
+    one.
+    """
     first, last = section.first, section.last
     for at in range(first, last + 1):
-        tightening = _tightening(samples, first, last, at, step)
-        samples[at].speed = _bend_speed(abs(samples[at].curvature), tightening, limits)
-    for at in range(last - 1, first - 1, -1):
-        after = samples[at + 1].speed
-        reached = math.sqrt(after * after + 2.0 * limits.braking * step)
-        samples[at].speed = min(samples[at].speed, reached)
-    for at in range(first + 1, last + 1):
-        before = samples[at - 1]
-        tightening = _tightening(samples, first, last, at - 1, step)
-        acceleration = _bend_acceleration(before, tightening, limits)
-        reached = math.sqrt(before.speed * before.speed + 2.0 * acceleration * step)
-        samples[at].speed = min(samples[at].speed, reached)
-
-
-@inner_part
-def _tightening(samples: Any, first: int, last: int, at: int, step: float) -> float:
-    """Return by how much a bend tightens in a metre, 1/m2; less than 0 where it opens.
-
-    Where it changes sides it counts as tightening: the turning speed grows there, to the other one.
-    """
-    low, high = max(at - 1, first), min(at + 1, last)
-    before, after = samples[low].curvature, samples[high].curvature
-    change = abs(after - before) if before * after < 0.0 else abs(after) - abs(before)
-    return float(change / ((high - low) * step))
-
-
-@inner_part
-def _bend_speed(bend: float, tightening: float, limits: Row) -> float:
-    """Return the fastest speed, m/s, at a curvature of ``bend``, 1/m, as it tightens, 1/m2.
-
-    Where the curvature changes by c in a metre, the turning speed does by v^2 c in a second. The
-    outer wheel is the fastest one.
-    """
-    most = limits.turning_acceleration if tightening > 0.0 else limits.turning_braking
-    even = math.sqrt(most / max(abs(tightening), _NO_TURN))
-    turning = limits.turning / max(bend, _NO_TURN)
-    outer = limits.fastest / (1.0 + limits.half_track * bend)
-    return float(max(min(even, turning, outer), limits.slowest))
-
-
-@inner_part
-def _bend_acceleration(sample: Row, tightening: float, limits: Row) -> float:
-    """Return by how much the speed may grow at a sample, m/s2.
-
-    There the turning speed grows with the speed, and with what the bend tightens, 1/m2.
-    """
-    left = limits.turning_acceleration - sample.speed * sample.speed * tightening
-    bend = max(abs(sample.curvature), _NO_TURN)
-    return float(min(max(left / bend, 0.0), limits.acceleration))
+        low, high = max(at - 1, first), min(at + 1, last)
+        before, after = samples[low].curvature, samples[high].curvature
+        change = abs(after - before) if before * after < 0.0 else abs(after) - abs(before)
+        samples[at].tightening = change / ((high - low) * step)

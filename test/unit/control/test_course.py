@@ -139,6 +139,13 @@ def test_speeds_are_what_drive_and_brakes_can_do(legs: Legs) -> None:
     assert (faster <= most + 1e-6)[is_free[1:-1]].all()
 
 
+def test_a_section_begins_as_fast_as_it_may_by_itself() -> None:
+    # The one before it ends in a tight bend, and between both it turns on the spot.
+    made = course((0.0, 0.3), (0.48, 0.01), (2.0, 0.3), (0.01, 0.3))
+    assert curve(made)["speed"][-1] < 0.3
+    assert curve(made, 1)["speed"][0] == pytest.approx(BODY.max_speed)
+
+
 @given(st.floats(0.05, 0.3))
 def test_a_corner_by_itself_is_as_wide_as_it_may_be(turn: float) -> None:
     samples = curve(course((0.0, 1.0), (turn, 1.0)))

@@ -13,6 +13,7 @@ import numpy as np
 
 from roomba.commands.compiling import compiled_functions_told
 from roomba.configuration.coverage import CoverageConfig
+from roomba.configuration.loops import TrackingConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.headless.burst import LONGEST_BURST
@@ -66,7 +67,7 @@ def _finish_a_plan(*, is_polished: bool) -> None:
     way = np.array([[5.0, 5.0], [30.0, 5.0], [30.0, 12.0], [5.0, 12.0]])
     if is_polished:
         way = OUR_STAGES.polish(way, floor, floor, 3.5, config)
-    OUR_STAGES.rounding(way, floor, floor, 3.5, config)
+    OUR_STAGES.rounding(way, floor, floor, 3.5, TrackingConfig().sharp_corner, config)
 
 
 if __name__ == "__main__":

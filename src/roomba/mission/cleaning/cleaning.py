@@ -14,17 +14,22 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mission import CleaningConfig
 from roomba.geometry import Pose
+from roomba.mission.cleaning.another_round import (
+    floor_in_reach,
+    may_be_opened,
+    rounded_off,
+    worth_another_round,
+)
 from roomba.mission.cleaning.checkpoint import Values
 from roomba.mission.cleaning.dirty.dirty_floor import DirtyFloor
 from roomba.mission.cleaning.ledger import CoverageLedger
-from roomba.mission.cleaning.missed import is_hidden, missed_floor
+from roomba.mission.cleaning.missed import missed_floor
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, Missed
 from roomba.mission.cleaning.rounds import Rounds
 from roomba.mission.cleaning.second_pass import SecondPass
 from roomba.mission.cleaning.stages import Stage, edges_of
 from roomba.mission.cleaning.worth import (
     PlanOver,
-    is_worth_its_way,
     large_patches,
     made_once,
     plan_worth_its_way,
@@ -34,7 +39,7 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import patches_of
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.coverage.plan import CoveragePlan
-from roomba.planning.path.costmap import Point, RoundObstacle
+from roomba.planning.path.costmap import RoundObstacle
 from roomba.planning.path.planner import NoPathError
 from roomba.planning.path.polyline import Path
 from roomba.vocabulary import CleanMode, RoomWay
@@ -239,48 +244,87 @@ class Cleaning:
             plan = planner.plan(at, None, todo, obstacles, edges_only=self.ledger.edges_only)
         except NoPathError:
             return None
-        return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
+        return _points_of(plan)
 
     def _next_round(
         self, stage: Stage, here: Pose, obstacles: list[RoundObstacle]
     ) -> Floats | None:
         """Plan what is missed of a stage, if that is worth it."""
-        todo = stage.floor & self.ledger.coverage.missed
-        missed = float(np.count_nonzero(todo)) * self.ledger.coverage.cell_area
-        is_anew = self._rounds.takes_anew()
-        frame, least = self.ledger.coverage.frame, self._config.least_for_round
-        large = large_patches(todo, frame, least) if is_anew else todo
         plan_over = made_once(lambda floor: self._plan_over(stage, floor, here, obstacles))
-        if is_anew and large.any():
-            todo = large
-        elif not self._rounds.is_first:
-            self.is_again = True
-            todo = self._worth_it(stage, todo, here, obstacles, plan_over)
-            if self._rounds.is_over(missed):
-                todo[:] = False
-        if not self._rounds.is_first and not todo.any() and not self._scrubbed:
-            self._scrubbed = True
-            reachable = self._context.reachable((here.x, here.y), obstacles)
-            todo = self._second_pass.at_the_end(stage.floor, reachable, plan_over)
+        left = stage.floor & self.ledger.coverage.missed
+        missed = float(np.count_nonzero(left)) * self.ledger.coverage.cell_area
+        todo = self._worth_a_round(stage, left, missed, here, obstacles, plan_over)
+        if not todo.any():
+            todo = self._dirty_at_the_end(stage, here, obstacles, plan_over)
         if not todo.any():
             return None
         self._rounds.begin(missed)
+        plan = self._plan_where_it_can(todo, here, obstacles, plan_over)
+        return None if plan is None else _points_of(plan)
+
+    def _worth_a_round(
+        self,
+        stage: Stage,
+        left: Mask,
+        missed: float,
+        here: Pose,
+        obstacles: list[RoundObstacle],
+        plan_over: PlanOver,
+    ) -> Mask:
+        """Return what is planned of the floor that is ``left`` of a stage, ``missed`` m2.
+
+        All of it in the first round, what is large in a plan that is made anew, and what is worth a
+        way of its own later.
+        """
+        ledger, config, at = self.ledger, self._config, (here.x, here.y)
+        if self._rounds.takes_anew():
+            large = large_patches(left, ledger.coverage.frame, config.least_for_round)
+            if large.any():
+                return large
+        if self._rounds.is_first:
+            return left
+        self.is_again = True
+        reachable = floor_in_reach(self._context, at, obstacles)
+        if may_be_opened(left & ~reachable, self._context, obstacles, config.least_area_to_retry):
+            self._unreachable = True
+        left &= reachable & ~rounded_off(self._context, at, obstacles)
+        wanted = int(np.count_nonzero(stage.floor & reachable))
+        worth = worth_another_round(left, wanted, ledger.coverage.frame, plan_over, config)
+        return worth & (not self._rounds.is_over(missed))
+
+    def _dirty_at_the_end(
+        self, stage: Stage, here: Pose, obstacles: list[RoundObstacle], plan_over: PlanOver
+    ) -> Mask:
+        """Return the dirty floor of a stage that is swept again at its end; once there is some."""
+        if self._rounds.is_first or self._scrubbed:
+            return np.zeros(stage.floor.shape, np.bool_)
+        self._scrubbed = True
+        reachable = self._context.reachable((here.x, here.y), obstacles)
+        return self._second_pass.at_the_end(stage.floor, reachable, plan_over)
+
+    def _plan_where_it_can(
+        self, todo: Mask, here: Pose, obstacles: list[RoundObstacle], plan_over: PlanOver
+    ) -> CoveragePlan | None:
+        """Plan a round; where no way leads on, over what of it can be reached; None if that is
+        little.
+
+        Raises NoPathError while it tries to get out first.
+        """
+        at = (here.x, here.y)
         try:
-            plan = self._planned(todo, here, obstacles, plan_over)
+            return self._planned(todo, here, obstacles, plan_over)
         except NoPathError:
             self._unreachable = True
-            todo &= self._context.reachable((here.x, here.y), obstacles)
+            todo &= self._context.reachable(at, obstacles)
             if patches_of(todo, self.ledger.coverage.frame, self._config.least_area_to_retry):
                 # The way home is shut, perhaps by a door: meanwhile it cleans where it is.
-                plan = self._context.coverage.plan(
-                    (here.x, here.y), None, todo, obstacles, edges_only=self.ledger.edges_only
+                return self._context.coverage.plan(
+                    at, None, todo, obstacles, edges_only=self.ledger.edges_only
                 )
-            elif self._rounds.tries_to_get_out():
+            if self._rounds.tries_to_get_out():
                 self._rounds.take_back()
                 raise
-            else:
-                return None
-        return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
+            return None
 
     def _planned(
         self, todo: Mask, here: Pose, obstacles: list[RoundObstacle], plan_over: PlanOver
@@ -309,49 +353,6 @@ class Cleaning:
             end=self.ledger.way_out_of(stage),
         )
 
-    def _worth_it(
-        self,
-        stage: Stage,
-        todo: Mask,
-        here: Pose,
-        obstacles: list[RoundObstacle],
-        plan_over: PlanOver,
-    ) -> Mask:
-        """Return the patches that are worth another round, of what a stage missed.
-
-        Behind and below what stands in the way nothing can be done now.
-        """
-        staging = (self._context.staging.x, self._context.staging.y)
-        reachable = self._context.reachable(staging, obstacles)
-        if not reachable[self.ledger.coverage.frame.cell_of(here.x, here.y)]:
-            # Wherever it is shut in, there it can clean, and from there it has to get out.
-            reachable |= self._context.reachable((here.x, here.y), obstacles)
-        self._note_out_of_reach(todo & ~reachable, obstacles)
-        todo &= reachable & ~self._rounded_off((here.x, here.y), obstacles)
-        wanted = max(int(np.count_nonzero(stage.floor & reachable)), 1)
-        share = 1.0 - np.count_nonzero(todo) / wanted
-        config = self._config
-        is_enough = share >= config.enough
-        least = config.least_for_round if is_enough else config.least_patch
-        worth = config.worth_way if is_enough else config.worth_way_to_enough
-        frame = self.ledger.coverage.frame
-        patches = large_patches(todo, frame, least)
-        is_worth_it = patches.any() and is_worth_its_way(plan_over, patches, frame, worth)
-        return patches & is_worth_it
-
-    def _note_out_of_reach(self, floor: Mask, obstacles: list[RoundObstacle]) -> None:
-        """Remember floor that a person may open later: it is tried again before the end."""
-        patches = patches_of(floor, self.ledger.coverage.frame, self._config.least_area_to_retry)
-        if not all(is_hidden(patch, self._context, obstacles) for patch in patches):
-            self._unreachable = True
-
-    def _rounded_off(self, here: Point, obstacles: list[RoundObstacle]) -> Mask:
-        """Return the floor that another plan would leave as well."""
-        try:
-            return self._context.coverage.rounded_off(here, obstacles)
-        except NoPathError:
-            return np.zeros(self.ledger.coverage.frame.shape, np.bool_)
-
     def _next_stage(self) -> None:
         self.ledger.next_stage()
         self.begin_room()
@@ -367,3 +368,8 @@ class Cleaning:
         self._rounds.begin_stage(is_driven=is_driven)
         self._scrubbed = self.is_again = False
         self._rest = None
+
+
+def _points_of(plan: CoveragePlan) -> Floats | None:
+    """Return the points of a plan, float64 [n, 2], m; None for one that sweeps nothing."""
+    return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None

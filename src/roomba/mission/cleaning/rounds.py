@@ -46,13 +46,9 @@ class Rounds:
         is_little = self._last_missed - missed < config.little_gain * self._last_missed
         return self._count > config.most_rounds or is_little
 
-    def expect_gain(self) -> None:
-        """Do not judge the next round by what the one before gained."""
-        self._last_missed = math.inf
-
     def cut_off(self) -> None:
         """Do not count what was left because no way led there, unless that came too often."""
-        self.expect_gain()
+        self._last_missed = math.inf
         self._cut_offs += 1
         if self._cut_offs <= self._config.most_cut_offs:
             self._count = min(self._count, 1)

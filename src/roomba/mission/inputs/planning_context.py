@@ -92,7 +92,7 @@ class PlanningContext:
         self._growing_reach = radius + mission.exploring.cleaning_clearance
         self.staging_tolerance = docking.place_tolerance
         self.spot_size = mission.cleaning.spot_size
-        self.tool_width = robot.brush.width
+        self.tool_width, self._sharp_corner = robot.brush.width, robot.tracking.sharp_corner
         self._coverage_config, self._stages = mission.coverage, stages
         self.plans, self.planning_time = 0, 0.0
         self.body_radius, self.is_growing = radius, is_growing
@@ -118,7 +118,12 @@ class PlanningContext:
 
     def _coverage_planner(self, reach: float) -> CoveragePlanner:
         return CoveragePlanner(
-            self.known, reach, self.tool_width, self._coverage_config, self._stages
+            self.known,
+            reach,
+            self.tool_width,
+            self._sharp_corner,
+            self._coverage_config,
+            self._stages,
         )
 
     @property

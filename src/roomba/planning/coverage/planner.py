@@ -4,9 +4,10 @@ Its stages: :mod:`~roomba.planning.coverage.floor.floor` tells what floor can be
 :mod:`~roomba.planning.coverage.passes.edges` goes along walls and furniture,
 :mod:`~roomba.planning.coverage.passes.swaths` sweeps the floor between them in straight parallel
 ways, :mod:`~roomba.planning.coverage.tour.order` puts these pieces in order,
-:mod:`~roomba.planning.coverage.tour.connection` joins them to one way, and
-:mod:`~roomba.planning.coverage.tour.polish` makes that shorter and straighter. All but the first
-can be replaced: :class:`~roomba.planning.coverage.stages.CoverageStages`.
+:mod:`~roomba.planning.coverage.tour.connection` joins them to one way,
+:mod:`~roomba.planning.coverage.tour.polish` makes that shorter and straighter, and
+:mod:`~roomba.planning.coverage.tour.rounding` puts bends in place of its sharp corners. All but the
+first can be replaced: :class:`~roomba.planning.coverage.stages.CoverageStages`.
 """
 
 from __future__ import annotations
@@ -44,15 +45,17 @@ class CoveragePlanner:
         map: OccupancyMap,
         reach: float,
         tool_width: float,
+        sharp_corner: float,
         config: CoverageConfig,
         stages: CoverageStages = OUR_STAGES,
     ) -> None:
         """Take the map, how far the middle keeps from all that is solid, and the tool's width.
 
-        Raises ValueError for lengths that are not finite or not above 0.
+        At corners of more than ``sharp_corner``, rad, the robot turns on the spot. Raises
+        ValueError for lengths that are not finite or not above 0.
         """
         self.floor = CoverageFloor.build(map, reach, tool_width, config)
-        self._config, self._stages = config, stages
+        self._sharp_corner, self._config, self._stages = sharp_corner, config, stages
         self._ground: Ground | None = None
 
     def plan(
@@ -92,7 +95,7 @@ class CoveragePlanner:
         pieces = stages.order(ground.net, edge_pieces + swath_pieces, first, last, config)
         line = stages.connection(ground.net, pieces, first, last)
         line = stages.polish(line, need, ground.middles, radius, config)
-        line = stages.rounding(line, need, ground.middles, radius, config)
+        line = stages.rounding(line, need, ground.middles, radius, self._sharp_corner, config)
         return CoveragePlan(
             _from_to(ground, line, start, end),
             tuple(ground.metres(piece) for piece in swath_pieces),

@@ -35,8 +35,9 @@ Connection = Callable[[Net, list[Line], Line, Line | None], Line]
 """net, lines in order, first place, last place: one line."""
 Polish = Callable[[Line, Mask, Mask, float, CoverageConfig], Line]
 """line, need, middles, radius, configuration: a shorter and straighter line."""
-Rounding = Callable[[Line, Mask, Mask, float, CoverageConfig], Line]
-"""The same: a line with bends in place of sharp corners."""
+Rounding = Callable[[Line, Mask, Mask, float, float, CoverageConfig], Line]
+"""line, need, middles, radius, sharp corner in rad, configuration: a line with bends in place of
+sharp corners."""
 
 
 @dataclass(frozen=True, slots=True)

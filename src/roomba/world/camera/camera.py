@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,7 @@ from roomba.grid import GridFrame
 from roomba.world.camera.kernels.film import develop
 from roomba.world.camera.kernels.quick import render_quick
 from roomba.world.camera.kernels.smooth import render_smooth
-from roomba.world.camera.scene.arrays import SceneArrays, ViewTables, Workspace
+from roomba.world.camera.scene.arrays import FloorDirt, Ray, SceneArrays, ViewTables, Workspace
 from roomba.world.camera.scene.scene import Scene
 from roomba.world.camera.scene.texture_atlas import tone
 from roomba.world.camera.view import view_tables, workspace
@@ -147,19 +148,20 @@ class Camera:
         if self._scene.axes is not None:
             pose = self._scene.axes.inverse().compose(pose)
         lens = pose.compose(Pose(self.config.mount_forward, 0.0, pan))
-        return (
+        place = np.array([dirt_frame.resolution, dirt_frame.origin_x, dirt_frame.origin_y])
+        return _Shot(
             self._scene.arrays._replace(boxes=self._boxes),
-            lens.x,
-            lens.y,
-            math.cos(lens.theta),
-            math.sin(lens.theta),
-            np.ascontiguousarray(dirt, np.int32),
-            np.array([dirt_frame.resolution, dirt_frame.origin_x, dirt_frame.origin_y]),
+            Ray(lens.x, lens.y, math.cos(lens.theta), math.sin(lens.theta)),
+            FloorDirt(np.ascontiguousarray(dirt, np.int32), place),
         )
 
 
-_Shot = tuple[SceneArrays, float, float, float, float, NDArray[np.int32], NDArray[np.float64]]
-"""What to take a picture of: scene, x, y, cosine and sine of the lens, dirt, and where it lies."""
+class _Shot(NamedTuple):
+    """What to take a picture of, along which optical axis."""
+
+    scene: SceneArrays
+    axis: Ray
+    dirt: FloorDirt
 
 
 class _Quick:
@@ -171,13 +173,11 @@ class _Quick:
         self._work: Workspace = workspace(self.view, boxes)
 
     def taken(self, shot: _Shot) -> Picture:
-        scene, x, y, cosine, sine, dirt, dirt_place = shot
+        scene, axis, dirt = shot
         height, width, columns = self._config.height, self._config.width, self.view.columns
         colour = np.empty((height, 3 * columns), np.uint8)
         depth = np.empty((height, columns), np.float32)
-        render_quick(
-            scene, self.view, x, y, cosine, sine, dirt, dirt_place, self._work, colour, depth
-        )
+        render_quick(scene, self.view, axis, dirt, self._work, colour, depth)
         return Picture(
             np.ascontiguousarray(colour.reshape(height, columns, 3)[:, :width]),
             np.ascontiguousarray(depth[:, :width]),
@@ -195,10 +195,8 @@ class _Smooth:
         self._tone = tone()
 
     def taken(self, shot: _Shot) -> NDArray[np.uint8]:
-        scene, x, y, cosine, sine, dirt, dirt_place = shot
-        render_smooth(
-            scene, self._view, x, y, cosine, sine, dirt, dirt_place, self._work, self._colours
-        )
+        scene, axis, dirt = shot
+        render_smooth(scene, self._view, axis, dirt, self._work, self._colours)
         picture = np.empty((self._config.height, self._config.width, 3), np.uint8)
         develop(self._colours, self._tone, picture)
         return picture

@@ -32,7 +32,7 @@ def test_they_are_over_when_one_gains_little(rounds: Rounds) -> None:
     enough, little = (5.0 * (1.0 - CONFIG.little_gain * part) for part in (1.01, 0.99))
     assert not rounds.is_over(enough)
     assert rounds.is_over(little)
-    rounds.expect_gain()
+    rounds.cut_off()
     assert not rounds.is_over(little)
 
 
@@ -67,14 +67,14 @@ def test_a_plan_that_is_made_anew_is_so_once(rounds: Rounds) -> None:
 
 
 def test_a_short_way_is_not_planned_anew_nor_one_too_soon_nor_too_often(rounds: Rounds) -> None:
-    least, period = CONFIG.least_way_to_replan, CONFIG.replan_period
-    assert not rounds.replans(0.0, 0.99 * least)
-    assert rounds.replans(0.0, least)
-    assert not rounds.replans(0.99 * period, least)
+    least, period, begin = CONFIG.least_way_to_replan, CONFIG.replan_period, 500.0
+    assert not rounds.replans(begin, 0.99 * least)
+    assert rounds.replans(begin, least)
+    assert not rounds.replans(begin + 0.99 * period, least)
     # A clock that was set back holds up nothing.
-    assert rounds.replans(-1.0, least)
+    assert rounds.replans(begin - 1.0, least)
     done = 2
-    while rounds.replans(done * period, least):
+    while rounds.replans(begin + done * period, least):
         done += 1
     assert done == CONFIG.most_replans
 

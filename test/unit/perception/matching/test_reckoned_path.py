@@ -13,6 +13,7 @@ from roomba.geometry import wrap_angle
 from roomba.perception.matching.reckoned_path import (
     ReckonedPath,
     forget_path,
+    is_told_within,
     pose_at,
     pose_in,
     remember,
@@ -66,6 +67,22 @@ def test_it_is_what_a_search_through_all_finds(steps: list[float], back: float) 
 def test_odometry_that_is_told_seldom_is_known_between_its_newest_two() -> None:
     path = told((0.0, 0.0, 0.0, 0.0), (3.0, 3.0, 0.0, 0.0), (6.0, 9.0, 0.0, 0.0))
     assert at(path, 5.95) == pytest.approx([8.9, 0.0, 0.0])
+
+
+def test_how_often_it_is_told_is_known_from_the_second_pose_on() -> None:
+    pose = np.zeros(3)
+    path = ReckonedPath.empty()
+    assert not is_told_within(path, 1.0)
+    remember(path, 1.0, pose)
+    # What an empty row of the ring says would be a time before.
+    assert not is_told_within(path, 5.0)
+    remember(path, 1.25, pose)
+    assert is_told_within(path, 0.25)
+    assert not is_told_within(path, 0.24)
+    remember(path, 2.0, pose)
+    assert not is_told_within(path, 0.5)
+    forget_path(path)
+    assert not is_told_within(path, 9.0)
 
 
 def test_of_many_poses_in_a_second_the_newest_thousand_are_kept() -> None:

@@ -23,6 +23,8 @@ from roomba.planning.path.costmap import FitMap, Mask, Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError, NoPathReason
 
 REACH, TOOL, CONFIG = 0.169, 0.2, CoverageConfig()
+SHARP = 0.5
+"""rad; sharper corners of a line become bends."""
 TOLERANCE = 0.0015
 
 
@@ -85,7 +87,7 @@ def test_sweeps_all_that_can_be_reached_and_keeps_clear_of_walls(
     map: OccupancyMap, x: float, y: float, comes_back: bool
 ) -> None:
     reach, tool = 0.11, 0.14
-    planner = CoveragePlanner(map, reach, tool, CONFIG)
+    planner = CoveragePlanner(map, reach, tool, SHARP, CONFIG)
     assume(FitMap.build(map, reach, 0.0).fits_at(x, y))
     end = (x, y) if comes_back else None
     try:
@@ -104,7 +106,7 @@ def test_sweeps_all_that_can_be_reached_and_keeps_clear_of_walls(
 
 def test_an_empty_room_is_swept_with_little_more_than_the_least_way() -> None:
     map = room(5.0, 4.0)
-    planner = CoveragePlanner(map, REACH, TOOL, CONFIG)
+    planner = CoveragePlanner(map, REACH, TOOL, SHARP, CONFIG)
     plan = planner.plan((2.5, 0.3), (2.5, 0.3))
     need = planner.floor.coverable((2.5, 0.3))
     least = float(need.sum()) * planner.floor.frame.resolution**2 / TOOL
@@ -120,22 +122,22 @@ def test_length_and_turning_are_those_of_the_way() -> None:
 
 
 def test_ends_where_it_is_asked_to() -> None:
-    plan = CoveragePlanner(FLAT, REACH, TOOL, CONFIG).plan(START, (2.7, 2.1))
+    plan = CoveragePlanner(FLAT, REACH, TOOL, SHARP, CONFIG).plan(START, (2.7, 2.1))
     assert tuple(plan.points[0]) == START
     assert tuple(plan.points[-1]) == (2.7, 2.1)
 
 
 def test_the_same_input_gives_the_same_plan_whatever_was_planned_before() -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, SHARP, CONFIG)
     first = planner.plan(START, START)
     planner.plan((2.5, 1.5), obstacles=[(1.0, 1.5, 0.1)])
     assert np.array_equal(planner.plan(START, START).points, first.points)
-    other = CoveragePlanner(FLAT, REACH, TOOL, CONFIG).plan(START, START)
+    other = CoveragePlanner(FLAT, REACH, TOOL, SHARP, CONFIG).plan(START, START)
     assert np.array_equal(other.points, first.points)
 
 
 def test_sweeps_patches_with_a_short_way() -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, SHARP, CONFIG)
     coverable = planner.floor.coverable(START)
     todo = np.zeros_like(coverable)
     for x, y in ((0.3, 2.0), (1.5, 1.5), (1.6, 0.1)):
@@ -151,13 +153,13 @@ def test_sweeps_patches_with_a_short_way() -> None:
     ("end", "expected"), [(None, [START]), (START, [START]), ((1.0, 2.0), [START, (1.0, 2.0)])]
 )
 def test_nothing_to_do_is_no_way_but_to_the_end(end: Point | None, expected: list[Point]) -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, SHARP, CONFIG)
     plan = planner.plan(START, end, todo=np.zeros(planner.floor.frame.shape, np.bool_))
     assert [tuple(point) for point in plan.points] == expected
 
 
 def test_keeps_clear_of_obstacles_that_the_map_does_not_show() -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, SHARP, CONFIG)
     obstacles = ((0.9, 1.6, 0.12), (1.9, 1.7, 0.05))
     plan = planner.plan(START, START, obstacles=obstacles)
     assert least_room(plan, FLAT, obstacles) >= REACH - TOLERANCE
@@ -167,7 +169,7 @@ def test_keeps_clear_of_obstacles_that_the_map_does_not_show() -> None:
 
 
 def test_edges_only_stays_along_walls_and_furniture() -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, SHARP, CONFIG)
     plan = planner.plan(START, START, edges_only=True)
     done = swept(plan, planner.floor.frame)
     frame = planner.floor.frame
@@ -180,7 +182,7 @@ def test_edges_only_stays_along_walls_and_furniture() -> None:
 
 def test_rooms_without_a_way_to_them_do_not_count() -> None:
     map = room(4.0, 2.0, (1.9, 0.0, 0.1, 2.0))
-    planner = CoveragePlanner(map, REACH, TOOL, CONFIG)
+    planner = CoveragePlanner(map, REACH, TOOL, SHARP, CONFIG)
     need = planner.floor.coverable((0.5, 0.5))
     assert not need[planner.floor.frame.cell_of(3.0, 1.0)]
     plan = planner.plan((0.5, 0.5))
@@ -192,7 +194,7 @@ def test_rooms_without_a_way_to_them_do_not_count() -> None:
 
 
 def test_a_start_in_the_station_counts_as_just_in_front_of_it() -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, SHARP, CONFIG)
     plan = planner.plan((0.05, 1.0), (0.05, 1.0))
     assert tuple(plan.points[0]) == tuple(plan.points[-1]) == (0.05, 1.0)
     need = planner.floor.coverable((0.05, 1.0))
@@ -202,7 +204,7 @@ def test_a_start_in_the_station_counts_as_just_in_front_of_it() -> None:
 @pytest.mark.parametrize("start", [(9.0, 9.0), (2.45, -0.5), (-3.0, 1.0)])
 def test_a_robot_that_cannot_move_gets_no_plan(start: Point) -> None:
     with pytest.raises(NoPathError) as refusal:
-        CoveragePlanner(FLAT, REACH, TOOL, CONFIG).plan(start)
+        CoveragePlanner(FLAT, REACH, TOOL, SHARP, CONFIG).plan(start)
     assert refusal.value.reason is NoPathReason.START_BLOCKED
 
 
@@ -223,13 +225,13 @@ def test_unknown_floor_is_solid() -> None:
 @pytest.mark.parametrize("length", [0.0, -0.1, math.nan, math.inf])
 def test_lengths_that_make_no_sense_are_refused(length: float) -> None:
     with pytest.raises(ValueError, match="reach"):
-        CoveragePlanner(FLAT, length, TOOL, CONFIG)
+        CoveragePlanner(FLAT, length, TOOL, SHARP, CONFIG)
     with pytest.raises(ValueError, match="tool_width"):
-        CoveragePlanner(FLAT, REACH, length, CONFIG)
+        CoveragePlanner(FLAT, REACH, length, SHARP, CONFIG)
 
 
 def test_points_masks_and_obstacles_that_make_no_sense_are_refused() -> None:
-    planner = CoveragePlanner(FLAT, REACH, TOOL, CONFIG)
+    planner = CoveragePlanner(FLAT, REACH, TOOL, SHARP, CONFIG)
     with pytest.raises(ValueError, match="finite"):
         planner.plan((math.nan, 1.0))
     with pytest.raises(ValueError, match="finite"):
@@ -252,7 +254,7 @@ def slanted_room(degrees: float) -> OccupancyMap:
 
 def test_along_a_slanted_wall_the_plan_is_smooth_and_tells_what_it_leaves() -> None:
     map, start = slanted_room(17.0), (1.5, 2.0)
-    planner = CoveragePlanner(map, REACH, TOOL, CONFIG)
+    planner = CoveragePlanner(map, REACH, TOOL, SHARP, CONFIG)
     plan = planner.plan(start)
     assert least_room(plan, map) >= REACH - TOLERANCE
     need, left = planner.floor.coverable(start), planner.rounded_off(start)
@@ -261,7 +263,7 @@ def test_along_a_slanted_wall_the_plan_is_smooth_and_tells_what_it_leaves() -> N
     assert share_swept(plan, need & ~left, planner.floor.frame) >= 0.997
     # It is in the dips: no other plan sweeps it either, and a wall along the grid has none.
     assert swept(plan, planner.floor.frame)[left].mean() < 0.5
-    straight = CoveragePlanner(slanted_room(0.0), REACH, TOOL, CONFIG)
+    straight = CoveragePlanner(slanted_room(0.0), REACH, TOOL, SHARP, CONFIG)
     assert not straight.rounded_off(start).any()
 
 
@@ -272,7 +274,7 @@ def test_a_turned_room_is_swept_as_well_and_by_hardly_more_way(degrees: float) -
     shares, ratios = [], []
     for angle in (0.0, degrees):
         map = turned_room(4.4, 3.0, angle, *things)
-        planner = CoveragePlanner(map, REACH, TOOL, CONFIG)
+        planner = CoveragePlanner(map, REACH, TOOL, SHARP, CONFIG)
         plan = planner.plan((0.0, 0.0), (0.0, 0.0))
         need = planner.floor.coverable((0.0, 0.0))
         shares.append(share_swept(plan, need, planner.floor.frame))
@@ -296,7 +298,7 @@ def test_swaths_along_the_axes_are_shifted_off_the_middles_of_cells_and_slanted_
 
     stages = replace(OUR_STAGES, swaths=noted)
     map = turned_room(4.4, 3.0, angle)
-    swaths = CoveragePlanner(map, REACH, TOOL, CONFIG, stages).plan((0.0, 0.0)).swaths
+    swaths = CoveragePlanner(map, REACH, TOOL, SHARP, CONFIG, stages).plan((0.0, 0.0)).swaths
     is_slanted = [bool((line[0] != line[1]).all()) for line in laid]
     assert sum(is_slanted) > 0.8 * len(laid) if angle else not any(is_slanted)
     corner = np.array((map.frame.origin_x, map.frame.origin_y))

@@ -20,7 +20,7 @@ FLOOR = room((0.0, 0.0, 1.0, 0.5))
 
 
 def plan_by(stages: CoverageStages) -> CoveragePlan:
-    planner = CoveragePlanner(FLOOR, 0.169, 0.2, CoverageConfig(), stages)
+    planner = CoveragePlanner(FLOOR, 0.169, 0.2, 0.5, CoverageConfig(), stages)
     return planner.plan((-0.5, -1.5), (-0.5, -1.5))
 
 

@@ -27,7 +27,9 @@ def picture_of_stages(home: Home) -> Figure:
     """Draw the floor, edges, swaths, and the one line of all pieces."""
     robot = SimulatedRobotConfig()
     reach = robot.body.radius + MissionConfig().driving.clearance
-    planner = CoveragePlanner(home.map, reach, robot.brush.width, CoverageConfig())
+    planner = CoveragePlanner(
+        home.map, reach, robot.brush.width, robot.tracking.sharp_corner, CoverageConfig()
+    )
     start = (home.station.x, home.station.y)
     plan = planner.plan(start, start)
     figure = empty_figure(1150, 960)
@@ -49,5 +51,5 @@ def picture_of_stages(home: Home) -> Figure:
     edges.set_title(f"2. Edges: {len(plan.edges)} pieces")
     swaths.set_title(f"3. Swaths: {len(plan.swaths)} pieces in what edges leave")
     line.plot(plan.points[:, 0], plan.points[:, 1], color=INK, lw=1.0)
-    line.set_title(f"4. Ordered, connected, polished: {plan.length:.0f} m")
+    line.set_title(f"4. Ordered, connected, polished, rounded: {plan.length:.0f} m")
     return figure

@@ -15,6 +15,7 @@ from roomba.world.camera.scene.arrays import (
     FACE,
     PLANE,
     TURNED_FACE,
+    Ray,
     SceneArrays,
     Spans,
     ViewTables,
@@ -30,13 +31,11 @@ def add_box(
     scene: SceneArrays,
     view: ViewTables,
     index: int,
-    x: float,
-    y: float,
-    dx: float,
-    dy: float,
+    ray: Ray,
     limit: float,
 ) -> int:
-    """Add what is seen of one box where it is met before the depth ``limit``."""
+    """Add what is seen of one box where a ray meets it before the depth ``limit``."""
+    x, y, dx, dy = ray
     box = scene.boxes.shapes[index]
     length = np.float64(box[4])
     width = np.float64(box[5])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from roomba.compilation import compiled
 from roomba.world.camera.kernels.compilation import INLINE, INNER
 from roomba.world.camera.kernels.light import between_bytes
-from roomba.world.camera.scene.arrays import Lighting, ViewTables
+from roomba.world.camera.scene.arrays import FloorDirt, Lighting, Ray, ViewTables
 
 CRUMB_TEXELS = 2000.0
 """Texels per metre of the crumbs' pattern."""
@@ -59,41 +59,37 @@ def veil(cover: NDArray[np.float32], level: float, crispness: float) -> float:
 def feel_knots(
     lighting: Lighting,
     view: ViewTables,
-    x: float,
-    y: float,
-    dx: float,
-    dy: float,
+    ray: Ray,
     first_row: int,
-    dirt: NDArray[np.int32],
-    dirt_place: NDArray[np.float64],
+    dirt: FloorDirt,
     cover: NDArray[np.float32],
     full_light: float,
     knots: NDArray[np.float32],
 ) -> None:
-    """Fill in the knots from ``first_row`` down.
+    """Fill in the knots below a ray from ``first_row`` down.
 
     ``knots`` [knots, 3] gets light, 0..``full_light``, level of dirt, and how much dust hides,
     0..256.
     """
     rows, reach, grid, crispness = view.knots, view.reach, lighting.floor, view.crispness
-    per_unit = DIRT_LEVEL * DIRT_LEVEL / (1e6 * dirt_place[0] * dirt_place[0])
+    per_unit = DIRT_LEVEL * DIRT_LEVEL / (1e6 * dirt.place[0] * dirt.place[0])
     per_cell = 1.0 / lighting.cell
-    per_dirt_cell = 1.0 / dirt_place[0]
+    per_dirt_cell = 1.0 / dirt.place[0]
     count = rows.shape[0]
     for k in range(count):
         if k + 1 < count and rows[k + 1] <= first_row:
             continue
         row = min(rows[k], view.rows - 1)
         t = view.eye * reach[row]
-        at_x = x + t * dx
-        at_y = y + t * dy
+        at_x = ray.x + t * ray.dx
+        at_y = ray.y + t * ray.dy
         light = between_bytes(
             grid, (at_y - lighting.origin_y) * per_cell, (at_x - lighting.origin_x) * per_cell
         )
         level = dirt_level(
-            dirt,
-            (at_y - dirt_place[2]) * per_dirt_cell,
-            (at_x - dirt_place[1]) * per_dirt_cell,
+            dirt.micrograms,
+            (at_y - dirt.place[2]) * per_dirt_cell,
+            (at_x - dirt.place[1]) * per_dirt_cell,
             per_unit,
         )
         knots[k, 0] = light * (full_light / 255.0) * (1.0 - 0.18 * t / (t + 5.0))

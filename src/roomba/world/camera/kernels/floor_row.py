@@ -22,6 +22,7 @@ from roomba.world.camera.scene.arrays import (
     STRIP,
     TILE,
     FloorSurfaces,
+    Ray,
     StripRow,
     ViewTables,
 )
@@ -39,10 +40,10 @@ OF_LIGHT, OF_DIRT, OF_DUST = 0, 1, 2
 
 
 @compiled(**INLINE)
-def find_ways(view: ViewTables, cosine: float, sine: float, begin: int, row: StripRow) -> None:
+def find_ways(view: ViewTables, axis: Ray, begin: int, row: StripRow) -> None:
     """Fill in the directions, x and y per metre of depth, in which a strip's columns look."""
     focal = np.float32(view.focal)
-    ahead_x, ahead_y = np.float32(cosine), np.float32(sine)
+    ahead_x, ahead_y = np.float32(axis.dx), np.float32(axis.dy)
     way_x, way_y = row.way_x, row.way_y
     for tile in range(0, STRIP, TILE):
         middle = np.float32(view.middle - (begin + tile))

@@ -17,8 +17,16 @@ from roomba.world.camera.kernels.face import row_of
 from roomba.world.camera.kernels.film import turn, write_pixels
 from roomba.world.camera.kernels.quick_floor import paint_floor
 from roomba.world.camera.kernels.quick_upright import LIGHT, paint_columns
-from roomba.world.camera.kernels.ray import cast_walls, find_boxes
-from roomba.world.camera.scene.arrays import STRIP, TILE, SceneArrays, ViewTables, Workspace
+from roomba.world.camera.kernels.ray import cast_walls, column_ray, find_boxes
+from roomba.world.camera.scene.arrays import (
+    STRIP,
+    TILE,
+    FloorDirt,
+    Ray,
+    SceneArrays,
+    ViewTables,
+    Workspace,
+)
 
 
 @compiled(**INNER)
@@ -54,25 +62,16 @@ def first_floor_row(hits: NDArray[np.float64], view: ViewTables, begin: int, end
 
 @compiled(**INLINE)
 def feel_edges(
-    scene: SceneArrays,
-    view: ViewTables,
-    x: float,
-    y: float,
-    cosine: float,
-    sine: float,
-    dirt: NDArray[np.int32],
-    dirt_place: NDArray[np.float64],
-    work: Workspace,
+    scene: SceneArrays, view: ViewTables, axis: Ray, dirt: FloorDirt, work: Workspace
 ) -> None:
     """Feel light and dirt along each edge of a tile, from where its strips' floor may begin."""
     for edge in range(work.knots.shape[0]):
         column = edge * TILE
-        k = (view.middle - column) / view.focal
         left, right = (column - 1) // STRIP * STRIP, (column // STRIP + 1) * STRIP
         feel_knots(
-            scene.lighting, view, x, y, cosine - k * sine, sine + k * cosine,
+            scene.lighting, view, column_ray(view, axis, column),
             first_floor_row(work.hits, view, left, right),
-            dirt, dirt_place, scene.floor.cover, LIGHT, work.knots[edge],
+            dirt, scene.floor.cover, LIGHT, work.knots[edge],
         )  # fmt: skip
 
 
@@ -80,28 +79,21 @@ def feel_edges(
 def render_quick(
     scene: SceneArrays,
     view: ViewTables,
-    x: float,
-    y: float,
-    cosine: float,
-    sine: float,
-    dirt: NDArray[np.int32],
-    dirt_place: NDArray[np.float64],
+    axis: Ray,
+    dirt: FloorDirt,
     work: Workspace,
     picture: NDArray[np.uint8],
     depths: NDArray[np.float32],
 ) -> None:
     """Paint ``picture`` [rows, 3 * columns], red, green, blue, and ``depths`` [rows, columns].
 
-    The camera is at (x, y) and looks along (cosine, sine). ``dirt_place`` is cell, origin x and
-    origin y of ``dirt``.
+    ``axis`` is the optical axis.
     """
-    farthest = cast_walls(scene.walls, view, x, y, cosine, sine, work.hits)
-    boxes = find_boxes(scene.boxes.shapes, view, x, y, cosine, sine, farthest, work.seen)
-    feel_edges(scene, view, x, y, cosine, sine, dirt, dirt_place, work)
+    farthest = cast_walls(scene.walls, view, axis, work.hits)
+    boxes = find_boxes(scene.boxes.shapes, view, axis, farthest, work.seen)
+    feel_edges(scene, view, axis, dirt, work)
     for begin in range(0, view.columns, STRIP):
         first_row = first_floor_row(work.hits, view, begin, begin + STRIP)
-        lowest = paint_columns(scene, view, x, y, cosine, sine, begin, boxes, work)
+        lowest = paint_columns(scene, view, axis, begin, boxes, work)
         turn_upright(work, view, begin, first_row, lowest, picture, depths)
-        paint_floor(
-            scene, view, x, y, cosine, sine, begin, first_row, lowest, work, picture, depths
-        )
+        paint_floor(scene, view, axis, begin, first_row, lowest, work, picture, depths)

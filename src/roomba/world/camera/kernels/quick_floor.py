@@ -18,12 +18,14 @@ from roomba.world.camera.kernels.floor_row import (
     look_up_colours,
     put_before,
 )
+from roomba.world.camera.kernels.ray import column_ray
 from roomba.world.camera.scene.arrays import (
     GREYS,
     SHADES,
     STRIP,
     TILE,
     FloorSurfaces,
+    Ray,
     SceneArrays,
     StripRow,
     Surfaces,
@@ -49,7 +51,8 @@ def place_in(
 
 @compiled(**INLINE)
 def surface_within(floor: FloorSurfaces, x: np.float32, y: np.float32) -> int:
-    """Return what :func:`surface_at` does, for a pixel, by numbers of 32 bits."""
+    """Return the surface of the floor at a place, m, by numbers of 32 bits; outside the map the
+    nearest one."""
     cell = np.float32(floor.cell)
     row = place_in(y, np.float32(floor.origin_y), cell, floor.surfaces.shape[0])
     column = place_in(x, np.float32(floor.origin_x), cell, floor.surfaces.shape[1])
@@ -57,8 +60,10 @@ def surface_within(floor: FloorSurfaces, x: np.float32, y: np.float32) -> int:
 
 
 @compiled(**INLINE)
-def surface_at(floor: FloorSurfaces, x: float, y: float) -> int:
-    """Return the surface of the floor at a place, m; the nearest one outside the map."""
+def surface_below(floor: FloorSurfaces, ray: Ray, t: float) -> int:
+    """Return the surface of the floor below a ray at the depth ``t``; outside the map the nearest
+    one."""
+    x, y = ray.x + t * ray.dx, ray.y + t * ray.dy
     row = place_in(y, floor.origin_y, floor.cell, floor.surfaces.shape[0])
     column = place_in(x, floor.origin_x, floor.cell, floor.surfaces.shape[1])
     return int(floor.surfaces[np.uint64(row), np.uint64(column)])
@@ -68,24 +73,19 @@ def surface_at(floor: FloorSurfaces, x: float, y: float) -> int:
 def tile_surface(
     floor: FloorSurfaces,
     view: ViewTables,
-    x: float,
-    y: float,
-    cosine: float,
-    sine: float,
+    axis: Ray,
     begin: int,
     near: float,
     far: float,
 ) -> int:
     """Return the surface at the corners of a tile's floor between two depths, or ``SEVERAL``."""
-    first = (view.middle - begin - 0.5) / view.focal
-    last = (view.middle - begin - TILE + 0.5) / view.focal
-    left_x, left_y = cosine - first * sine, sine + first * cosine
-    right_x, right_y = cosine - last * sine, sine + last * cosine
-    one = surface_at(floor, x + near * left_x, y + near * left_y)
+    left = column_ray(view, axis, begin + 0.5)
+    right = column_ray(view, axis, begin + TILE - 0.5)
+    one = surface_below(floor, left, near)
     if (
-        one == surface_at(floor, x + near * right_x, y + near * right_y)
-        and one == surface_at(floor, x + far * left_x, y + far * left_y)
-        and one == surface_at(floor, x + far * right_x, y + far * right_y)
+        one == surface_below(floor, right, near)
+        and one == surface_below(floor, left, far)
+        and one == surface_below(floor, right, far)
     ):
         return int(one)
     return SEVERAL
@@ -139,10 +139,7 @@ def find_looks(
 def find_even_looks(
     scene: SceneArrays,
     view: ViewTables,
-    x: np.float32,
-    y: np.float32,
-    cosine: float,
-    sine: float,
+    axis: Ray,
     begin: int,
     top: int,
     until: int,
@@ -152,7 +149,7 @@ def find_even_looks(
     even = True
     near, far = view.floor_depth[top], view.floor_depth[min(until, view.rows - 1)]
     for tile in range(0, STRIP, TILE):
-        surface = tile_surface(scene.floor, view, x, y, cosine, sine, begin + tile, near, far)
+        surface = tile_surface(scene.floor, view, axis, begin + tile, near, far)
         work.surfaces[tile // TILE] = surface
         if surface == SEVERAL:
             even = False
@@ -180,10 +177,7 @@ def find_uneven_looks(
 def paint_floor(
     scene: SceneArrays,
     view: ViewTables,
-    place_x: float,
-    place_y: float,
-    cosine: float,
-    sine: float,
+    axis: Ray,
     begin: int,
     first_row: int,
     lowest: int,
@@ -196,14 +190,14 @@ def paint_floor(
     From ``lowest`` down there is nothing else.
     """
     surfaces, floor, strip = scene.surfaces, scene.floor, work.row
-    x, y = np.float32(place_x), np.float32(place_y)
+    x, y = np.float32(axis.x), np.float32(axis.y)
     knots = work.knots[begin // TILE :]
-    find_ways(view, cosine, sine, begin, strip)
+    find_ways(view, axis, begin, strip)
     for k in range(view.knots.shape[0] - 1):
         top, until = view.knots[k], view.knots[k + 1]
         if until <= first_row:
             continue
-        even = find_even_looks(scene, view, x, y, cosine, sine, begin, top, until, work)
+        even = find_even_looks(scene, view, axis, begin, top, until, work)
         crumb_share = int(view.crispness[top] * 256.0)
         gain = np.float32(1.0 / (until - top))
         for row in range(max(top, first_row), until):

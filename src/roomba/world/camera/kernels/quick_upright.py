@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from roomba.compilation import compiled
 from roomba.world.camera.kernels.colour import level_of
 from roomba.world.camera.kernels.compilation import INLINE, INNER
+from roomba.world.camera.kernels.ray import column_ray
 from roomba.world.camera.kernels.span import column_spans
 from roomba.world.camera.scene.arrays import (
     GREY_BITS,
@@ -19,6 +20,7 @@ from roomba.world.camera.scene.arrays import (
     SHADES,
     STRIP,
     TURNED_FACE,
+    Ray,
     SceneArrays,
     Surfaces,
     ViewTables,
@@ -117,10 +119,7 @@ def paint_plane(
 def paint_columns(
     scene: SceneArrays,
     view: ViewTables,
-    x: float,
-    y: float,
-    cosine: float,
-    sine: float,
+    axis: Ray,
     begin: int,
     boxes: int,
     work: Workspace,
@@ -128,11 +127,9 @@ def paint_columns(
     """Paint what stands in a strip's columns into ``work``; returns the row where all has ended."""
     lowest = 0
     for i in range(STRIP):
-        k = (view.middle - begin - i - 0.5) / view.focal
-        spans = column_spans(
-            work.spans, scene, view, x, y, cosine - k * sine, sine + k * cosine, begin + i,
-            work.hits[begin + i], work.seen, boxes,
-        )  # fmt: skip
+        column = begin + i
+        ray, hits = column_ray(view, axis, column + 0.5), work.hits[column]
+        spans = column_spans(work.spans, scene, view, ray, column, hits, work.seen, boxes)
         colours, depths = work.colours[i], work.depths[i]
         for row in range(view.rows):
             depths[row] = view.floor_depth[row]

@@ -9,26 +9,34 @@ from numpy.typing import NDArray
 
 from roomba.compilation import compiled
 from roomba.world.camera.kernels.compilation import INLINE, INNER
-from roomba.world.camera.scene.arrays import ViewTables, WallGrid
+from roomba.world.camera.scene.arrays import Ray, ViewTables, WallGrid
 
 NEAR = 0.004
 """m; what is nearer than this to the lens is not seen."""
 
 
 @compiled(**INLINE)
-def cast_wall(
-    walls: WallGrid, x: float, y: float, dx: float, dy: float
-) -> tuple[float, int, int, int]:
+def column_ray(view: ViewTables, axis: Ray, column: float) -> Ray:
+    """Return the ray of a column; ``axis`` is the optical axis.
+
+    A whole number is a column's left edge.
+    """
+    k = (view.middle - column) / view.focal
+    return Ray(axis.x, axis.y, axis.dx - k * axis.dy, axis.dy + k * axis.dx)
+
+
+@compiled(**INLINE)
+def cast_wall(walls: WallGrid, ray: Ray) -> tuple[float, int, int, int]:
     """Return depth, m, axis crossed (0: x, 1: y), and the free cell (row, column) before a wall.
 
     Free space is crossed in jumps that no wall can be within; the last cells are walked exactly.
     A camera inside a wall sees it at ``NEAR``. The cells are those of the map with its border.
     """
-    skip = walls.skip
+    skip, dx, dy = walls.skip, ray.dx, ray.dy
     rows, columns = skip.shape
     # In cells of the bordered grid.
-    px = (x - walls.origin_x) / walls.resolution + 1.0
-    py = (y - walls.origin_y) / walls.resolution + 1.0
+    px = (ray.x - walls.origin_x) / walls.resolution + 1.0
+    py = (ray.y - walls.origin_y) / walls.resolution + 1.0
     column = math.floor(px)
     row = math.floor(py)
     if row < 0 or column < 0 or row >= rows or column >= columns or skip[row, column] == 0:
@@ -71,25 +79,16 @@ def cast_wall(
 
 
 @compiled(**INNER)
-def cast_walls(
-    walls: WallGrid,
-    view: ViewTables,
-    x: float,
-    y: float,
-    cosine: float,
-    sine: float,
-    hits: NDArray[np.float64],
-) -> float:
+def cast_walls(walls: WallGrid, view: ViewTables, axis: Ray, hits: NDArray[np.float64]) -> float:
     """Find the wall in every column; returns the depth of the farthest, m.
 
-    ``hits`` [columns, 3] gets depth, axis crossed and room.
+    ``axis`` is the optical axis; ``hits`` [columns, 3] gets depth, axis crossed and room.
     """
     farthest = 0.0
     for c in range(view.columns):
-        k = (view.middle - c - 0.5) / view.focal
-        t, axis, row, column = cast_wall(walls, x, y, cosine - k * sine, sine + k * cosine)
+        t, crossed, row, column = cast_wall(walls, column_ray(view, axis, c + 0.5))
         hits[c, 0] = max(t, NEAR)
-        hits[c, 1] = axis
+        hits[c, 1] = crossed
         hits[c, 2] = walls.rooms[row, column]
         farthest = max(farthest, t)
     return farthest
@@ -99,17 +98,15 @@ def cast_walls(
 def find_boxes(
     shapes: NDArray[np.float32],
     view: ViewTables,
-    x: float,
-    y: float,
-    cosine: float,
-    sine: float,
+    axis: Ray,
     farthest: float,
     seen: NDArray[np.float64],
 ) -> int:
     """List the boxes in view, nearest first; returns how many.
 
-    ``seen`` [boxes, 4] gets distance, index, first and last column.
+    ``axis`` is the optical axis; ``seen`` [boxes, 4] gets distance, index, first and last column.
     """
+    x, y, cosine, sine = axis
     count = 0
     for b in range(shapes.shape[0]):
         box = shapes[b]

@@ -13,17 +13,17 @@ from numpy.typing import NDArray
 from roomba.compilation import compiled
 from roomba.world.camera.kernels.colour import level_of, scaled, smooth_texel
 from roomba.world.camera.kernels.compilation import INLINE, KERNEL
-from roomba.world.camera.kernels.dirt import (
-    feel_knots,
-)
+from roomba.world.camera.kernels.dirt import feel_knots
 from roomba.world.camera.kernels.face import row_of
 from roomba.world.camera.kernels.film import shrink
-from roomba.world.camera.kernels.ray import cast_walls, find_boxes
+from roomba.world.camera.kernels.ray import cast_walls, column_ray, find_boxes
 from roomba.world.camera.kernels.smooth_floor import paint_floor
 from roomba.world.camera.kernels.span import column_spans
 from roomba.world.camera.scene.arrays import (
     PLANE,
     TURNED_FACE,
+    FloorDirt,
+    Ray,
     SceneArrays,
     Surfaces,
     ViewTables,
@@ -140,34 +140,25 @@ def paint_plane(
 def render_smooth(
     scene: SceneArrays,
     view: ViewTables,
-    x: float,
-    y: float,
-    cosine: float,
-    sine: float,
-    dirt: NDArray[np.int32],
-    dirt_place: NDArray[np.float64],
+    axis: Ray,
+    dirt: FloorDirt,
     work: Workspace,
     colours: NDArray[np.uint32],
 ) -> None:
     """Paint ``colours`` [columns / 2, rows / 2], not toned.
 
-    The camera is at (x, y) and looks along (cosine, sine). ``dirt_place`` is cell, origin x and
-    origin y of ``dirt``.
+    ``axis`` is the optical axis.
     """
     half = 0.5 * view.rows
-    farthest = cast_walls(scene.walls, view, x, y, cosine, sine, work.hits)
-    boxes = find_boxes(scene.boxes.shapes, view, x, y, cosine, sine, farthest, work.seen)
+    farthest = cast_walls(scene.walls, view, axis, work.hits)
+    boxes = find_boxes(scene.boxes.shapes, view, axis, farthest, work.seen)
     depth = work.depths[0]
     knots = work.knots[0]
     for c in range(view.columns):
-        k = (view.middle - c - 0.5) / view.focal
-        dx = cosine - k * sine
-        dy = sine + k * cosine
+        ray = column_ray(view, axis, c + 0.5)
         colour = work.colours[c & 1]
         depth[:] = np.float32(np.inf)
-        spans = column_spans(
-            work.spans, scene, view, x, y, dx, dy, c, work.hits[c], work.seen, boxes
-        )
+        spans = column_spans(work.spans, scene, view, ray, c, work.hits[c], work.seen, boxes)
         for s in range(spans):
             place, value = work.spans.places[s], work.spans.values[s]
             if place[3] == PLANE:
@@ -179,12 +170,11 @@ def render_smooth(
             for other in range(c, min(c + GROUP, view.columns)):
                 slope = -view.eye / work.hits[other, 0]
                 first_row = min(first_row, row_of(slope, half, view.focal, view.rows))
-            middle = k - (GROUP - 1) * 0.5 / view.focal
             feel_knots(
-                scene.lighting, view, x, y, cosine - middle * sine, sine + middle * cosine,
-                first_row, dirt, dirt_place, scene.floor.cover, 256.0, knots,
+                scene.lighting, view, column_ray(view, axis, c + 0.5 * GROUP),
+                first_row, dirt, scene.floor.cover, 256.0, knots,
             )  # fmt: skip
         floor_row = row_of(-view.eye / work.hits[c, 0], half, view.focal, view.rows)
-        paint_floor(colour, depth, floor_row, scene, view, x, y, dx, dy, knots)
+        paint_floor(colour, depth, floor_row, scene, view, ray, knots)
         if c & 1:
             shrink(work.colours, colours[c >> 1])

@@ -16,7 +16,7 @@ from roomba.world.camera.kernels.dirt import (
     CRUMB_TEXELS,
     floor_surface,
 )
-from roomba.world.camera.scene.arrays import SceneArrays, ViewTables
+from roomba.world.camera.scene.arrays import Ray, SceneArrays, ViewTables
 from roomba.world.home.crumbs import DUST
 
 PAIR = 2
@@ -86,13 +86,11 @@ def paint_floor(
     first_row: int,
     scene: SceneArrays,
     view: ViewTables,
-    x: float,
-    y: float,
-    dx: float,
-    dy: float,
+    ray: Ray,
     knots: NDArray[np.float32],
 ) -> None:
-    """Paint the floor from ``first_row`` down, where nothing nearer stands."""
+    """Paint the floor below a ray from ``first_row`` down, where nothing nearer stands."""
+    x, y, dx, dy = ray
     floor, surfaces = scene.floor, scene.surfaces
     knot_rows, reach, octaves = view.knots, view.reach, view.octave
     row_taps, row_crispness = view.taps, view.crispness

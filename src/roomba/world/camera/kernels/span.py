@@ -19,7 +19,7 @@ from roomba.world.camera.kernels.box import add_box
 from roomba.world.camera.kernels.compilation import INLINE
 from roomba.world.camera.kernels.face import add_face, add_span, row_of
 from roomba.world.camera.kernels.light import upright_shade
-from roomba.world.camera.scene.arrays import FACE, PLANE, SceneArrays, Spans, ViewTables
+from roomba.world.camera.scene.arrays import FACE, PLANE, Ray, SceneArrays, Spans, ViewTables
 
 SKIRTING_HEIGHT = 0.07
 TILED_HEIGHT = 1.35
@@ -39,16 +39,17 @@ def add_wall(
     count: int,
     scene: SceneArrays,
     view: ViewTables,
-    x: float,
-    y: float,
-    dx: float,
-    dy: float,
+    ray: Ray,
     t: float,
     axis: int,
     room: int,
 ) -> int:
-    """Add a wall from floor to ceiling, and the ceiling."""
+    """Add a wall at the depth ``t`` from floor to ceiling, and the ceiling.
+
+    ``axis`` is the one that the ray crosses there, 0 for x, 1 for y.
+    """
     walls = scene.walls
+    x, y, dx, dy = ray
     hit_x = x + t * dx
     hit_y = y + t * dy
     if axis == 0:
@@ -89,10 +90,7 @@ def column_spans(
     spans: Spans,
     scene: SceneArrays,
     view: ViewTables,
-    x: float,
-    y: float,
-    dx: float,
-    dy: float,
+    ray: Ray,
     column: int,
     hits: NDArray[np.float64],
     seen: NDArray[np.float64],
@@ -109,5 +107,5 @@ def column_spans(
         if seen[b, 0] >= t:
             break
         if seen[b, 2] <= column <= seen[b, 3]:
-            count = add_box(spans, count, scene, view, int(seen[b, 1]), x, y, dx, dy, t)
-    return int(add_wall(spans, count, scene, view, x, y, dx, dy, t, int(hits[1]), int(hits[2])))
+            count = add_box(spans, count, scene, view, int(seen[b, 1]), ray, t)
+    return int(add_wall(spans, count, scene, view, ray, t, int(hits[1]), int(hits[2])))

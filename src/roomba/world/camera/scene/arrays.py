@@ -119,6 +119,28 @@ class SceneArrays(NamedTuple):
     boxes: Boxes
 
 
+class Ray(NamedTuple):
+    """Where a camera, or a column of its picture, looks along the floor.
+
+    At the depth t along the optical axis it is at ``(x + t dx, y + t dy)``, m in the map frame. The
+    optical axis itself has a direction of length 1.
+    """
+
+    x: float
+    y: float
+    dx: float
+    dy: float
+
+
+class FloorDirt(NamedTuple):
+    """The dirt on the floor."""
+
+    micrograms: NDArray[np.int32]
+    """[rows, columns]: in each cell."""
+    place: NDArray[np.float64]
+    """[3]: side of a cell, and x and y of the lower left corner, m in the map frame."""
+
+
 class Spans(NamedTuple):
     """Room for what one picture column shows, in no order: runs of rows of one look each."""
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from roomba.configuration.sensors import CameraConfig
 from roomba.world.camera.kernels import floor_row
 from roomba.world.camera.kernels.floor_row import OF_DIRT, OF_DUST, OF_LIGHT
-from roomba.world.camera.scene.arrays import GREYS, SHADES, STRIP, TILE, StripRow
+from roomba.world.camera.scene.arrays import GREYS, SHADES, STRIP, TILE, Ray, StripRow
 from roomba.world.camera.view import view_tables, workspace
 
 kernel: Any = njit
@@ -25,14 +25,14 @@ def row_of_floor() -> StripRow:
 
 
 @kernel
-def found_ways(view: Any, cosine: float, sine: float, begin: int, row: Any) -> None:
-    floor_row.find_ways(view, cosine, sine, begin, row)
+def found_ways(view: Any, axis: Ray, begin: int, row: Any) -> None:
+    floor_row.find_ways(view, axis, begin, row)
 
 
 @pytest.mark.parametrize("begin", [0, STRIP])
 def test_columns_look_from_left_to_right_around_the_middle(begin: int) -> None:
     row = row_of_floor()
-    found_ways(VIEW, np.cos(0.3), np.sin(0.3), begin, row)
+    found_ways(VIEW, Ray(0.0, 0.0, np.cos(0.3), np.sin(0.3)), begin, row)
     aside = (VIEW.middle - (begin + np.arange(STRIP) + 0.5)) / VIEW.focal
     turned = np.exp(0.3j) * (1.0 + 1j * aside)
     assert row.way_x == pytest.approx(turned.real, rel=1e-5)
