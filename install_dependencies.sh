@@ -406,7 +406,7 @@ install_npm_packages() {
 # ---------------------------------------------------------------- step: the peers of the benchmarks
 
 bench_hash() {
-  (cd "$REPOSITORY" && printf '%s in %s\n' "$(readlink -f "$PYTHON")" "$BENCH_VENV" | hash_of benchmarks/peers.txt)
+  (cd "$REPOSITORY" && printf '%s in %s\n' "$(readlink -f "$PYTHON")" "$BENCH_VENV" | hash_of src/roomba_bench/peers.txt)
 }
 
 bench_is_current() {
@@ -426,7 +426,7 @@ make_bench_environment() {
     if install_peer "$name" ${arguments:-$name}; then
       installed=$((installed + 1))
     fi
-  done <"$REPOSITORY/benchmarks/peers.txt"
+  done <"$REPOSITORY/src/roomba_bench/peers.txt"
   ((installed > 0)) || fail "none of the peers could be installed; is the network there?"
   bench_hash >"$BENCH_VENV/.stamp"
 }
@@ -491,7 +491,11 @@ install_tool() { # TITLE VENV REQUIREMENTS
 # For one tool that runs in the robot's environment without being of it: .cache/NAME is put on PYTHONPATH for it.
 install_aside() { # NAME REQUIREMENT
   [[ -d $CACHE/$1 ]] ||
-    run_step "Installing $1" "$VENV/bin/python3" -m pip install --quiet --target "$CACHE/$1" "$2"
+    run_step "Installing $1" add_aside "$1" "$2"
+}
+
+add_aside() { # NAME REQUIREMENT
+  "$VENV/bin/python3" -m pip install --quiet --target "$CACHE/$1" "$2"
 }
 
 # Its packages are none of the robot's, and would be in its bill.

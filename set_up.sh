@@ -8,7 +8,8 @@ WORKSPACE=$REPOSITORY/.workspace
 # ---------------------------------------------------------------- step: catkin workspace
 
 source_folders() {
-  find "$REPOSITORY" -mindepth 1 -maxdepth 1 -type d -not -name '.*' -printf '%f\n' | sort
+  # Not what pip leaves when it makes a wheel of this checkout.
+  find "$REPOSITORY" -mindepth 1 -maxdepth 1 -type d -not -name '.*' -not -name build -printf '%f\n' | sort
 }
 
 workspace_hash() {
@@ -200,6 +201,8 @@ set_up() { # library|runtime|dev
     return
   fi
   local began
+  [[ -w $REPOSITORY ]] || fail "expected that you may write into $REPOSITORY, which is to be set up; it belongs to" \
+    "$(stat -c %U "$REPOSITORY"). Run this as that user, or in a clone of your own."
   mkdir -p "$CACHE"
   began=$(mktemp "$CACHE/.began.XXXXXX")
   if set_up_is_complete "$1"; then

@@ -22,6 +22,7 @@ from packageurl import PackageURL
 
 from lint.advisories import audit
 from lint.materials import Material, python_materials, system_materials
+from roomba.commands.ending import quiet_end
 
 _SCHEMA: Final = SchemaVersion.V1_6
 
@@ -64,7 +65,7 @@ def _component(material: Material) -> Component:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write the bill; return 1 when the audit found something."""
+    """Write the bill; return 1 when the audit found something, 2 if no file can be made."""
     parser = argparse.ArgumentParser(prog="./roomba sbom", description=__doc__)
     parser.add_argument("--out", type=Path, help="a file; without it standard output")
     parser.add_argument("--audit", action="store_true", help="look for known vulnerabilities")
@@ -78,10 +79,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if given.out is None:
         print(text)
     else:
-        given.out.write_text(f"{text}\n", encoding="utf-8")
+        try:
+            given.out.write_text(f"{text}\n", encoding="utf-8")
+        except OSError as error:
+            print(f"./roomba sbom: {error}; choose another file", file=sys.stderr)
+            return 2
         print(f"{given.out}: {len(materials)} packages", file=sys.stderr)
     return audit(materials) if given.audit else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    with quiet_end():
+        sys.exit(main())

@@ -81,7 +81,7 @@ that wait and those that compute by turns."""
 
 
 SLOW = (
-    "unit/benchmarks",
+    "unit/roomba_bench",
     "unit/commands/localize",
     "unit/commands/map",
     "unit/commands/pictures/test_pictures.py",

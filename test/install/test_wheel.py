@@ -73,6 +73,33 @@ def test_it_makes_pictures(installed: Installation) -> None:
     assert made == {"home.png", "levels.png"}
 
 
+def test_it_measures_ours_and_names_the_peers_that_are_not_there(installed: Installation) -> None:
+    words = ("--quick", "plan", "--json", "plan.json", "--markdown", "plan.md")
+    done = installed.roomba("bench", *words)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = json.loads((installed.away / "plan.json").read_text(encoding="utf-8"))
+    assert {row["figure"] for row in rows if row["value"] is None} == {
+        "shortest 8-connected path: times better than pyastar2d"
+    }
+    reasons = [peer["error"] for row in rows for peer in row["peers"]]
+    assert len(reasons) == 20
+    assert all("name one that has " in reason for reason in reasons)
+    assert "pyastar2d: not measured (" in (installed.away / "plan.md").read_text(encoding="utf-8")
+    assert (installed.away / "bench.results" / "plan.png").is_file()
+
+
+def test_a_python_of_the_peers_runs_them_with_nothing_of_the_robot(installed: Installation) -> None:
+    """The one that is named is empty: numpy of the robot's own packages is not taken."""
+    assert installed.python("import venv; venv.create('none')").returncode == 0
+    words = ("--quick", "plan", "--peers", "none/bin/python3", "--json", "plan.json")
+    done = installed.roomba("bench", *words)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = json.loads((installed.away / "plan.json").read_text(encoding="utf-8"))
+    reasons = {peer["error"] for row in rows for peer in row["peers"]}
+    missing = {f"ModuleNotFoundError: No module named '{name}'" for name in ("networkx", "numpy")}
+    assert reasons == missing
+
+
 def test_the_environment_for_agents_works_and_loads_no_ros(installed: Installation) -> None:
     done = installed.python(AGENT)
     assert done.returncode == 0, done.stderr
@@ -90,7 +117,7 @@ def test_the_doctor_finds_nothing_missing(installed: Installation) -> None:
 
 @pytest.mark.parametrize(
     ("command", "said"),
-    [("run", "needs ROS"), ("bench", "needs the sources"), ("bogus", "expected a command")],
+    [("run", "needs ROS"), ("exercise", "needs the sources"), ("bogus", "expected a command")],
 )
 def test_a_command_that_is_not_here_says_so_in_one_line(
     installed: Installation, command: str, said: str

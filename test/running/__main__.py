@@ -16,6 +16,8 @@ from running.pytests import pytest_command
 from running.robots import Robots
 from running.suites import FIRST, ROOT, Asked, Kind, asked_for
 
+from roomba.commands.ending import quiet_end
+
 CHECKS = (sys.executable, "-m", "running.checks")
 SAFETY = (sys.executable, "-m", "safety")
 COMPUTING_AT_ONCE = 3
@@ -95,4 +97,5 @@ def _tests(asked: Asked, name: str, chosen: Sequence[str], *, is_first: bool) ->
 
 
 if __name__ == "__main__":
-    raise SystemExit(main(sys.argv[1:]))
+    with quiet_end():
+        sys.exit(main(sys.argv[1:]))

@@ -27,6 +27,8 @@ from soak.rows import Row, table
 from soak.standstill import standstill
 from soak.starts import starts
 
+from roomba.commands.ending import quiet_end
+
 PARTS: Final[dict[str, Callable[[Arena], list[Row]]]] = {
     "mixed": mixed,
     "processes": processes,
@@ -71,4 +73,5 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    with quiet_end():
+        sys.exit(main())

@@ -1,7 +1,8 @@
 """Tests mirror the modules: each has a file of its own, or its test is told here with the reason.
 
-``test/unit/a/b/test_c.py`` tests ``src/roomba/a/b/c.py``, and ``test/ros/b/test_c.py``
-``src/roomba_ros/b/c.py``. Folders stay small enough to be looked over.
+``test/unit/a/b/test_c.py`` tests ``src/roomba/a/b/c.py``, ``test/ros/b/test_c.py``
+``src/roomba_ros/b/c.py``, and ``test/unit/roomba_bench/b/test_c.py`` ``src/roomba_bench/b/c.py``.
+Folders stay small enough to be looked over.
 """
 
 from __future__ import annotations
@@ -26,6 +27,10 @@ WORLD = "a part of the simulated world, tested by what the robot meets there"
 MISSION = "a part of the mission, tested by commanding and ticking it"
 NODE = "a part of a node, tested with the node in a graph"
 WARM = "compiles ahead of time what others test"
+MEASURED = "what a topic of the benchmarks measures, tested by its rows"
+FORM = (
+    "runs where it is measured, or in a peer's process; that it has the form of its kind is tested"
+)
 
 TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba_ros/driver/told_topics": ("ros/driver/test_roomba_driver_node.py", NODE),
@@ -60,6 +65,19 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/client/ports": ("unit/commands/status/test_command.py", VALUES),
     "roomba/client/protocol": ("unit/client/fake/test_robot.py", "an interface"),
     "roomba/client/observed": ("unit/ui/web/test_app.py", "an interface"),
+    "roomba_bench/": ("unit/roomba_bench/test_command.py", COMMAND),
+    "roomba_bench/coverage/": ("unit/roomba_bench/coverage/test_rows.py", MEASURED),
+    "roomba_bench/localization/": (
+        "unit/roomba_bench/localization/test_localization.py",
+        MEASURED,
+    ),
+    "roomba_bench/mapping/": ("unit/roomba_bench/mapping/test_mapping.py", MEASURED),
+    "roomba_bench/page/": ("unit/roomba_bench/test_topics.py", FORM),
+    "roomba_bench/peers/": ("unit/roomba_bench/test_topics.py", FORM),
+    "roomba_bench/rooms/": ("unit/roomba_bench/rooms/test_rooms.py", MEASURED),
+    "roomba_bench/ros/": ("unit/roomba_bench/test_topics.py", FORM),
+    "roomba_bench/slam/": ("unit/roomba_bench/slam/test_slam.py", MEASURED),
+    "roomba_bench/topics/": ("unit/roomba_bench/test_topics.py", FORM),
     "roomba/commands/campaign/": ("unit/commands/campaign/test_command.py", COMMAND),
     "roomba/ui/live_bar": ("unit/ui/test_progress.py", "drawn with what it shows"),
     "roomba/commands/demonstration/command": (
@@ -267,8 +285,11 @@ TESTED_BY: dict[str, tuple[str, str]] = {
 }
 """Modules, or folders of them, without files of their own: the test that would fail, and why."""
 
+OWN_TESTS = {"roomba": "unit", "roomba_ros": "ros", "roomba_bench": "unit/roomba_bench"}
+"""Of each package the folder whose tests mirror it."""
+
 LARGE_FOLDERS = {
-    "benchmarks/peers": "one script a peer",
+    "src/roomba_bench/peers": "one script a peer",
     "src/roomba/configuration": "one part of the configuration a file",
 }
 
@@ -279,7 +300,7 @@ def modules() -> tuple[str, ...]:
     return tuple(
         sorted(
             path.relative_to(SOURCE).with_suffix("").as_posix()
-            for package in ("roomba", "roomba_ros")
+            for package in OWN_TESTS
             for path in (SOURCE / package).rglob("*.py")
             if path.stem not in ("__init__", "__main__")
         )
@@ -295,9 +316,7 @@ def untested() -> dict[str, str | None]:
 def own_test(module: str) -> Path:
     """The file that tests a module, whether it exists or not."""
     package, *folders, name = module.split("/")
-    if package == "roomba":
-        return TEST.joinpath("unit", *folders, f"test_{name}.py")
-    return TEST.joinpath("ros", *folders, f"test_{name}.py")
+    return TEST.joinpath(OWN_TESTS[package], *folders, f"test_{name}.py")
 
 
 def entry_of(module: str) -> str | None:
@@ -349,10 +368,10 @@ def test_no_line_of_the_table_is_needless() -> None:
 
 @pytest.mark.parametrize("entry", sorted(TESTED_BY))
 def test_what_tests_a_module_in_place_of_a_file_of_its_own_loads_it(entry: str) -> None:
-    """Nodes are started by launch files; of what is imported the way is followed."""
+    """Nodes and peers are started as programs; of what is imported the way is followed."""
     test, reason = TESTED_BY[entry]
     assert (TEST / test).is_file()
-    if reason in (NODE, WARM):
+    if reason in (FORM, NODE, WARM):
         return
     reached = reached_from(TEST / test)
     told_here = [module for module, line in untested().items() if line == entry]
@@ -363,7 +382,8 @@ def test_what_tests_a_module_in_place_of_a_file_of_its_own_loads_it(entry: str) 
 
 def test_tests_stand_in_the_folders_of_what_they_are_about() -> None:
     """Files named after behaviours too; what does not lie in ``src`` has folders of its own."""
-    folders = {module.rpartition("/")[0].partition("/")[2] for module in modules()}
+    places = {own_test(module).parent.relative_to(TEST).as_posix() for module in modules()}
+    folders = {place.partition("/")[2] for place in places}
     tops = {folder.partition("/")[0] for folder in folders}
     for path in (TEST / "unit").rglob("test_*.py"):
         folder = path.parent.relative_to(TEST / "unit").as_posix()
@@ -378,7 +398,7 @@ def test_every_folder_of_tests_is_a_suite_of_the_command() -> None:
 def test_folders_can_be_looked_over() -> None:
     large = {
         folder.relative_to(ROOT).as_posix()
-        for top in (SOURCE, TEST, ROOT / "benchmarks")
+        for top in (SOURCE, TEST)
         for folder in (top, *top.rglob("*"))
         if folder.is_dir()
         and sum(path.name != "__init__.py" for path in folder.glob("*.py")) > MOST_FILES

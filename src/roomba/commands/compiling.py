@@ -8,7 +8,7 @@ from __future__ import annotations
 import contextlib
 import gc
 import importlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Final
 
@@ -28,7 +28,21 @@ def compiled_functions_told() -> Iterator[None]:
 
     What is loaded from the cache on disk is not told.
     """
-    with _garbage_looked_for_seldom(), event.install_listener("numba:compile", _Teller()):
+    with _garbage_looked_for_seldom(), event.install_listener("numba:compile", _Teller(_print)):
+        yield
+
+
+@contextlib.contextmanager
+def compiling_counted(tell: Callable[[str], None]) -> Iterator[None]:
+    """Tell, in words for people, how many functions numba has begun to compile here.
+
+    The installed library has no set-up that compiles them: its first run does, for some minutes.
+    """
+
+    def count(number: int, _: str) -> None:
+        tell(f"compiling, this once: function {number}")
+
+    with event.install_listener("numba:compile", _Teller(count)):
         yield
 
 
@@ -46,19 +60,24 @@ def _garbage_looked_for_seldom() -> Iterator[None]:
 
 
 class _Teller(event.Listener):
-    """Counts what begins to be compiled."""
+    """Counts what begins to be compiled, and tells its number and name."""
 
-    def __init__(self) -> None:
+    def __init__(self, tell: Callable[[int, str], None]) -> None:
         self._count = 0
+        self._tell = tell
 
     def on_start(self, event: Any) -> None:
         """Tell the function that the event is about."""
         function = event.data["dispatcher"].py_func
         self._count += 1
-        print(f"{self._count}: {function.__module__}.{function.__qualname__}", flush=True)
+        self._tell(self._count, f"{function.__module__}.{function.__qualname__}")
 
     def on_end(self, event: Any) -> None:
         """Say nothing: the next function tells that this one is done."""
+
+
+def _print(number: int, name: str) -> None:
+    print(f"{number}: {name}", flush=True)
 
 
 def left_to_compile() -> list[str]:

@@ -22,6 +22,8 @@ from enum import Enum
 from pathlib import Path
 from urllib.parse import urlsplit
 
+from roomba.commands.ending import quiet_end
+
 SYSTEM_PYTHON = "/usr/bin/python3"
 DEFAULT_MASTER = "http://localhost:11311"
 MODULE_OF_STEP = {
@@ -248,4 +250,5 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    with quiet_end():
+        sys.exit(main())

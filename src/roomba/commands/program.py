@@ -1,6 +1,7 @@
 """The program ``roomba`` of the installed library: the commands that need no ROS.
 
-``./roomba`` of a checkout has the same commands, and those that need ROS beside.
+``./roomba`` of a checkout has the same commands, some of them by this program, and those that need
+ROS beside.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import re
 import sys
 from importlib.metadata import version
 from pathlib import Path
+from types import ModuleType
 from typing import Final
 
 from roomba.commands.doctor import (
@@ -21,6 +23,7 @@ from roomba.commands.doctor import (
     as_table,
     why_not_all_importable,
 )
+from roomba.commands.ending import quiet_end, quiet_loading
 from roomba.commands.spelling import spelled
 
 _IS_WINDOWS: Final = os.name == "nt"
@@ -39,6 +42,7 @@ _COMMANDS: Final = {
     "import": "roomba.commands.valetudo.import_command",
     "export": "roomba.commands.export.command",
     "pictures": "roomba.commands.pictures.__main__",
+    "bench": "roomba_bench.__main__",
     "doctor": __name__,
 }
 """The module whose ``main`` is the command; each is loaded when it is asked for."""
@@ -50,13 +54,13 @@ _DEMOS: Final = {"control": "roomba.commands.control.command"}
 """The same of a command that needs ROS, but not with ``--demo``."""
 _ON_WINDOWS: Final = ("sim", "doctor")
 """The commands that keep no files in a folder of this program's own."""
-_NEED_ROS: Final = ("run", "control", "camera", "exec", "record")
-_NEED_CHECKOUT: Final = ("test", "bench", "exercise", "docs")
+_NEED_ROS: Final = ("run", "control", "camera", "exec", "record", "service")
+_NEED_CHECKOUT: Final = ("test", "soak", "fuzz", "sbom", "exercise", "docs")
 _USAGE: Final = Path(__file__).with_name("usage.txt")
 """What ``./roomba help`` prints, of which this program has a part."""
 _ELSEWHERE: Final = """\
-The commands run, camera, exec, record, and control without --demo, need ROS; test, bench, exercise
-and docs need the checkout: there it is ./roomba COMMAND.
+The commands run, camera, exec, record, service, and control without --demo, need ROS; test, soak,
+fuzz, sbom, exercise and docs need the checkout: there it is ./roomba COMMAND.
 """
 _MODULES: Final = (
     "cv2", "fastapi", "matplotlib", "numba", "numpy", "pebble", "PIL", "pydantic", "rich",
@@ -73,6 +77,11 @@ _EXTRAS: Final = {
 
 def program() -> int:
     """Run the command of the command line; returns the exit status, 2 for one that is not here."""
+    with quiet_end():
+        return _run()
+
+
+def _run() -> int:
     command, *arguments = sys.argv[1:] or ["help"]
     if command in ("help", "-h", "--help"):
         print(_usage(), end="")
@@ -81,7 +90,7 @@ def program() -> int:
         print(f"roomba_robot {version('roomba_robot')}")
         return 0
     if command in _DEMOS and "--demo" in arguments:
-        return int(importlib.import_module(_DEMOS[command]).main(arguments))
+        return int(_loaded(_DEMOS[command]).main(arguments))
     if _IS_WINDOWS and command not in _ON_WINDOWS:
         here = ", ".join(_ON_WINDOWS)
         return _refused(
@@ -100,7 +109,12 @@ def program() -> int:
     modules = {**_COMMANDS, **(_OF_RECORDINGS if has_recording else {})}
     if arguments[:1] == ["valetudo"]:
         modules |= _OF_VALETUDO
-    return int(importlib.import_module(modules[command]).main(arguments))
+    return int(_loaded(modules[command]).main(arguments))
+
+
+def _loaded(module: str) -> ModuleType:
+    with quiet_loading():
+        return importlib.import_module(module)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -138,3 +152,7 @@ def _imported(module: str, reason: str) -> Finding:
 def _refused(reason: str) -> int:
     print(f"roomba: {reason}", file=sys.stderr)
     return 2
+
+
+if __name__ == "__main__":
+    sys.exit(program())

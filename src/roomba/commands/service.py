@@ -10,7 +10,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
 
-from roomba.client.ports import DEFAULT_PORT
+from roomba.client.ports import DEFAULT_PORT, LAST_PORT
+from roomba.commands.ending import quiet_end
+from roomba.commands.options import whole
 from roomba.commands.spelling import spelled
 from roomba.errors import RoombaError
 from roomba.files.atomic import write_whole
@@ -100,7 +102,9 @@ def main(arguments: Sequence[str] | None = None, run: Run = _run) -> int:
     parser = argparse.ArgumentParser(prog=PROGRAM, description=__doc__)
     parser.add_argument("what", choices=("show", "install", "remove"))
     parser.add_argument("launch", nargs="*", metavar="name:=value", help="as for ./roomba run")
-    parser.add_argument("--port", type=int, default=DEFAULT_PORT, help="of the page (%(default)s)")
+    parser.add_argument(
+        "--port", type=whole(1, LAST_PORT), default=DEFAULT_PORT, help="of the page (%(default)s)"
+    )
     parser.add_argument("--units", type=Path, default=FOLDER, help="the folder (%(default)s)")
     parser.add_argument("--repository", type=Path, required=True, help=argparse.SUPPRESS)
     given = parser.parse_args(arguments)
@@ -122,4 +126,5 @@ def main(arguments: Sequence[str] | None = None, run: Run = _run) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    with quiet_end():
+        sys.exit(main())

@@ -41,10 +41,14 @@ def tell_tables(tables: Iterable[Table], figures: str | None, *, quiet: bool) ->
     if quiet:
         return
     console = Console(stderr=figures == STANDARD_OUTPUT)
-    if not console.is_terminal:
-        console.width = _WIDTH
+    console.width = told_width(console)
     for table in tables:
         console.print(table, highlight=False)
+
+
+def told_width(console: Console) -> int:
+    """Return how many columns a table may take: those of the terminal, if it goes to one."""
+    return console.width if console.is_terminal else _WIDTH
 
 
 def write_json(target: str, values: dict[str, Any]) -> None:

@@ -58,7 +58,11 @@ def read_yaml(path: Path) -> Any:
     """Return what a YAML file holds, an empty mapping for an empty file; raises ConfigError."""
     try:
         raw = load_yaml(read_text(path))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+    except UnicodeDecodeError as error:
+        raise ConfigError(
+            f"{path}: expected UTF-8 text, got other bytes; save it as UTF-8"
+        ) from error
+    except (OSError, yaml.YAMLError) as error:
         raise ConfigError(f"{path}: cannot be read as YAML: {error}") from error
     return raw or {}
 
@@ -80,6 +84,11 @@ def validated(
                 reason = first["msg"].removeprefix("Value error, ")
             case "extra_forbidden":
                 reason = f"{unknown}, got {first['input']!r}"
+            case "model_type" | "dict_type":
+                reason = f"expected keys and values (`key: value`), got {first['input']!r}"
+            case "missing":
+                reason = "expected a value, got nothing; add it"
             case _:
-                reason = f"{first['msg']}, got {first['input']!r}"
+                told = first["msg"].replace("Input should be", "expected")
+                reason = f"{told}, got {first['input']!r}"
         raise ConfigError(f"{where}{name}: {reason}" if name else f"{where}{reason}") from error

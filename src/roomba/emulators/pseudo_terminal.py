@@ -48,8 +48,11 @@ class PseudoTerminal:
         if link is not None:
             if link.exists() and not link.is_symlink():
                 raise RoombaError(f"expected a new name for the line, got {link}: a file is there")
-            link.unlink(missing_ok=True)
-            link.symlink_to(self.name)
+            try:
+                link.unlink(missing_ok=True)
+                link.symlink_to(self.name)
+            except OSError as error:
+                raise RoombaError(f"{link}: cannot be made a link: {error.strerror}") from error
 
     def read(self, seconds: float) -> bytes:
         """Return what a program sent, as soon as something is there; b"" after ``seconds``."""

@@ -32,6 +32,8 @@ from roomba.recordings.readings import (
 
 _MAP: Final = "map"
 _NOT_FINITE: Final = "its numbers are not finite"
+_CLIPPED: Final = 0.1
+"""Share of a scan's beams that all are as long as the longest one: they are cut there."""
 _LEAST_DEVIATION: Final = 0.1
 """m, rad; of a told pose whose sender does not say how sure it is."""
 
@@ -43,12 +45,13 @@ class LidarBook:
         """``mount_of`` tells where the frame of a sensor is on the robot."""
         self.mount_of = mount_of
         self._known: dict[tuple[object, ...], LidarModel] = {}
+        self._cut_at: dict[str, float] = {}
 
     def lidar_of(self, message: Any) -> LidarModel:
         """Return the lidar of a scan."""
         frame = str(message.header.frame_id)
         first, step, beams = message.angle_min, message.angle_increment, len(message.ranges)
-        ranges, increment = (message.range_min, message.range_max), message.time_increment
+        ranges, increment = (message.range_min, self._farthest(message)), message.time_increment
         key = (frame, beams, first, step, *ranges, increment)
         if key not in self._known:
             mount = self.mount_of(frame, Kind.SCAN)
@@ -56,6 +59,20 @@ class LidarBook:
             angles = -angles if mount.is_upside_down else angles
             self._known[key] = LidarModel(angles, *ranges, mount.pose, increment)
         return self._known[key]
+
+    def _farthest(self, message: Any) -> float:
+        """Return from which range on a beam met nothing, m.
+
+        Some drivers cut ranges, and tell another largest one.
+        """
+        frame, told = str(message.header.frame_id), float(message.range_max)
+        ranges = np.asarray(message.ranges, np.float32)
+        longest = float(ranges.max(initial=0.0, where=ranges < np.float32(told)))
+        if longest > self._cut_at.get(frame, 0.0):
+            self._cut_at.pop(frame, None)
+            if longest > message.range_min and np.mean(ranges == np.float32(longest)) > _CLIPPED:
+                self._cut_at[frame] = longest
+        return min(told, self._cut_at.get(frame, told))
 
 
 def decoded(kind: Kind, message: Any, lidars: LidarBook) -> Value | Refused:

@@ -45,6 +45,10 @@ from roomba.recordings.readings import (
 BASE: Final = "base_link"
 WORDS: Final = ("FLASER", "ROBOTLASER1", "RAWLASER1", "ODOM", "PARAM")
 """Lines that are read."""
+_LISTED: Final = 10
+"""First words of a file that is no log, in its refusal."""
+_LONGEST: Final = 30
+"""Characters of each."""
 _NARROW: Final = (400, 401)
 """Readings of a FLASER over 100 degrees."""
 _ECHO: Final = 0.998
@@ -83,6 +87,12 @@ class _Line(NamedTuple):
     ranges: NDArray[np.float32] | None
 
 
+def _shown(words: Iterable[str]) -> str:
+    """Return the first words, each cut: a file of another kind may be one long word, or many."""
+    shown = [word if len(word) <= _LONGEST else f"{word[:_LONGEST]}…" for word in words]
+    return ", ".join(shown[:_LISTED]) + (", …" if len(shown) > _LISTED else "")
+
+
 class CarmenLog:
     """A log that is held in memory."""
 
@@ -97,7 +107,7 @@ class CarmenLog:
         if not self._lines:
             raise LogError(
                 f"{path}: expected lines {', '.join(WORDS[:-1])} of a CARMEN log, got none; it has "
-                f"{', '.join(self._other) or 'nothing'}"
+                f"{_shown(self._other) or 'nothing'}"
             )
         if self._broken:
             self.notes.append(f"{self._broken} lines of {path.name} cannot be read: left out")

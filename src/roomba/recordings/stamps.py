@@ -26,7 +26,11 @@ _COARSE: Final = 0.2
 _SHORT: Final = 12
 """Messages; so few stamps of a clock that jumps may each be wrong by something else."""
 _HOLE: Final = (0.5, 2.5)
-"""Usual steps; so far from the next ones are the stamps of messages that came late."""
+"""Shares of the short and the long steps that are usual; so far from the next ones are the stamps
+of messages that came late.
+"""
+_SHORT_STEP, _LONG_STEP = 0.1, 0.9
+"""Quantiles of the steps: drivers may send at once what came while they were busy."""
 _INFORMATIVE: Final = 0.5
 """Arrivals tell something if there are so many different ones, as a share of the stamps."""
 
@@ -132,13 +136,16 @@ def _unjumped(times: Floats, expected: Floats) -> int:
 
     A piece begins where the step from one to the next differs from that of what was ``expected``
     by arrivals, and is the less usual one of both: messages that were held up and then came all at
-    once have usual stamps. Late ones have stamps where the others leave a hole.
+    once have usual stamps. Late ones have stamps where the others leave a hole; in a short piece
+    that is asked of each one.
     """
     if len(times) < 3:
         return 0
     step, arrived = np.diff(times), np.diff(expected)
     ordered = np.sort(times)
-    usual = float(np.median(np.diff(ordered)))
+    steps = np.diff(ordered)
+    usual = float(np.median(steps))
+    hole = np.quantile(steps, (_SHORT_STEP, _LONG_STEP)) * _HOLE
     is_jump = np.abs(step - arrived) > JUMP
     is_jump &= np.abs(step - usual) > np.abs(arrived - usual)
     borders = [0, *(1 + np.flatnonzero(is_jump)).tolist(), len(times)]
@@ -147,20 +154,49 @@ def _unjumped(times: Floats, expected: Floats) -> int:
         off = float(np.median(times[first:end] - expected[first:end]))
         if abs(off) <= JUMP:
             continue
-        if off > 0.0 or not _fills_hole(times[first:end], ordered, usual):
-            is_short = end - first <= _SHORT
-            times[first:end] = expected[first:end] if is_short else times[first:end] - off
+        if off < 0.0 and _fills_hole(times[first:end], ordered, hole):
+            continue
+        if end - first > _SHORT:
+            times[first:end] -= off
             shifted += end - first
+        else:
+            shifted += _mend_each(times[first:end], expected[first:end], ordered, hole)
     return shifted
 
 
-def _fills_hole(piece: Floats, ordered: Floats, usual: float) -> bool:
-    """Whether a piece of the stamps ``ordered`` lies where the others leave room for just it."""
+def _mend_each(times: Floats, expected: Floats, ordered: Floats, hole: Floats) -> int:
+    """Let each of some ``times`` be as ``expected`` that is not just late; return how many."""
+    piece = np.sort(times)
+    is_late = np.array(
+        [
+            time < at and _is_between(time, piece, ordered, hole)
+            for time, at in zip(times.tolist(), expected.tolist(), strict=True)
+        ]
+    )
+    times[:] = np.where(is_late, times, expected)
+    return int(np.count_nonzero(~is_late))
+
+
+def _is_between(time: float, piece: Floats, ordered: Floats, hole: Floats) -> bool:
+    """Whether the stamps ``ordered`` but for those of a ``piece`` leave room for one, s."""
+    least, most = hole
+    near = ordered[np.searchsorted(ordered, time - most) : np.searchsorted(ordered, time + most)]
+    others = near[~np.isin(near, piece)]
+    return bool((others < time).any() and (others > time).any()) and bool(
+        np.abs(others - time).min() > least and np.count_nonzero(near == time) == 1
+    )
+
+
+def _fills_hole(piece: Floats, ordered: Floats, hole: Floats) -> bool:
+    """Whether a piece of the stamps ``ordered`` lies where the others leave room for just it.
+
+    ``hole`` [2] is how far it is from the next ones at least and at most, s.
+    """
     low, high = float(piece.min()), float(piece.max())
     first = int(np.searchsorted(ordered, low, "left"))
     end = int(np.searchsorted(ordered, high, "right"))
     if end - first != len(piece) or first == 0 or end == len(ordered):
         return False
-    least, most = (share * usual for share in _HOLE)
+    least, most = hole
     before, after = low - float(ordered[first - 1]), float(ordered[end]) - high
-    return least < before < most and least < after < most
+    return bool(least < before < most and least < after < most)

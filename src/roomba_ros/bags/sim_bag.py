@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
+from roomba.commands.ending import quiet_end
 from roomba.commands.sim.command import main as simulate
 from roomba.commands.trials.runs import TrialSetup
 from roomba.control.path_tracker import PathTracker
@@ -138,4 +139,5 @@ def coverage_on_map(setup: TrialSetup) -> OccupancyMap:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    with quiet_end():
+        sys.exit(main())

@@ -44,6 +44,14 @@ _unguarded: Final = rospy.msg.deserialize_messages
 _slots = threading.BoundedSemaphore(_MOST_HANDSHAKES)
 
 
+class NothingSaidError(ConnectionError):
+    """A connection that was closed by who opened it, and said nothing.
+
+    rospy does so with a connection to a topic that it opened twice, as all nodes start at once: no
+    fault that anyone could mend.
+    """
+
+
 def guard_connections() -> None:
     """Guard all connections to this process; call before ``rospy.init_node``."""
     tcpros.TCPROSServer._tcp_server_callback = _take
@@ -76,6 +84,9 @@ def _shake_hands(server: Any, connection: socket.socket, address: tuple[str, int
     """Hand a connection to the topic or service that it wants, or close it."""
     try:
         fault = _answer(server, connection, address)
+    except NothingSaidError:
+        connection.close()
+        fault = ""
     except (OSError, ValueError, ROSHandshakeException, rospy.ROSException) as error:
         fault = str(error) or type(error).__name__
     finally:
@@ -105,9 +116,15 @@ def _answer(server: Any, connection: socket.socket, address: tuple[str, int]) ->
 
 
 def header_of(connection: socket.socket) -> dict[str, str]:
-    """Return what a connection says of itself; raises OSError or ROSHandshakeException."""
+    """Return what a connection says of itself.
+
+    Raises NothingSaidError, another OSError, or ROSHandshakeException.
+    """
     deadline = time.monotonic() + HANDSHAKE
-    length = _exactly(connection, _LENGTH.size, deadline)
+    first = _up_to(connection, 1, deadline)
+    if not first:
+        raise NothingSaidError("it was closed and said nothing")
+    length = first + _exactly(connection, _LENGTH.size - 1, deadline)
     (size,) = _LENGTH.unpack(length)
     if size > LONGEST_HEADER:
         raise ROSHandshakeException(
@@ -124,6 +141,14 @@ def header_of(connection: socket.socket) -> dict[str, str]:
 
 def _exactly(connection: socket.socket, size: int, deadline: float) -> bytes:
     """Read so many bytes until a deadline, s of wall time; raises OSError."""
+    read = _up_to(connection, size, deadline)
+    if len(read) < size:
+        raise ConnectionError("it was closed before it said what it wants")
+    return read
+
+
+def _up_to(connection: socket.socket, size: int, deadline: float) -> bytes:
+    """Read the same, or what there is of it when the connection is closed; raises OSError."""
     read = bytearray()
     while len(read) < size:
         left = deadline - time.monotonic()
@@ -132,7 +157,7 @@ def _exactly(connection: socket.socket, size: int, deadline: float) -> bytes:
         connection.settimeout(left)
         part = connection.recv(size - len(read))
         if not part:
-            raise ConnectionError("it was closed before it said what it wants")
+            break
         read += part
     return bytes(read)
 

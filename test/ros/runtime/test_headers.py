@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosgraph.network import ROSHandshakeException, encode_ros_handshake_header
 
-from roomba_ros.runtime.connections import LONGEST_HEADER, header_of
+from roomba_ros.runtime.connections import LONGEST_HEADER, NothingSaidError, header_of
 
 WHOLE = {"callerid": "/a", "topic": "/odom", "md5sum": "*", "type": "nav_msgs/Odometry"}
 KNOWN = (OSError, ValueError, ROSHandshakeException)
@@ -29,6 +29,15 @@ def header(content: bytes) -> dict[str, str]:
 
 def test_a_whole_header_is_read() -> None:
     assert header(encode_ros_handshake_header(WHOLE)) == WHOLE
+
+
+def test_one_that_is_closed_without_a_word_is_told_from_one_that_breaks_off() -> None:
+    with pytest.raises(NothingSaidError):
+        header(b"")
+    for broken_off in (b"\x04", struct.pack("<I", 4), struct.pack("<I", 4) + b"abc"):
+        with pytest.raises(ConnectionError, match="before it said") as refused:
+            header(broken_off)
+        assert not isinstance(refused.value, NothingSaidError)
 
 
 @pytest.mark.parametrize("left", [1, 2, 3])

@@ -11,7 +11,7 @@ import pytest
 from numba import njit
 from numpy.typing import NDArray
 
-from roomba.commands.compiling import compiled_functions_told
+from roomba.commands.compiling import compiled_functions_told, compiling_counted
 
 
 def test_each_function_is_told_when_it_begins_to_be_compiled(
@@ -35,6 +35,19 @@ def test_each_function_is_told_when_it_begins_to_be_compiled(
     told = capsys.readouterr().out.splitlines()
     assert [line.partition(": ")[0] for line in told] == ["1", "2"]
     assert [line.rpartition(".")[2] for line in told] == ["outer", "inner"]
+
+
+def test_compiling_is_told_in_words_and_what_is_compiled_is_not() -> None:
+    @njit(nogil=True)
+    def doubled(values: NDArray[np.float64]) -> None:
+        values *= 2.0
+
+    values, told = np.ones(1), list[str]()
+    with compiling_counted(told.append):
+        doubled(values)
+        doubled(values)
+    assert values == 4.0
+    assert told == ["compiling, this once: function 1"]
 
 
 def test_garbage_is_looked_for_as_usual_after_compiling() -> None:

@@ -113,6 +113,21 @@ def test_what_needs_ros_says_so_before_it_installs_anything(
     assert not (machine.folder / ".venv").exists()
 
 
+@pytest.mark.parametrize(
+    ("system", "part"), [("fedora", "library"), ("noble", "library"), ("bookworm", "runtime")]
+)
+def test_python_is_that_of_the_library_where_there_is_no_ros(
+    tmp_path: Path, system: str, part: str
+) -> None:
+    script = """sed '/^main /d' roomba >parts; source ./parts
+        set_up() { echo "set up: $1"; }
+        enter_library() { :; }
+        enter_environment() { :; }
+        main exec python3 -c 'print("it ran")'"""
+    done = Machine(tmp_path, system, system == "bookworm").bash(script)
+    assert done.stdout.splitlines() == [f"set up: {part}", "it ran"], done.stderr
+
+
 @pytest.mark.parametrize("system", ["fedora", "noble"])
 def test_the_doctor_says_it_too(tmp_path: Path, system: str) -> None:
     done = Machine(tmp_path, system, system == "noble").roomba("doctor")

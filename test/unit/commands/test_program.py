@@ -40,6 +40,8 @@ def test_the_version_is_that_of_the_installed_library(
         ("run", "run: needs ROS, which only a checkout sets up: ./roomba run"),
         ("control", "control: needs ROS"),
         ("test", "test: needs the sources; in a checkout: ./roomba test"),
+        ("sbom", "sbom: needs the sources; in a checkout: ./roomba sbom"),
+        ("service", "service: needs ROS"),
         ("bogus", "expected a command of `roomba help`, got 'bogus'"),
     ],
 )
@@ -82,6 +84,16 @@ def test_a_recorded_drive_is_localized_without_ros(
 ) -> None:
     assert call(monkeypatch, "localize", "--map", "no.yaml", "--bag", "no.bag") == 1
     assert "roomba localize: no.yaml: " in capsys.readouterr().err
+
+
+def test_the_benchmarks_come_along(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(monkeypatch, "help") == 0
+    assert "\n  bench [TOPIC ...]" in capsys.readouterr().out
+    with pytest.raises(SystemExit):
+        call(monkeypatch, "bench", "speed")
+    assert "roomba bench: error: expected topics out of sim, " in capsys.readouterr().err
 
 
 def test_the_doctor_tells_of_each_module(

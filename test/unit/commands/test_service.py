@@ -81,3 +81,9 @@ def test_it_is_installed_and_removed(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "nothing to remove" in capsys.readouterr().err
     assert main(["show", "home:=studio", *given], run) == 0
     assert "ExecStart=" in capsys.readouterr().out
+
+
+def test_a_port_that_no_machine_has_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["show", "--port", "99999", "--repository", "/nowhere"])
+    assert "--port: expected a whole number from 1 to 65535" in capsys.readouterr().err

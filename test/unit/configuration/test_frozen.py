@@ -51,9 +51,10 @@ def test_fields_out_of_order_are_refused(values: tuple[float, float, float]) -> 
     ("raw", "said"),
     [
         ({"part": {"low": 5}}, "part: expected low <= middle < high, got 5.0, 2.0, 3.0"),
-        ({"part": {"low": "x"}}, "part.low: Input should be a valid number, unable to parse"),
+        ({"part": {"low": "x"}}, "part.low: expected a valid number, unable to parse"),
         ({"part": {"wings": 2}}, "part.wings: no such key, got 2"),
-        ({"part": 3}, "part: Input should be a valid dictionary or instance of Ordered, got 3"),
+        ([1, 2], "expected keys and values (`key: value`), got [1, 2]"),
+        ({"part": 3}, "part: expected keys and values (`key: value`), got 3"),
     ],
 )
 def test_a_refusal_is_one_line_that_names_the_key_once(raw: dict[str, Any], said: str) -> None:

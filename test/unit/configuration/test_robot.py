@@ -39,6 +39,14 @@ def test_a_broken_file_is_refused_by_name(tmp_path: Path, text: str, said: str) 
     assert "robot.yaml" in str(refusal.value)
 
 
+def test_a_file_of_other_bytes_is_refused_without_the_words_of_a_codec(tmp_path: Path) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_bytes(b"body: \xe0\n")
+    with pytest.raises(ConfigError, match="expected UTF-8 text, got other bytes") as refusal:
+        load_robot_config(path)
+    assert "codec" not in str(refusal.value)
+
+
 def test_a_robots_file_may_hold_what_only_its_simulator_reads(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_text("body: {diameter: 0.3}\nsimulation: {sensors: ideal}\n", encoding="utf-8")

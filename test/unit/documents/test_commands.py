@@ -31,7 +31,7 @@ MODULES = {
     "export valetudo": "roomba.commands.valetudo.export_command",
     "record": "roomba_ros.bags.record",
     "pictures": "roomba.commands.pictures.__main__",
-    "bench": "benchmarks.__main__",
+    "bench": "roomba_bench.__main__",
     "soak": "soak.__main__",
     "fuzz": "fuzz.__main__",
     "emulate": "roomba.commands.emulate.command",

@@ -89,6 +89,26 @@ def test_each_form_of_a_bag_says_the_same(tmp_path: Path, form: str) -> None:
     log.close()
 
 
+def test_ranges_that_are_cut_met_nothing_there(tmp_path: Path) -> None:
+    """A driver cuts at 2.5 m and tells another farthest range, until longer ones come."""
+    clean = drive(4.0)
+
+    def shorter(number: int, item: Item) -> Item:
+        assert isinstance(item.value, np.ndarray)
+        return replace(item, value=np.minimum(item.value, 2.5)) if number < 10 else item
+
+    cut = changed(clean, "/scan", shorter)
+    longest = [float(each.value.max()) for each in clean if isinstance(each.value, np.ndarray)]
+    assert min(longest) > 2.5
+    log = BagLog(write_bag(tmp_path / "made.bag", cut))
+    [scan] = [each for each in log.channels if each.kind is Kind.SCAN]
+    scans = [value for _, value in read(log, scan) if isinstance(value, LidarScan)]
+    farthest = [each.lidar.arrays().farthest for each in scans]
+    assert farthest[:10] == [2.5] * 10
+    assert min(farthest[10:]) > max(longest)
+    log.close()
+
+
 def test_what_is_not_wanted_is_not_decoded(tmp_path: Path) -> None:
     log = BagLog(write_bag(tmp_path / "made.bag", drive(2.0)))
     [scan] = [each for each in log.channels if each.kind is Kind.SCAN]

@@ -167,6 +167,13 @@ def test_broken_lines_are_left_out_and_counted(tmp_path: Path) -> None:
     assert empty == Refused("scans that cannot be used", "it has no beams")
 
 
+@pytest.mark.parametrize("content", ["x" * 100_000, "\n".join(f"word{n}" for n in range(5000))])
+def test_a_file_of_another_kind_is_refused_in_a_short_line(tmp_path: Path, content: str) -> None:
+    with pytest.raises(LogError, match="of a CARMEN log, got none; it has ") as refused:
+        log_of(tmp_path, content)
+    assert len(str(refused.value)) < 500 + len(str(tmp_path))
+
+
 def test_lines_without_times_have_no_stamp(tmp_path: Path) -> None:
     log = log_of(tmp_path, "FLASER 2 1.0 2.0 0 0 0 0 0 0")
     [entry] = log.entries([channel(log, "FLASER", Kind.SCAN)])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import shlex
 import sys
 import time
@@ -40,9 +39,7 @@ def main(arguments: list[str] | None = None) -> int:
     except RoombaError as error:
         return _complain(str(error), _status_of(error))
     except BrokenPipeError:
-        # The reader of the pipe has closed it; Python must not try to write the rest.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return SOME_FAILED
+        raise  # the reader of the output has gone: roomba.commands.ending
     except OSError as error:
         return _complain(f"{error}; choose another file", SOME_FAILED)
     except KeyboardInterrupt:

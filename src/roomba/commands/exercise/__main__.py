@@ -2,6 +2,11 @@
 
 import sys
 
-from roomba.commands.exercise.command import main
+from roomba.commands.ending import quiet_end, quiet_loading
 
-sys.exit(main())
+if __name__ == "__main__":
+    with quiet_end():
+        with quiet_loading():
+            from roomba.commands.exercise.command import main
+
+        sys.exit(main())

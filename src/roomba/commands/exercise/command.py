@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import Final
 
 from roomba.commands.exercise.course import COURSE, Exercise
+from roomba.commands.exercise.verdict import NOT_YET, PASSED
 from roomba.commands.options import Parser, UsageError, whole
 from roomba.commands.spelling import spelled
 
 PROGRAM: Final = spelled("exercise")
-_NOT_YET, _USAGE = 1, 2
+_USAGE: Final = 2
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -48,7 +49,12 @@ def _begun(number: int, exercise: Exercise, file: Path) -> int:
     if file.exists():
         print(f"\nYour file is {file}.")
     else:
-        shutil.copyfile(exercise.start, file)
+        try:
+            shutil.copyfile(exercise.start, file)
+        except OSError as error:
+            raise UsageError(
+                f"{file}: cannot be written: {error.strerror}; name another"
+            ) from error
         print(f"\n{file} is what you begin with.")
     print(f"To check it: {PROGRAM} {number} --check")
     return 0
@@ -65,7 +71,7 @@ def _checked(exercise: Exercise, file: Path) -> int:
         print(
             f"not yet: it has not ended after {exercise.deadline:g} s; does a loop go on for ever?"
         )
-        return _NOT_YET
-    if status not in (0, _NOT_YET):
+        return NOT_YET
+    if status not in (PASSED, NOT_YET):
         print(f"not yet: your program ended the check, with status {status}")
-    return _NOT_YET if status else 0
+    return 0 if status == PASSED else NOT_YET

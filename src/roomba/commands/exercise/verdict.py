@@ -6,11 +6,13 @@ import importlib.util
 import sys
 import traceback
 from collections.abc import Callable
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
 
-PASSED: Final = 0
+PASSED: Final = 10
+"""Exit status of a check; not 0, by which an answer that ends the process would pass."""
 NOT_YET: Final = 1
 
 
@@ -25,13 +27,13 @@ def expect(is_right: bool, sentence: str) -> None:
 
 
 def loaded(file: Path) -> ModuleType:
-    """Return the learner's module; raises what the file raises."""
-    spec = importlib.util.spec_from_file_location("answer", file)
+    """Return the learner's module; raises what the file raises, whatever its name ends with."""
+    loader = SourceFileLoader("answer", str(file))
+    spec = importlib.util.spec_from_loader("answer", loader)
     assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules["answer"] = module
-    spec.loader.exec_module(module)
+    loader.exec_module(module)
     return module
 
 
@@ -62,9 +64,11 @@ def judged(check: Callable[[Path], str]) -> int:
 
 
 def _line_in(file: Path, error: Exception) -> str:
-    """Return the last line of the learner's file that an error went through, in words."""
+    """Return where an error came up, in words: the last line of the learner's file, if any."""
     frames = traceback.extract_tb(error.__traceback__)
-    lines = [frame for frame in frames if Path(frame.filename).name == file.name]
+    lines = [frame for frame in frames if Path(frame.filename) == file]
     if isinstance(error, SyntaxError):
         return f" ({file.name}, line {error.lineno})"
-    return f" ({file.name}, line {lines[-1].lineno}: {lines[-1].line})" if lines else ""
+    if lines:
+        return f" ({file.name}, line {lines[-1].lineno}: {lines[-1].line})"
+    return f" (where {file.name} is called, or what it returned is read; does it fit the text?)"

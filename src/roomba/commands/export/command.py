@@ -55,7 +55,3 @@ def _parser() -> argparse.ArgumentParser:
         "--out", type=Path, metavar="PATH", help="where to (default: beside it, by its name)"
     )
     return parser
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -59,7 +59,7 @@ class BlindMap:
         beams, points = self._beams, np.empty((lidar.beams, POINT))
         count = surface_points(ranges, beams, 0.0, points, self._sums)
         pose = np.array([here.x, here.y, here.theta])
-        self._sheet.draw(points[:count].astype(np.float32), beams.mount[:2], pose, beams.farthest)
+        self._sheet.draw(points[:count].astype(np.float32), beams.mount[:2], pose)
 
     @property
     def pose(self) -> Pose:

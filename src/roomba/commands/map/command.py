@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import time
 from collections.abc import Callable
@@ -45,9 +44,7 @@ def guarded(work: Callable[[], int], refused: int = ENDED_OTHERWISE, program: st
     except RoombaError as error:
         return complain(str(error), refused)
     except BrokenPipeError:
-        # The reader of the pipe has closed it; Python must not try to write the rest.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return ENDED_OTHERWISE
+        raise  # the reader of the output has gone: roomba.commands.ending
     except OSError as error:
         return complain(f"{error}; choose another file", ENDED_OTHERWISE)
     except KeyboardInterrupt:
@@ -67,12 +64,16 @@ def _without_bag(arguments: list[str] | None) -> list[str] | None:
 def _explore(options: MapOptions) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
     with nothing_thrown_away():
+        from roomba.commands.compiling import compiling_counted
         from roomba.commands.first_use import require_compiled
         from roomba.commands.map.runs import MapScene
 
     require_compiled(is_quiet=options.output.quiet)
     scene = MapScene(options.trial)
-    with progress("Exploring", options.output.quiet) as show:
+    with (
+        progress("Exploring", options.output.quiet) as show,
+        compiling_counted(lambda words: show(0.0, words)),
+    ):
         run = scene.run([_shown_by(show, scene)])
     _tell_run(options.output, run)
     return COMPLETED if run.is_completed else ENDED_OTHERWISE

@@ -15,6 +15,7 @@ from typing import Final
 import cv2
 from PIL import Image
 
+from roomba.commands.ending import quiet_end
 from roomba.commands.pictures.cleaning import picture_of_cleaning
 from roomba.commands.pictures.household import picture_of_household
 from roomba.commands.pictures.layers import picture_of_layers
@@ -168,4 +169,5 @@ def _write_film(path: Path, frames: list[Picture]) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    with quiet_end():
+        sys.exit(main())

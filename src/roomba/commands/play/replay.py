@@ -65,7 +65,3 @@ def _parser() -> argparse.ArgumentParser:
     )
     add_page_options(parser)
     return parser
-
-
-if __name__ == "__main__":
-    sys.exit(main())

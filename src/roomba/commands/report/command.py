@@ -7,9 +7,11 @@ import sys
 from pathlib import Path
 from typing import Final
 
+from rich.console import Console
+
 from roomba.commands.report.table import csv_of, run_table, runs_table, weeks_table
 from roomba.commands.spelling import spelled
-from roomba.commands.telling import tell_tables
+from roomba.commands.telling import tell_tables, told_width
 from roomba.errors import RoombaError
 from roomba.files.atomic import write_whole
 from roomba.history.database import LAST, History, KeptRun
@@ -73,7 +75,8 @@ def _list(history: History) -> None:
             "clean of ./roomba play and run."
         )
         return
-    tell_tables([runs_table(runs[:_LISTED]), weeks_table(runs)], None, quiet=False)
+    newest = runs_table(runs[:_LISTED], told_width(Console()))
+    tell_tables([newest, weeks_table(runs)], None, quiet=False)
     if len(runs) > _LISTED:
         print(f"{len(runs) - _LISTED} older runs are in --csv.")
 
@@ -90,6 +93,8 @@ def _write_document(path: Path, text: str) -> None:
 def _write(path: Path, text: str) -> None:
     if str(path) == "-":
         sys.stdout.write(text)
+    elif path.is_dir():
+        raise IsADirectoryError(f"{path}: expected a file, got a folder; choose another name")
     else:
         write_whole(path, text.encode())
 

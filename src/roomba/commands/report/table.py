@@ -6,7 +6,7 @@ import csv
 import datetime
 import io
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 from rich.table import Table
@@ -22,6 +22,29 @@ COLUMNS: Final = (
     "covered_m2", "wanted_m2", "distance_m", "turning_rad", "dirt_g", "energy_wh", "missed_places",
     "missed_m2", "repeat",
 )  # fmt: skip
+
+
+_TOLD: Final[dict[str, Callable[[KeptRun], str]]] = {
+    "run": lambda run: str(run.number),
+    "began": lambda run: words.moment(run.figures.began),
+    "program": lambda run: run.figures.source.program,
+    "home": lambda run: run.figures.source.home,
+    "outcome": lambda run: run.figures.outcome,
+    "clean": lambda run: (
+        f"{words.number(run.figures.covered, 1, 'm²')} ({words.share(run.figures.fraction)})"
+    ),
+    "missed": lambda run: str(len(run.figures.missed)),
+    "time": lambda run: words.duration(run.figures.duration),
+    "way": lambda run: words.number(run.figures.distance, 0, "m"),
+    "dirt": lambda run: words.number(run.figures.dirt, 1, "g"),
+}
+"""What the columns of a list tell, in their order."""
+_BY_WORTH: Final = (
+    "run", "began", "home", "outcome", "clean", "time", "missed", "dirt", "way", "program",
+)  # fmt: skip
+_TO_THE_RIGHT: Final = frozenset({"clean", "missed", "time", "way", "dirt"})
+_GAP: Final = 2
+"""Characters between two columns."""
 
 
 def csv_of(runs: Sequence[KeptRun]) -> str:
@@ -63,28 +86,29 @@ def _values(run: KeptRun) -> list[Any]:
     ]
 
 
-def runs_table(runs: Sequence[KeptRun]) -> Table:
-    """Return a row for each run."""
-    table = Table(box=None, padding=(0, 2, 0, 0))
-    for name in ("run", "began", "program", "home", "outcome"):
-        table.add_column(name, no_wrap=True)
-    for name in ("clean", "missed", "time", "way", "dirt"):
-        table.add_column(name, justify="right", no_wrap=True)
-    for run in runs:
-        figures = run.figures
-        table.add_row(
-            str(run.number),
-            words.moment(figures.began),
-            figures.source.program,
-            Text(figures.source.home),
-            figures.outcome,
-            f"{words.number(figures.covered, 1, 'm²')} ({words.share(figures.fraction)})",
-            str(len(figures.missed)),
-            words.duration(figures.duration),
-            words.number(figures.distance, 0, "m"),
-            words.number(figures.dirt, 1, "g"),
-        )
+def runs_table(runs: Sequence[KeptRun], width: int) -> Table:
+    """Return a row for each run, with as many columns as a terminal of ``width`` columns has room
+    for: the most telling ones.
+    """
+    cells = {name: [of(run) for run in runs] for name, of in _TOLD.items()}
+    table = Table(box=None, padding=(0, _GAP, 0, 0))
+    shown = _fitting(cells, width)
+    for name in shown:
+        table.add_column(name, justify="right" if name in _TO_THE_RIGHT else "left", no_wrap=True)
+    for row in range(len(runs)):
+        table.add_row(*(Text(cells[name][row]) for name in shown))
     return table
+
+
+def _fitting(cells: Mapping[str, Sequence[str]], width: int) -> list[str]:
+    """Return the names of the columns for which there is room, in the order of the table."""
+    needed = {name: _GAP + max(map(len, (name, *texts))) for name, texts in cells.items()}
+    taken: set[str] = set()
+    for name in _BY_WORTH:
+        if sum(needed[each] for each in (*taken, name)) > width:
+            break
+        taken.add(name)
+    return [name for name in cells if name in taken]
 
 
 def weeks_table(runs: Sequence[KeptRun]) -> Table:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import shlex
 import sys
 import time
@@ -46,9 +45,7 @@ def main(arguments: list[str] | None = None, open_bag: BagOpener | None = None) 
     except RoombaError as error:
         return _complain(str(error), USAGE)
     except BrokenPipeError:
-        # The reader of the pipe has closed it; Python must not try to write the rest.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return ENDED_OTHERWISE
+        raise  # the reader of the output has gone: roomba.commands.ending
     except OSError as error:
         return _complain(f"{error}; choose another file", ENDED_OTHERWISE)
     except KeyboardInterrupt:
@@ -98,16 +95,17 @@ def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) 
 def _shown_by(show: Show) -> RunObserver:
     from roomba.commands.telling import clock
 
-    began = time.monotonic()
+    began, share = time.monotonic(), 0.0
 
     def observe(robot: HeadlessMission) -> None:
-        nonlocal began
+        nonlocal began, share
         # The words cost more than some ticks of the robot: seldom is enough.
         if time.monotonic() - began < 0.1:
             return
         began = time.monotonic()
         passed, left = robot.seen.time, robot.mission.seconds_to_go()
-        share = passed / max(passed + left, 1e-9)
+        if left > 0.0:  # before there is a plan nothing is known of it
+            share = passed / (passed + left)
         show(share, f"{clock(passed)} of robot time, {robot.mission.state.phase.value}")
 
     return observe

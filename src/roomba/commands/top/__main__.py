@@ -2,7 +2,11 @@
 
 import sys
 
-from roomba.commands.top.command import main
+from roomba.commands.ending import quiet_end, quiet_loading
 
 if __name__ == "__main__":
-    sys.exit(main())
+    with quiet_end():
+        with quiet_loading():
+            from roomba.commands.top.command import main
+
+        sys.exit(main())

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 
-from roomba.commands.options import MOST_SEED, UsageError, choice, finite, whole
+from roomba.commands.options import MOST_SEED, UsageError, choice, finite, number, whole
 from roomba.commands.trials.trial import RANDOM
 from roomba.configuration.sensors import lidar_models
 from roomba.geometry import Pose
@@ -38,7 +39,7 @@ def add_place(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
     )
     where.add_argument(
         "--turned",
-        type=finite,
+        type=number(math.isfinite, "a finite number (degrees)"),
         default=0.0,
         metavar="DEGREES",
         help="turn the home, counter-clockwise about the origin of its map, with its station; all "

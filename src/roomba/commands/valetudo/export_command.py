@@ -32,7 +32,3 @@ def main(arguments: list[str] | None = None) -> int:
         return 2
     print(f"{file}: {len(values['layers'])} layers, {len(values['entities'])} entities")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -23,6 +23,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="default: the file's name")
     given = parser.parse_args(arguments)
     folder = given.out or Path(given.file.stem)
+    if folder.exists() and not folder.is_dir():
+        parser.error(f"--out: expected a folder, or a new one, got the file {folder}")
     try:
         found = parse(read_text(given.file))
         home = write_home(found, folder)
@@ -36,7 +38,3 @@ def main(arguments: list[str] | None = None) -> int:
         f"to clean it: {spelled('sim')} --home {folder}"
     )
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

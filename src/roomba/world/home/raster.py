@@ -115,6 +115,11 @@ def where_body_fits(frame: GridFrame, solid: Mask, radius: float) -> Mask:
     return np.asarray(~dilated(padded, disc)[reach:-reach, reach:-reach])
 
 
+def with_neighbours(mask: Mask) -> Mask:
+    """Return the cells of a mask and those around them, bool [rows, columns]."""
+    return dilated(mask, np.ones((3, 3), np.bool_))
+
+
 def largest_component(mask: Mask) -> Mask:
     """Return the largest part of a mask that hangs together (by edges); empty if the mask is."""
     regions = numbered_regions(mask)

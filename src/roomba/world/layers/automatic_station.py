@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
@@ -10,7 +12,7 @@ from roomba.errors import HomeError
 from roomba.geometry import Pose
 from roomba.grid import OCCUPIED, OccupancyMap
 from roomba.world.catalogue.furniture import STATION_GAP, STATION_WIDTH
-from roomba.world.home.raster import Mask, largest_component, where_body_fits
+from roomba.world.home.raster import Mask, largest_component, where_body_fits, with_neighbours
 
 CLEARANCE = 0.03
 """m; wanted around the docked body."""
@@ -19,17 +21,21 @@ PLATE_DEPTH = 0.03
 APPROACH = 1.0
 """m; of straight way to the station that is wanted."""
 
-_STEPS = ((0, 1), (1, 0), (0, -1), (-1, 0))
-"""One cell (rows, columns) to the east, north, west and south."""
+Place = tuple[float, Mask]
+"""A heading, rad, and the cells on which the robot may be docked so."""
+
+_ALONG_AXES: Final = 4
+_ALL_AROUND: Final = 16
+"""Headings from east on that are tried: those along the map's axes first."""
 
 
 def automatic_station(occupancy: OccupancyMap, solid: Mask, body_radius: float) -> Pose:
     """Return a docked pose in the largest floor on which the body fits, m and rad in the map frame.
 
-    Wanted is a straight wall before the nose and a metre of free way behind; failing that a wall,
-    failing that any place. Among equals the nearest to the map's zero is taken, since that is where
-    mapping robots start, and they start from their station. Raises :class:`HomeError` if the body
-    fits nowhere.
+    Wanted is a straight wall before the nose and a metre of free way behind, best along the map's
+    axes; failing that a wall, failing that free way, failing that any place. Among equals the
+    nearest to the map's zero is taken, since that is where mapping robots start, and they start
+    from their station. Raises :class:`HomeError` if the body fits nowhere.
     """
     frame = occupancy.frame
     floor = largest_component(where_body_fits(frame, solid, body_radius + CLEARANCE))
@@ -39,36 +45,50 @@ def automatic_station(occupancy: OccupancyMap, solid: Mask, body_radius: float) 
             "check the map's resolution and thresholds"
         )
     reach = body_radius + STATION_GAP + PLATE_DEPTH
-    ahead = math.ceil(reach / frame.resolution + 0.5)
-    wall = occupancy.values == OCCUPIED
-    walled = [floor & _wall_ahead(wall, step, ahead, frame.resolution) for step in _STEPS]
-    back = range(1, math.ceil(APPROACH / frame.resolution) + 1)
-    spacious = [
-        places & np.logical_and.reduce([_shifted(floor, _times(step, -n)) for n in back])
-        for places, step in zip(walled, _STEPS, strict=True)
-    ]
-    for choices in (spacious, walled, [floor]):
+    for choices in _choices(occupancy, floor, reach):
         pose = _nearest_to_zero(occupancy, choices)
         if pose is not None:
             return pose
     raise AssertionError("the floor has a cell, so a place was found")
 
 
-def _wall_ahead(wall: Mask, step: tuple[int, int], ahead: int, resolution: float) -> Mask:
-    """Return the cells that have, ``ahead`` cells before them, wall as wide as the station."""
+def _choices(occupancy: OccupancyMap, floor: Mask, reach: float) -> Iterator[list[Place]]:
+    """Yield places to choose from, the best ones first; a wall is ``reach``, m, before the nose."""
+    resolution, wall = occupancy.frame.resolution, occupancy.values == OCCUPIED
+    axes, around = _headings(_ALONG_AXES), _headings(_ALL_AROUND)
+    walled = [(theta, floor & _wall_ahead(wall, theta, reach, resolution)) for theta in axes]
+    yield [(theta, cells & _way_behind(floor, theta, resolution)) for theta, cells in walled]
+    # Walls aslant are steps, and some have a seam of unknown cells.
+    thick = with_neighbours(wall)
+    free = [(theta, floor & _way_behind(floor, theta, resolution)) for theta in around]
+    yield [(theta, each & _wall_ahead(thick, theta, reach, resolution)) for theta, each in free]
+    yield walled
+    yield free
+    yield [(0.0, floor)]
+
+
+def _headings(count: int) -> list[float]:
+    return [math.remainder(math.tau * number / count, math.tau) for number in range(count)]
+
+
+def _wall_ahead(wall: Mask, theta: float, reach: float, resolution: float) -> Mask:
+    """Return the cells that have, ``reach``, m, before them, wall as wide as the station."""
+    ahead = math.ceil(reach / resolution + 0.5)
     half = math.ceil(STATION_WIDTH / 2.0 / resolution - 0.5)
-    across = (step[1], -step[0])
-    ahead_is_wall = np.logical_and.reduce(
-        [
-            _shifted(wall, (ahead * step[0] + j * across[0], ahead * step[1] + j * across[1]))
-            for j in range(-half, half + 1)
-        ]
-    )
-    return np.asarray(ahead_is_wall)
+    places = [_shifted(wall, _cells(theta, ahead, aside)) for aside in range(-half, half + 1)]
+    return np.asarray(np.logical_and.reduce(places))
 
 
-def _times(step: tuple[int, int], factor: int) -> tuple[int, int]:
-    return step[0] * factor, step[1] * factor
+def _way_behind(floor: Mask, theta: float, resolution: float) -> Mask:
+    """Return the cells that have floor behind them all the way that is wanted."""
+    back = range(1, math.ceil(APPROACH / resolution) + 1)
+    return np.asarray(np.logical_and.reduce([_shifted(floor, _cells(theta, -n, 0)) for n in back]))
+
+
+def _cells(theta: float, ahead: int, aside: int) -> tuple[int, int]:
+    """Return how many rows and columns away that is, for a heading, rad."""
+    cosine, sine = math.cos(theta), math.sin(theta)
+    return round(ahead * sine + aside * cosine), round(ahead * cosine - aside * sine)
 
 
 def _shifted(mask: Mask, offset: tuple[int, int]) -> Mask:
@@ -90,18 +110,17 @@ def _shifted(mask: Mask, offset: tuple[int, int]) -> Mask:
     return result
 
 
-def _nearest_to_zero(occupancy: OccupancyMap, choices: list[Mask]) -> Pose | None:
-    """Return the pose of the chosen cell nearest to (0, 0), heading as its list's place says."""
+def _nearest_to_zero(occupancy: OccupancyMap, choices: list[Place]) -> Pose | None:
+    """Return the pose of the chosen cell nearest to (0, 0), with its heading."""
     frame = occupancy.frame
     best: tuple[float, Pose] | None = None
-    for direction, mask in enumerate(choices):
+    for theta, mask in choices:
         rows, columns = np.nonzero(mask)
         if rows.size == 0:
             continue
         x, y = frame.centres(rows, columns)
         distances = np.hypot(x, y)
         index = int(np.argmin(distances))
-        theta = (0.0, math.pi / 2.0, math.pi, -math.pi / 2.0)[direction]
         if best is None or distances[index] < best[0] - 1e-9:
             best = float(distances[index]), Pose(float(x[index]), float(y[index]), theta)
     return None if best is None else best[1]

@@ -106,6 +106,13 @@ def _found_station(floor: FurnishedFloor, file: YamlFile, body: BodyConfig) -> P
 
 
 def _check_body_fits(floor: FurnishedFloor, docked: Pose, file: YamlFile, body: BodyConfig) -> None:
+    if not floor.map.frame.contains(docked.x, docked.y):
+        x_min, x_max, y_min, y_max = floor.map.frame.extent
+        raise file.error(
+            ("station",),
+            f"station: expected a place on the map, x {x_min:g} to {x_max:g}, y {y_min:g} to "
+            f"{y_max:g}, got ({docked.x:g}, {docked.y:g}); move it",
+        )
     room = room_for_body(floor, docked)
     if room < body.radius - 1e-9:
         raise file.error(

@@ -39,6 +39,8 @@ def test_what_a_learner_begins_with_does_not_pass_yet(
         ("def shortest_path(free, start, goal):\n    return nothing\n", "line 2: return nothing"),
         ("def shortest_path(:\n", "line 1"),
         ("way = 1\n", "expected a function shortest_path()"),
+        ("import sys\nsys.exit(0)\n", "ended the check, with status 0"),
+        ("def shortest_path(free, start, goal):\n    return 5\n", "does it fit the text?"),
         ("import os\nos._exit(9)\n", "ended the check, with status 9"),
         ("def shortest_path(free, start, goal):\n    return [start, goal]\n", "no neighbours"),
     ],
@@ -48,6 +50,22 @@ def test_what_is_wrong_is_told(
 ) -> None:
     file = tmp_path / "shortest_path.py"
     file.write_text(answer, "utf-8")
+    assert main([str(NUMBERS["shortest_path"]), "--check", "--file", str(file)]) == 1
+    assert told in capfd.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"", "expected a function shortest_path() in notes.txt, there is none"),
+        (b"\xe0\xff", "SyntaxError: "),
+    ],
+)
+def test_a_file_of_another_kind_is_told_what_it_lacks(
+    content: bytes, told: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "notes.txt"
+    file.write_bytes(content)
     assert main([str(NUMBERS["shortest_path"]), "--check", "--file", str(file)]) == 1
     assert told in capfd.readouterr().out
 
@@ -82,3 +100,15 @@ def test_wrong_usage_is_refused(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(arguments) == 2
+
+
+def test_a_file_that_cannot_be_written_is_refused_in_a_line(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "no_such_folder" / "mine.py"
+    assert main(["4", "--file", str(file)]) == 2
+    assert (
+        capfd.readouterr()
+        .err.strip()
+        .endswith(f"{file}: cannot be written: No such file or directory; name another")
+    )

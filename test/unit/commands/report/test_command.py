@@ -12,8 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures.homes.tiny_home import tiny_home
+from rich.console import Console
 
 from roomba.commands.report.command import main
+from roomba.commands.report.table import runs_table
 from roomba.commands.sim.command import main as sim
 from roomba.history.database import History
 from roomba.history.run import RunFigures, RunSource
@@ -84,6 +86,22 @@ def test_the_list_tells_runs_and_weeks(
     assert "29.0 m²" in output
 
 
+@pytest.mark.parametrize("width", [20, 40, 60, 80, 100, 120])
+def test_a_narrow_terminal_shows_fewer_columns_and_cuts_none(width: int, history: History) -> None:
+    history.add(figures("attic", 19.0))
+    told = io.StringIO()
+    table = runs_table(history.runs(), width)
+    Console(file=told, width=width, force_terminal=False).print(table)
+    head, row = told.getvalue().splitlines()
+    assert head.split()[0] == "run"
+    assert row.split()[0] == "1"
+    assert "…" not in row
+    assert max(len(head.rstrip()), len(row.rstrip())) <= width
+    assert ("attic" in row) == (width >= 40)
+    assert ("19.0 m² (95.0 %)" in row) == (width >= 60)
+    assert ("program" in head) == (width >= 120)
+
+
 def test_csv_has_every_run(history: History, capsys: pytest.CaptureFixture[str]) -> None:
     for covered in (10.0, float("nan")):
         history.add(figures("attic, north", covered))
@@ -106,6 +124,14 @@ def test_what_there_is_not_is_said(
 ) -> None:
     assert main(words) == 2
     assert "report: " in capsys.readouterr().err
+
+
+def test_a_folder_in_place_of_a_file_is_refused_by_its_name(
+    history: History, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    history.add(figures("attic", 1.0))
+    assert main(["last", "--out", str(tmp_path)]) == 1
+    assert f"{tmp_path}: expected a file, got a folder" in capsys.readouterr().err
 
 
 def test_damage_is_told_where_it_is_found(

@@ -88,6 +88,7 @@ REFUSED = {
     "--no-go 1 0 0 1": "--no-go: expected lowest x",
     "--zone 1 0 0": "--zone: expected 4 arguments",
     "--spot nan 0": "--spot: expected finite numbers (m, rad), got 'nan'",
+    "--turned nan": "--turned: expected a finite number (degrees), got 'nan'",
     "--passes 6": "--passes: expected a whole number from 1 to 5, got '6'",
     "--fan turbo": "--fan: expected quiet, standard, strong, got 'turbo'",
     "--things 17": f"--things: expected a whole number from 0 to {MOST_THINGS}, got '17'",

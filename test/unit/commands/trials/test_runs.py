@@ -242,6 +242,11 @@ def test_a_station_in_a_wall_is_refused(room: Path, capsys: pytest.CaptureFixtur
     assert len(error.splitlines()) == 1
 
 
+def test_a_station_off_the_map_is_refused(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--map", str(room), "--station", "100", "0.8", "0"]) == 2
+    assert "station: expected a place on the map, x " in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("turned", core_first([0.0, 30.0], {30.0}))
 def test_a_home_of_round_and_slanted_walls_is_cleaned_without_touching_them(turned: float) -> None:
     run = run_trial(Trial(home="bay", seed=2, turned=turned))

@@ -133,6 +133,16 @@ def test_what_is_no_map_is_refused_in_a_line(
     assert not (tmp_path / "home").exists()
 
 
+def test_a_file_in_place_of_the_folder_is_refused_by_its_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = foreign(tmp_path / "map.json")
+    with pytest.raises(SystemExit) as ended:
+        bring(["valetudo", str(file), "--out", str(file)])
+    assert ended.value.code == 2
+    assert f"--out: expected a folder, or a new one, got the file {file}" in capsys.readouterr().err
+
+
 def test_a_home_that_is_not_there_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

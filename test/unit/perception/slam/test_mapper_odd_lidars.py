@@ -55,6 +55,7 @@ DRIVES = {
     "clockwise, or upside down": Drive(degrees(360.0, -1.0)),
     "up to 4 m": Drive(Lidar(farthest=4.0)),
     "up to 80 m": Drive(Lidar(farthest=80.0)),
+    "no farthest range": Drive(Lidar(farthest=math.inf)),
     "once a second": Drive(Lidar(rate=1.0)),
     "40 times a second": Drive(Lidar(rate=40.0)),
     "measured at once": Drive(Lidar(turns=False)),

@@ -12,6 +12,7 @@ from fixtures.homes.home_layers import STATION, loaded, room_map, value_at
 from roomba.configuration.body import BodyConfig
 from roomba.errors import HomeError
 from roomba.files.occupancy_map import save_map
+from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.world.home.raster import distance_to_cells
 from roomba.world.layers.layer import EVEN_DIRT, list_homes, load_home
@@ -173,6 +174,42 @@ def test_automatic_station_stands_in_the_larger_part(tmp_path: Path) -> None:
     occupancy = room_map()
     occupancy.values[:, 25:27] = OCCUPIED
     assert loaded(tmp_path, None, occupancy).station.x > 1.25
+
+
+@pytest.mark.parametrize("degrees", [20.0, 33.0, 45.0])
+def test_automatic_station_stands_at_a_wall_aslant(tmp_path: Path, degrees: float) -> None:
+    """A square room of 4 m, turned: its walls are steps. A metre behind the robot is free."""
+    frame, half = GridFrame(0.05, -3.0, -3.0, 120, 120), 2.0
+    rows, columns = np.indices(frame.shape)
+    x, y = frame.centres(rows, columns)
+    angle = math.radians(degrees)
+    along, across = (
+        math.cos(angle) * x + math.sin(angle) * y,
+        math.cos(angle) * y - math.sin(angle) * x,
+    )
+    away = np.maximum(np.abs(along), np.abs(across))
+    values = np.where(away < half, FREE, np.where(away < half + 0.1, OCCUPIED, UNKNOWN))
+    home = loaded(tmp_path, None, OccupancyMap(frame, values.astype(np.int8)))
+    station = home.station
+    staged = station.compose(Pose(-1.0, 0.0, 0.0))
+    room = distance_to_cells(home.frame, home.solid, staged.x, staged.y)
+    assert room >= BodyConfig().radius
+    ahead = station.compose(Pose(0.3, 0.0, 0.0))
+    assert (
+        max(
+            abs(math.cos(angle) * ahead.x + math.sin(angle) * ahead.y),
+            abs(math.cos(angle) * ahead.y - math.sin(angle) * ahead.x),
+        )
+        > half - 0.1
+    )
+
+
+def test_automatic_station_without_walls_has_a_free_way(tmp_path: Path) -> None:
+    occupancy = OccupancyMap(GridFrame(0.05, 0.0, 0.0, 60, 60), np.zeros((60, 60), np.int8))
+    home = loaded(tmp_path, None, occupancy)
+    staged = home.station.compose(Pose(-1.0, 0.0, 0.0))
+    assert 0.16 < staged.x < 2.84
+    assert 0.16 < staged.y < 2.84
 
 
 def test_home_in_which_the_body_fits_nowhere_is_refused(tmp_path: Path) -> None:

@@ -43,12 +43,15 @@ class OccupancyCounts:
         offsets = np.zeros((0, 0, 2), np.float32)
         self._lay(nothing, nothing, offsets, np.array([_NONE, -1, _NONE, -1]))
 
-    def draw(self, points: NDArray[np.float32], lidar: Floats, pose: Floats, reach: float) -> None:
+    def draw(self, points: NDArray[np.float32], lidar: Floats, pose: Floats) -> None:
         """Add a scan, float32 [n, 4], robot's frame, seen from ``pose`` [3], map frame.
 
-        ``lidar`` is x, y in the robot's frame, ``reach`` how far its beams go, m.
+        ``lidar`` is x, y in the robot's frame.
         """
-        self._cover(pose, reach)
+        ends = np.vstack((points[:, :2], lidar))
+        reach = float(np.hypot(ends[:, 0], ends[:, 1]).max())
+        # A wall is drawn into the cell behind its surface.
+        self._cover(pose, reach + MARGIN * self._resolution)
         draw(self._arrays, points, lidar, pose, INTO_EDGE, 1)
 
     def erase(self, points: NDArray[np.float32], lidar: Floats, pose: Floats) -> None:
@@ -86,7 +89,7 @@ class OccupancyCounts:
         self._arrays = drawing_kernels.CountArrays(hits, passes, place, bounds, offsets)
 
     def _cover(self, pose: Floats, reach: float) -> None:
-        """Make room for all that can be seen from a pose."""
+        """Make room for all within ``reach``, m, of a pose."""
         size, (phase_x, phase_y) = self._resolution, self._phase
         x, y = float(pose[0]) - phase_x, float(pose[1]) - phase_y
         column, last_column = math.floor((x - reach) / size), math.floor((x + reach) / size)

@@ -37,7 +37,7 @@ class SubmapDrawing:
 
     def use(self, lidar: LidarBeams) -> None:
         """Draw the scans of a lidar."""
-        self._mount, self._reach = lidar.mount[:2], lidar.farthest
+        self._mount = lidar.mount[:2]
 
     def begin_submap(self) -> None:
         """Draw what comes in the newest submap, which has no keyframe yet."""
@@ -65,7 +65,7 @@ class SubmapDrawing:
         self._drawn = self._graph.poses.copy()
 
     def _draw(self, frame: Keyframe, pose: Floats) -> None:
-        self._counts.draw(frame.points, self._mount, pose, self._reach)
+        self._counts.draw(frame.points, self._mount, pose)
 
     def _moved(self) -> list[int]:
         """Return the numbers of the submaps that lie elsewhere than they are drawn."""

@@ -1,0 +1,87 @@
+"""How the process of a command ends when its reader or its user has had enough: no traceback.
+
+It imports the standard library alone, for ``./roomba doctor`` has to speak when nothing is set up.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import io
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from typing import Final
+
+NOT_READ: Final = 1
+"""Exit status when what reads the output has closed it, as ``head`` does, or a disk is full."""
+INTERRUPTED: Final = 130
+"""Exit status after Ctrl-C."""
+_STANDARD_ERROR: Final = 2
+_STOPPED: Final = "stopped on the way"
+_FULL: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""Reasons for which a file takes no more."""
+
+
+@contextlib.contextmanager
+def quiet_end() -> Iterator[None]:
+    """End the process in order if its output is closed, or Ctrl-C comes, while this goes on."""
+    try:
+        with _flushed_output():
+            yield
+    except BrokenPipeError:
+        _give_output_up()
+        sys.exit(NOT_READ)
+    except OSError as error:
+        if error.errno not in _FULL:
+            raise
+        _give_output_up()
+        print(f"expected room for what is written: {error}; make some", file=sys.stderr)
+        sys.exit(NOT_READ)
+    except KeyboardInterrupt:
+        print(_STOPPED, file=sys.stderr)
+        sys.exit(INTERRUPTED)
+
+
+@contextlib.contextmanager
+def quiet_loading() -> Iterator[None]:
+    """End the process at once if Ctrl-C comes while modules are imported, which takes a second.
+
+    There is nothing to clean up yet, and compiled modules make an ImportError of an interrupt. It
+    stays ignored where it was.
+    """
+    before = signal.getsignal(signal.SIGINT)
+    if before is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _leave)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _leave(*_: object) -> None:
+    os.write(_STANDARD_ERROR, f"{_STOPPED}\n".encode())
+    os._exit(INTERRUPTED)
+
+
+@contextlib.contextmanager
+def _flushed_output() -> Iterator[None]:
+    """Write what is printed to the end, also what a parser prints before it ends the process.
+
+    What a terminal of another character set does not have, such as m² in ASCII, becomes ``?``.
+    """
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
+    try:
+        yield
+    finally:
+        if sys.stdout is not None:  # as a shell closes it by >&-
+            sys.stdout.flush()
+
+
+def _give_output_up() -> None:
+    """Let nothing be written any more: at its end Python would try to write the rest."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)

@@ -1,0 +1,21 @@
+"""Whether a peer measured the same thing as we did: a faster answer to another question is none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from roomba_bench.rounds import Outcome
+
+
+def agreed(ours: Outcome, peer: Outcome, fact: str, tolerance: float) -> Outcome:
+    """Return the peer's outcome, or an error if one of its facts departs from ours.
+
+    ``tolerance`` is relative. Nothing is said where either has no figure to compare.
+    """
+    if fact not in ours.facts or fact not in peer.facts or peer.rate is None:
+        return peer
+    expected, got = ours.facts[fact], peer.facts[fact]
+    if abs(got - expected) <= tolerance * abs(expected):
+        return peer
+    reason = f"measured something else: {fact} {got:.3f}, ours {expected:.3f}"
+    return replace(peer, rate=None, error=reason)

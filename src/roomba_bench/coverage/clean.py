@@ -1,0 +1,201 @@
+"""One clean by our robot, closed loop and headless, counted by the evaluator of the benchmark."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.files.shipped import HOMES
+from roomba.headless.burst import LONGEST_BURST
+from roomba.headless.cleaner import HeadlessMission
+from roomba.mission.cleaning.request import CleanOutcome, MissReason
+from roomba.perception.localization.estimate import Knowledge
+from roomba.world.home.home import Home
+from roomba.world.layers.layer import load_home
+from roomba_bench.coverage.changes import Change, Changed, changed
+from roomba_bench.coverage.floor import (
+    TOOL,
+    Disc,
+    Patch,
+    Reachable,
+    drawn,
+    exact_share,
+    length,
+    patches,
+    reachable,
+    turning,
+)
+from roomba_bench.localization.robot import WRONG
+from roomba_bench.ours_sim import ROBOT
+
+Sensors = Literal["ideal", "noisy"]
+Floats = NDArray[np.float64]
+
+_LOOKED_AT: Final = 20
+"""Ticks, a second; where something changed it is looked so often at what the robot believes."""
+LEAST_PATCH: Final = 0.004
+"""m2; what is smaller is not listed."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A clean to make: ``folder`` is of map_server maps, or "" for a shipped home.
+
+    ``change`` is what is other than the map shows, by the seed.
+    """
+
+    home: str
+    seed: int = 0
+    folder: str = ""
+    sensors: Sensors = "noisy"
+    change: Change | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Clean:
+    """What came of a clean: m, m2, rad, s; shares 0..1.
+
+    ``exact`` is the share by cells' middles.
+    ``setup``, ``wall`` and ``cpu`` are s of this machine; ``planning`` is what the robot's own
+    ``plans`` took of the wall time. ``told`` is missed floor in the robot's words with the reason,
+    ``missed`` what truly was. ``wrong`` is how long it took a pose for known that was far off.
+    ``what`` was other than on the map. ``poses`` has rows t, x, y, theta, true ones, from the start
+    on, or none if they were not to be kept.
+    """
+
+    task: Task
+    outcome: CleanOutcome
+    message: str
+    is_docked: bool
+    area: float
+    share: float
+    exact: float
+    path: float
+    turning: float
+    hits: int
+    seconds: float
+    setup: float
+    wall: float
+    cpu: float
+    planning: float
+    plans: int
+    told: tuple[tuple[MissReason, Patch], ...]
+    missed: tuple[Patch, ...]
+    wrong: float
+    what: str = ""
+    poses: Floats = field(default_factory=lambda: np.zeros((0, 4)), repr=False)
+
+    @property
+    def ratio(self) -> float:
+        """Way, by the least way that could sweep the floor."""
+        return self.path / (self.area / TOOL)
+
+    @property
+    def told_area(self) -> float:
+        """m2 that the robot says it missed."""
+        return sum(patch.area for _, patch in self.told)
+
+    @property
+    def missed_area(self) -> float:
+        """m2 that it truly missed."""
+        return (1.0 - self.share) * self.area
+
+    @property
+    def is_home_and_done(self) -> bool:
+        """Whether the robot says that it did all, and stands on its station."""
+        return self.is_docked and self.outcome is CleanOutcome.COMPLETED
+
+    def is_short(self, least: float) -> bool:
+        """Whether less than that share was swept, or it did not come home."""
+        return self.share < least or not self.is_home_and_done
+
+    def is_silent(self, least: float) -> bool:
+        """Whether it fell short and did not say so: it speaks of success, and of less missed."""
+        if not self.is_docked:
+            return self.outcome is CleanOutcome.COMPLETED
+        hidden = self.missed_area - self.told_area
+        return self.share < least and hidden > (1.0 - least) * self.area
+
+
+class _Observed(HeadlessMission):
+    """A robot whose belief is compared with the truth now and then while it cleans."""
+
+    wrong = 0.0
+
+    def advance(self) -> None:
+        """Let some ticks pass, and look."""
+        before = self.seen.time
+        super().advance()
+        believed, true = self.localizer.estimate, self.seen.pose
+        off = true.distance_to(believed.pose.x, believed.pose.y)
+        if believed.knowledge is Knowledge.KNOWN and off > WRONG:
+            self.wrong += self.seen.time - before
+
+
+def home_named(name: str, folder: str = "") -> Home:
+    """Return a shipped home, or the one of a map of a folder."""
+    return load_home(str(Path(folder) / f"{name}.yaml") if folder else name, HOMES)
+
+
+def true_floor(home: Home, start: tuple[float, float], things: Sequence[Disc] = ()) -> Reachable:
+    """Return the floor that can be swept in truth by a robot that never enters what its map shows.
+
+    What moves by itself is left out.
+    """
+    solid = home.solid | home.drop | home.map.solid
+    return reachable(solid, home.frame, start, things, ~home.map.solid)
+
+
+def clean(task: Task, keeps_poses: bool = False) -> Clean:
+    """Make a clean of the whole home, from the station."""
+    there = Changed(home_named(task.home, task.folder))
+    if task.change is not None:
+        there = changed(there.home, task.change, task.seed)
+    home, things = there.home, there.things
+    setup = time.process_time()
+    robot = _Observed(
+        home,
+        ROBOT.with_sensors(task.sensors),
+        seed=task.seed,
+        longest_burst=LONGEST_BURST if task.change is None else _LOOKED_AT,
+    )
+    setup = time.process_time() - setup
+    for thing in things:
+        robot.simulator.place_obstacle(*thing)
+    here = robot.simulator.pose
+    wall, cpu = time.perf_counter(), time.process_time()
+    record = robot.clean()
+    cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
+    poses = np.concatenate([np.array([[0.0, here.x, here.y, here.theta]]), record.poses])
+    floor = true_floor(home, (robot.context.staging.x, robot.context.staging.y), things)
+    left = floor.floor & ~drawn(floor.frame, poses[:, 1:3])
+    result = record.result
+    return Clean(
+        task,
+        result.outcome,
+        result.message,
+        robot.seen.battery.is_docked,
+        floor.area,
+        1.0 - float(np.count_nonzero(left)) / np.count_nonzero(floor.floor),
+        exact_share(floor, poses[:, 1:3]),
+        length(poses[:, 1:3]),
+        turning(poses[:, 3]),
+        record.hits,
+        result.duration,
+        setup,
+        wall,
+        cpu,
+        record.planning,
+        record.plans,
+        tuple((each.reason, Patch(each.area, each.x, each.y)) for each in result.missed),
+        patches(floor.frame, left, LEAST_PATCH),
+        robot.wrong,
+        there.what,
+        poses if keeps_poses else np.zeros((0, 4)),
+    )

@@ -1,0 +1,1 @@
+"""What exact scans are compared with."""

@@ -1,0 +1,13 @@
+"""``python -m roomba_bench.peers MODULE``: be that peer until the input ends."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+from roomba_bench.peers.protocol import serve
+
+# What libraries print, when they are imported too, must not stand among the answers.
+answers = os.fdopen(os.dup(1), "w")
+os.dup2(2, 1)
+serve(sys.argv[1], sys.stdin, answers)

@@ -1,0 +1,102 @@
+"""small_gicp: each scan is registered to points on the map's surfaces, from where the wheels say.
+
+What is given to it is what served it best: points every 2 cm, at three heights, so that it finds
+the walls' normals; the distance to these planes; and the prediction of wheels and gyro together.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import small_gicp  # type: ignore[import-not-found, unused-ignore]
+from numpy.typing import NDArray
+
+from roomba_bench.peers.protocol import Parameters, Work
+
+DISTRIBUTION = "small_gicp"
+
+_HEIGHTS = (-0.02, 0.0, 0.02)
+_NEIGHBOURS = 10
+_FARTHEST = 0.3
+"""m; from a beam's end to the surface that it belongs to."""
+_ROUNDS = 20
+_SETTLED, _SETTLED_TURN = 5e-5, 2e-4
+"""m, rad."""
+
+Floats = NDArray[np.float64]
+
+
+class Registration:
+    """The map's points, and one scan after the other."""
+
+    def __init__(self, surfaces: Floats, beams: int, nearest: float, farthest: float) -> None:
+        """``surfaces`` is float64 [points, 2], m."""
+        walls = [np.column_stack([surfaces, np.full(len(surfaces), z)]) for z in _HEIGHTS]
+        self._target = small_gicp.PointCloud(np.vstack(walls))
+        self._tree = small_gicp.KdTree(self._target)
+        small_gicp.estimate_normals(self._target, self._tree, _NEIGHBOURS)
+        angles = np.arange(beams) * (2.0 * math.pi / beams)
+        self._fan = np.column_stack([np.cos(angles), np.sin(angles)])
+        self._nearest, self._farthest = nearest, farthest
+
+    def register(self, ranges: NDArray[np.float32], guess: Floats) -> Floats:
+        """Return where a scan was taken, 4 x 4, which is near ``guess``."""
+        met = (ranges >= self._nearest) & (ranges <= self._farthest)
+        if not met.any():
+            return guess
+        ends = np.zeros((np.count_nonzero(met), 3))
+        ends[:, :2] = ranges[met, None] * self._fan[met]
+        result = small_gicp.align(
+            self._target,
+            small_gicp.PointCloud(ends),
+            self._tree,
+            guess,
+            registration_type="PLANE_ICP",
+            max_correspondence_distance=_FARTHEST,
+            num_threads=1,
+            max_iterations=_ROUNDS,
+            rotation_epsilon=_SETTLED_TURN,
+            translation_epsilon=_SETTLED,
+        )
+        # It stays on the floor.
+        return _matrix(_pose(result.T_target_source))
+
+
+def prepare(parameters: Parameters) -> Work:
+    """Follow the whole drive, and write the poses; then scans are registered over and over."""
+    drive = np.load(parameters["scans"])
+    ranges, reckoned = drive["ranges"], drive["reckoned"]
+    registration = Registration(
+        np.load(parameters["surfaces"]),
+        ranges.shape[1],
+        parameters["nearest"],
+        parameters["farthest"],
+    )
+    pose, before = _matrix(parameters["start"]), _matrix(parameters["start"])
+    guesses, poses = [], []
+    for scan, now in zip(ranges, map(_matrix, reckoned), strict=True):
+        guesses.append(pose @ np.linalg.inv(before) @ now)
+        pose, before = registration.register(scan, guesses[-1]), now
+        poses.append(_pose(pose))
+    np.save(parameters["poses"], np.array(poses))
+    again = itertools.cycle(zip(ranges, guesses, strict=True))
+
+    def work() -> float:
+        registration.register(*next(again))
+        return 1.0
+
+    return Work(work)
+
+
+def _matrix(pose: Sequence[float] | Floats) -> Floats:
+    cosine, sine = math.cos(pose[2]), math.sin(pose[2])
+    matrix = np.eye(4)
+    matrix[:2] = [[cosine, -sine, 0.0, pose[0]], [sine, cosine, 0.0, pose[1]]]
+    return matrix
+
+
+def _pose(matrix: Floats) -> tuple[float, float, float]:
+    return matrix[0, 3], matrix[1, 3], math.atan2(matrix[1, 0], matrix[0, 0])

@@ -1,0 +1,67 @@
+"""The table of topics and the list of peers are complete."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+import roomba_bench
+from roomba_bench.topics import TOPICS, left_out
+
+FOLDER = Path(roomba_bench.__file__).parent
+USAGE = FOLDER.parent / "roomba" / "commands" / "usage.txt"
+SHARED = {"__init__", "__main__", "alone", "arena", "boxes", "grids", "protocol", "views"}
+PEERS = sorted(path for path in (FOLDER / "peers").glob("*.py") if path.stem not in SHARED)
+
+
+def names_in(path: Path) -> set[str]:
+    """Return the names that a module defines, without importing what it needs."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    functions = {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+    assigned = [node for node in tree.body if isinstance(node, ast.Assign)]
+    return functions | {
+        target.id for node in assigned for target in node.targets if isinstance(target, ast.Name)
+    }
+
+
+def test_the_table_of_topics_is_complete() -> None:
+    modules = {path.stem for path in (FOLDER / "topics").glob("*.py")} - {"__init__"}
+    assert set(TOPICS) == modules
+
+
+def test_what_needs_ros_is_left_out_where_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_PACKAGE_PATH", "/opt/ros")
+    assert [topic for topic in TOPICS if left_out(topic)] == []
+    monkeypatch.delenv("ROS_PACKAGE_PATH")
+    assert [topic for topic in TOPICS if left_out(topic)] == ["ros"]
+    assert left_out("ros") == "there is no ROS environment"
+
+
+@pytest.mark.parametrize("topic", TOPICS)
+def test_each_topic_can_be_measured_and_is_in_the_usage(topic: str) -> None:
+    assert "measure" in names_in(FOLDER / "topics" / f"{topic}.py")
+    usage = USAGE.read_text(encoding="utf-8")
+    [line] = [line for line in usage.splitlines() if line.startswith("  bench [TOPIC")]
+    assert topic in line.split("topics:")[1].split()
+
+
+@pytest.mark.parametrize("script", PEERS, ids=lambda path: path.stem)
+def test_each_peer_has_what_the_protocol_wants_and_knows_nothing_of_the_robot(script: Path) -> None:
+    assert {"DISTRIBUTION", "prepare"} <= names_in(script)
+    tree = ast.parse(script.read_text(encoding="utf-8"))
+    imported = [node.module or "" for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    assert not [name for name in imported if name.split(".")[0] in ("roomba", "roomba_ros")]
+
+
+@pytest.mark.parametrize("script", PEERS, ids=lambda path: path.stem)
+def test_each_peer_is_installed_by_the_list(script: Path) -> None:
+    listed = (FOLDER / "peers.txt").read_text(encoding="utf-8").split()
+    [line] = [
+        line
+        for line in script.read_text(encoding="utf-8").splitlines()
+        if line.startswith("DISTRIBUTION = ")
+    ]
+    name = ast.literal_eval(line.partition("=")[2].strip())
+    assert name == "" or name in listed
