@@ -54,7 +54,7 @@ def stored(file: Path) -> list[dict[str, Any]]:
 
 
 def started(file: Path, *words: str) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "roomba.commands.campaign", str(file), *words]
+    command = [sys.executable, "-m", "roomba.commands.program", "campaign", str(file), *words]
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
     return subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL)
 

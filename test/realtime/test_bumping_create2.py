@@ -20,7 +20,7 @@ from roomba.headless.live.bumping_client import BumpingClient
 @pytest.fixture
 def client(tmp_path: Path) -> Iterator[BumpingClient]:
     line = tmp_path / "create2"
-    emulate = (sys.executable, "-m", "roomba.commands.emulate", "create2", "--seed", "1")
+    emulate = (sys.executable, "-m", "roomba.commands.program", "emulate", "create2", "--seed", "1")
     made = Program((*emulate, "--link", str(line)), os.environ, tmp_path / "log")
     wait_until(line.exists, 60.0, lambda: made.output)
     life = BumpingLife(ROBOTS["create2"], str(line))

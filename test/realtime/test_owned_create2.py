@@ -22,7 +22,7 @@ from roomba.headless.live.client import LiveClient
 def client(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[LiveClient]:
     monkeypatch.setenv("ROOMBA_MAPS", str(tmp_path / "maps"))
     line, lidar = tmp_path / "create2", tmp_path / "ld19"
-    emulate = (sys.executable, "-m", "roomba.commands.emulate", "create2", "--seed", "1")
+    emulate = (sys.executable, "-m", "roomba.commands.program", "emulate", "create2", "--seed", "1")
     made = Program(
         (*emulate, "--link", str(line), "--lidar-link", str(lidar)), os.environ, tmp_path / "log"
     )

@@ -19,7 +19,7 @@ from roomba_ros.runtime.action_client import ActionClient
 
 def test_it_cleans_a_home_that_it_does_not_know(graph: RosGraph, tmp_path: Path) -> None:
     link = tmp_path / "neato"
-    emulate = (sys.executable, "-m", "roomba.commands.emulate", "neato")
+    emulate = (sys.executable, "-m", "roomba.commands.program", "emulate", "neato")
     graph.run(*emulate, "--link", str(link), "--seed", "1")
     wait_until(link.exists, 60.0, "the made-up robot")
     run = graph.start_run("robot:=neato", f"port:={link}")

@@ -38,7 +38,16 @@ OTHER = "127.0.0.9"
 def playing(folder: Path, *words: str) -> Iterator[str]:
     """Run the command as a user types it; give the one address that it printed."""
     with subprocess.Popen(
-        [sys.executable, "-m", "roomba.commands.play", "--no-open", "--port", "0", *words],
+        [
+            sys.executable,
+            "-m",
+            "roomba.commands.program",
+            "play",
+            "--no-open",
+            "--port",
+            "0",
+            *words,
+        ],
         stdout=subprocess.PIPE,
         text=True,
         env={

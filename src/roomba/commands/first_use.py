@@ -19,6 +19,7 @@ from typing import Final
 from rich.console import Console
 
 from roomba.commands.compiling import is_kept
+from roomba.commands.ending import quiet_end
 
 _CLEAN, _PLAN = "roomba.commands.trials.warm", "roomba.commands.warm_up"
 _TITLE: Final = "Compiling what a clean needs, once"
@@ -103,4 +104,5 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    with quiet_end():
+        sys.exit(main())

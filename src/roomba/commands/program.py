@@ -6,25 +6,15 @@ ROS beside.
 
 from __future__ import annotations
 
-import argparse
 import importlib
 import os
 import re
 import sys
-from importlib.metadata import version
 from pathlib import Path
 from types import ModuleType
 from typing import Final
 
-from roomba.commands.doctor import (
-    Finding,
-    StepState,
-    as_json,
-    as_table,
-    why_not_all_importable,
-)
 from roomba.commands.ending import quiet_end, quiet_loading
-from roomba.commands.spelling import spelled
 
 _IS_WINDOWS: Final = os.name == "nt"
 
@@ -43,7 +33,7 @@ _COMMANDS: Final = {
     "export": "roomba.commands.export.command",
     "pictures": "roomba.commands.pictures.__main__",
     "bench": "roomba_bench.__main__",
-    "doctor": __name__,
+    "doctor": "roomba.commands.installed_doctor",
 }
 """The module whose ``main`` is the command; each is loaded when it is asked for."""
 _OF_RECORDINGS: Final = {"map": "roomba.commands.map.drive.command"}
@@ -62,17 +52,6 @@ _ELSEWHERE: Final = """\
 The commands run, camera, exec, record, service, and control without --demo, need ROS; test, soak,
 fuzz, sbom, exercise and docs need the checkout: there it is ./roomba COMMAND.
 """
-_MODULES: Final = (
-    "cv2", "fastapi", "matplotlib", "numba", "numpy", "pebble", "PIL", "pydantic", "rich",
-    "rosbags", "scipy", "serial", "shapely", "textual", "uvicorn", "websockets", "yaml",
-)  # fmt: skip
-_EXTRAS: Final = {
-    "distributed": "campaign",
-    "gymnasium": "gym",
-    "paho": "smart-home",
-    "prometheus_client": "smart-home",
-    "pyarrow": "campaign",
-}
 
 
 def program() -> int:
@@ -87,6 +66,8 @@ def _run() -> int:
         print(_usage(), end="")
         return 0
     if command in ("version", "--version"):
+        from importlib.metadata import version  # 10 ms, which others need not wait for
+
         print(f"roomba_robot {version('roomba_robot')}")
         return 0
     if command in _DEMOS and "--demo" in arguments:
@@ -117,20 +98,6 @@ def _loaded(module: str) -> ModuleType:
         return importlib.import_module(module)
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Tell whether all that the library needs can be imported; returns 1 if something cannot."""
-    parser = argparse.ArgumentParser(
-        prog=spelled("doctor"), description="Tell what is missing and how to mend it."
-    )
-    parser.add_argument("--json", action="store_true", help="for a program to read")
-    wanted = parser.parse_args(arguments)
-    modules = (*_MODULES, *_EXTRAS)
-    reasons = why_not_all_importable(Path(sys.executable), modules, {"PATH": ""})
-    findings = [_imported(module, reason) for module, reason in reasons.items()]
-    print(as_json(findings) if wanted.json else as_table(findings))
-    return 1 if any(finding.state is StepState.MISSING for finding in findings) else 0
-
-
 def _usage() -> str:
     """Return the entries of the commands that are here."""
     _, listed, _ = _USAGE.read_text(encoding="utf-8").split("\n\n", 2)
@@ -138,15 +105,6 @@ def _usage() -> str:
     here = {*_COMMANDS, *_DEMOS, "version", "help"}
     kept = "\n".join(entry for entry in entries if entry.split()[0] in here)
     return f"usage: roomba COMMAND ...\n\n{kept.replace('./roomba', 'roomba')}\n\n{_ELSEWHERE}"
-
-
-def _imported(module: str, reason: str) -> Finding:
-    if not reason:
-        return Finding(module, StepState.FINE)
-    if module in _EXTRAS:
-        mend = f"pip install 'roomba_robot[{_EXTRAS[module]}]', if you want it"
-        return Finding(module, StepState.NOTE, reason, mend)
-    return Finding(module, StepState.MISSING, reason, "install roomba_robot anew with pip")
 
 
 def _refused(reason: str) -> int:

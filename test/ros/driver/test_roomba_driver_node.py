@@ -29,7 +29,15 @@ AHEAD.linear.x = 0.1
 def emulated(graph: RosGraph, tmp_path: Path) -> tuple[Program, Path]:
     """Start a made-up Neato; return it, and its line."""
     link = tmp_path / "neato"
-    command = (sys.executable, "-m", "roomba.commands.emulate", "neato", "--link", str(link))
+    command = (
+        sys.executable,
+        "-m",
+        "roomba.commands.program",
+        "emulate",
+        "neato",
+        "--link",
+        str(link),
+    )
     program = graph.run(*command)
     wait_until(link.exists, 60.0, "the made-up robot")
     return program, link

@@ -132,7 +132,16 @@ def test_the_command_gives_it_back_however_it_is_ended(
     neato: NeatoEnd, tmp_path: Path, number: signal.Signals
 ) -> None:
     arguments = ("--robot", "neato", "--line", str(tmp_path / "neato"))
-    command = (sys.executable, "-m", "roomba.commands.play", *arguments, "--port", "0", "--no-open")
+    command = (
+        sys.executable,
+        "-m",
+        "roomba.commands.program",
+        "play",
+        *arguments,
+        "--port",
+        "0",
+        "--no-open",
+    )
     program = Program(command, os.environ, tmp_path / "log")
     wait_until(lambda: "Ctrl-C ends it" in program.output, 60.0, lambda: program.output)
     assert neato.robot.is_testing

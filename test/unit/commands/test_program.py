@@ -29,7 +29,7 @@ def test_usage_names_each_command(
 def test_the_version_is_that_of_the_installed_library(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], word: str
 ) -> None:
-    monkeypatch.setattr("roomba.commands.program.version", {"roomba_robot": "1.2.3"}.__getitem__)
+    monkeypatch.setattr("importlib.metadata.version", {"roomba_robot": "1.2.3"}.__getitem__)
     assert call(monkeypatch, word) == 0
     assert capsys.readouterr().out == "roomba_robot 1.2.3\n"
 

@@ -86,7 +86,7 @@ class RunningPrograms:
     def start_robot(self, arguments: Sequence[str], links: Sequence[Path]) -> None:
         """Start a made-up robot; it has begun when its lines are there."""
         self._start(
-            [sys.executable, "-m", "roomba.commands.emulate", *arguments],
+            [sys.executable, "-m", "roomba.commands.program", "emulate", *arguments],
             "emulate",
             lambda _: all(link.exists() for link in links),
         )
@@ -94,7 +94,7 @@ class RunningPrograms:
     def start_brain(self, arguments: Sequence[str]) -> str:
         """Start what drives it; return the address of its page, with the token."""
         program = self._start(
-            [sys.executable, "-m", "roomba.commands.play", *arguments],
+            [sys.executable, "-m", "roomba.commands.program", "play", *arguments],
             "play",
             is_served,
         )

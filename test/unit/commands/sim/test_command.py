@@ -115,7 +115,7 @@ def imports(process: str) -> bool:
 
 def test_ctrl_c_ends_it_and_its_processes_at_once_without_a_traceback() -> None:
     environment = {**os.environ, "PYTHONPATH": str(REPOSITORY / "src")}
-    words = [sys.executable, "-m", "roomba.commands.sim", "--homes", "1000"]
+    words = [sys.executable, "-m", "roomba.commands.program", "sim", "--homes", "1000"]
     process = subprocess.Popen(
         words,
         env=environment,

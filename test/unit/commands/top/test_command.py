@@ -79,7 +79,7 @@ def test_on_a_terminal_it_fills_it_commands_by_the_kept_token_and_the_end_of_inp
     kept.write_text(TOKEN)
     ours, its = pty.openpty()
     with subprocess.Popen(
-        [sys.executable, "-m", "roomba.commands.top", str(port)],
+        [sys.executable, "-m", "roomba.commands.program", "top", str(port)],
         stdin=its,
         stdout=its,
         stderr=its,
