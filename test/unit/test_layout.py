@@ -52,7 +52,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba_ros/supervision/isolation": ("system/test_isolation.py", NODE),
     "roomba_ros/supervision/namespace": ("system/test_isolation.py", NODE),
     "roomba_ros/supervision/launch_xml": ("ros/supervision/test_launch_file.py", VALUES),
-    "roomba_ros/supervision/run": ("system/faults/test_supervision.py", NODE),
     "roomba/client/clock": ("unit/client/fake/test_robot.py", VALUES),
     "roomba/client/fake/": ("unit/client/fake/test_robot.py", "one robot in three files"),
     "roomba/client/household": ("unit/household/test_household.py", "an interface"),

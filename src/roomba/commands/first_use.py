@@ -68,8 +68,10 @@ def _started(words: tuple[str, ...], told_to: int) -> Iterator[subprocess.Popen[
 
     Ctrl-C is for this process alone, which ends the other one.
     """
+    # Without a buffer a line and its end are written one after the other: both halves' would mix.
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
     command = [sys.executable, "-m", *words]
-    process = subprocess.Popen(command, stdout=told_to, start_new_session=True)
+    process = subprocess.Popen(command, stdout=told_to, env=environment, start_new_session=True)
     try:
         yield process
     finally:

@@ -20,7 +20,7 @@ import rospkg
 from roomba.configuration.frozen import load_config
 from roomba.configuration.nodes import NodesConfig
 from roomba.errors import RoombaError
-from roomba.files.shipped import CONFIGURATION
+from roomba.files.shipped import CONFIGURATION, HOMES
 from roomba_ros.runtime.alone import living
 from roomba_ros.runtime.senders import SUPERVISOR
 from roomba_ros.supervision.kept_master import be_master, wait_for_master
@@ -33,6 +33,8 @@ from roomba_ros.supervision.supervisor_node import be_supervisor_node
 USAGE: Final = 2
 """The exit status for a wrong argument."""
 _CALLER: Final = "/roomba_run"
+_HOME: Final = "/home_sim_node/home"
+"""The end of the parameter's name."""
 _MASTER_WITHIN: Final = 20.0
 """s of wall time in which the master answers, on a busy machine too."""
 
@@ -46,6 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(f"usage: ./roomba run [--isolated] [name:=value ...]\n\n{described(file)}")
             return 0
         launch = read_launch(file, given)
+        _require_home(launch)
         _require_host_of_master()
         _refuse_second(launch)
     except RoombaError as error:
@@ -82,6 +85,16 @@ def _run(launch: Launch, scripts: Path) -> int:
             return supervisor.run()
         finally:
             supervisor.end_all()
+
+
+def _require_home(launch: Launch) -> None:
+    """Raise HomeError when there is none of that name: before ten processes start, and one ends."""
+    for name, value in launch.parameters.items():
+        if name.endswith(_HOME):
+            # Here: a robot at the end of a line has no simulated home.
+            from roomba.world.layers.layer import files_of_home
+
+            files_of_home(str(value), HOMES)
 
 
 def _require_host_of_master() -> None:

@@ -20,6 +20,7 @@ STAYS = "import os, time; print(f'1: {os.getpid()}', flush=True); time.sleep(60.
 def halves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Folder of the modules clean.py and plan.py, which stand for the two halves."""
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join((str(tmp_path), os.environ["PYTHONPATH"])))
+    monkeypatch.setenv("PYTHONUNBUFFERED", "1")
     monkeypatch.setattr(first_use, "_CLEAN", "clean")
     monkeypatch.setattr(first_use, "_PLAN", "plan")
     return tmp_path

@@ -11,6 +11,7 @@ from roomba.commands.valetudo.homes import write_home
 from roomba.commands.valetudo.options import parser_of, reason_of
 from roomba.errors import RoombaError
 from roomba.files.bounded import read_text
+from roomba.files.home_layer import MAP_NAME
 from roomba.files.valetudo import parse
 
 PROGRAM: Final = spelled("import")
@@ -25,6 +26,8 @@ def main(arguments: list[str] | None = None) -> int:
     folder = given.out or Path(given.file.stem)
     if folder.exists() and not folder.is_dir():
         parser.error(f"--out: expected a folder, or a new one, got the file {folder}")
+    if (folder / MAP_NAME).exists():
+        parser.error(f"--out: expected a folder without a home, got {folder}; choose another")
     try:
         found = parse(read_text(given.file))
         home = write_home(found, folder)

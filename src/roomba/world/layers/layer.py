@@ -55,7 +55,7 @@ def load_home(
     its station; ``station`` is the docked robot's pose in place of the layer's. Raises
     :class:`HomeError`: ``file:line: reason``.
     """
-    map_path, layer_path = _files_of(name_or_path, homes_directory)
+    map_path, layer_path = files_of_home(name_or_path, homes_directory)
     occupancy = load_map(map_path)
     if layer_path is None:
         layer, file = Layer(), YamlFile(map_path, {}, None)
@@ -149,8 +149,8 @@ def _even_dirt(floor: FurnishedFloor) -> DirtSource:
     )
 
 
-def _files_of(name_or_path: str, homes_directory: Path) -> tuple[Path, Path | None]:
-    """Find the map's file, and the layer's if there is one."""
+def files_of_home(name_or_path: str, homes_directory: Path) -> tuple[Path, Path | None]:
+    """Return the map's file of a home, and the layer's if there is one; raises HomeError."""
     named = homes_directory / name_or_path / MAP_NAME
     path = Path(name_or_path).expanduser()
     is_name = bool(name_or_path) and Path(name_or_path).name == name_or_path

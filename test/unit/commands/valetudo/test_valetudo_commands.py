@@ -133,6 +133,20 @@ def test_what_is_no_map_is_refused_in_a_line(
     assert not (tmp_path / "home").exists()
 
 
+def test_a_home_that_is_there_is_not_written_over(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, folder = foreign(tmp_path / "map.json"), tmp_path / "home"
+    words = ["valetudo", str(file), "--out", str(folder)]
+    assert bring(words) == 0
+    (folder / "map.yaml").write_text("mine")
+    with pytest.raises(SystemExit) as ended:
+        bring(words)
+    assert ended.value.code == 2
+    assert f"--out: expected a folder without a home, got {folder}" in capsys.readouterr().err
+    assert (folder / "map.yaml").read_text() == "mine"
+
+
 def test_a_file_in_place_of_the_folder_is_refused_by_its_name(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
