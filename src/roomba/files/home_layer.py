@@ -1,4 +1,4 @@
-"""The layer file of a home: what it may say, each value checked by itself.
+"""Which files a home has, and its layer file: what it may say, each value checked by itself.
 
 All lengths in m, positions in the frame of the map, dirt in g and g/h. A direction is ``east``,
 ``north``, ``west``, ``south`` or an angle in rad, counter-clockwise from the x axis. Times in s.
@@ -21,7 +21,8 @@ from pydantic import (
     model_validator,
 )
 
-from roomba.files.strict_yaml import YamlFile, read_yaml
+from roomba.errors import HomeError
+from roomba.files.strict_yaml import YamlFile, read_yaml, suggestion
 
 MAP_NAME: Final = "map.yaml"
 LAYER_NAME: Final = "home.yaml"
@@ -302,3 +303,36 @@ def _refuse_equal_names(layer: Layer, file: YamlFile) -> None:
                     f"{part}: expected every name once, got {entry.name!r} again; rename one",
                 )
             seen.add(entry.name)
+
+
+def list_homes(directory: Path) -> list[str]:
+    """Return the names of the homes in a folder, sorted; of a folder that is not there, none."""
+    return sorted(entry.parent.name for entry in directory.glob(f"*/{MAP_NAME}"))
+
+
+def files_of_home(name_or_path: str, homes_directory: Path) -> tuple[Path, Path | None]:
+    """Return the map's file of a home, and the layer's if there is one; raises HomeError."""
+    named = homes_directory / name_or_path / MAP_NAME
+    path = Path(name_or_path).expanduser()
+    is_name = bool(name_or_path) and Path(name_or_path).name == name_or_path
+    if is_name and named.is_file():
+        map_path = named
+    elif name_or_path and path.is_dir():
+        map_path = path / MAP_NAME
+    elif name_or_path and path.is_file():
+        map_path = path
+    else:
+        hint = suggestion(name_or_path, list_homes(homes_directory))
+        raise HomeError(
+            f"{homes_directory}: expected the name of a home there or the path of a map_server "
+            f"yaml, got {name_or_path!r}; {hint}"
+        )
+    if not map_path.is_file():
+        raise HomeError(f"{map_path.parent}: expected a home with a {MAP_NAME}, got none; add it")
+    beside = map_path.with_name(f"{map_path.stem}.home.yaml")
+    in_folder = map_path.with_name(LAYER_NAME)
+    if beside.is_file():
+        return map_path, beside
+    if map_path.name == MAP_NAME and in_folder.is_file():
+        return map_path, in_folder
+    return map_path, None

@@ -16,13 +16,14 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from roomba.files.home_layer import list_homes
 from roomba.files.image import read_image
 from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES
 from roomba.grid import OccupancyMap
 from roomba.raster.regions import numbered_regions
 from roomba.world.home.home import Home
-from roomba.world.layers.layer import list_homes, load_home
+from roomba.world.layers.layer import load_home
 
 RoomLabels = NDArray[np.signedinteger[Any]]
 

@@ -20,6 +20,7 @@ import rospkg
 from roomba.configuration.frozen import load_config
 from roomba.configuration.nodes import NodesConfig
 from roomba.errors import RoombaError
+from roomba.files.home_layer import files_of_home
 from roomba.files.shipped import CONFIGURATION, HOMES
 from roomba_ros.runtime.alone import living
 from roomba_ros.runtime.senders import SUPERVISOR
@@ -91,9 +92,6 @@ def _require_home(launch: Launch) -> None:
     """Raise HomeError when there is none of that name: before ten processes start, and one ends."""
     for name, value in launch.parameters.items():
         if name.endswith(_HOME):
-            # Here: a robot at the end of a line has no simulated home.
-            from roomba.world.layers.layer import files_of_home
-
             files_of_home(str(value), HOMES)
 
 

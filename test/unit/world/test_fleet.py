@@ -18,12 +18,13 @@ from numpy.typing import NDArray
 from roomba.configuration.sensors import LidarConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import HomeError
+from roomba.files.home_layer import list_homes
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist
 from roomba.world.engine.state.arrays import MOST_DISCS, Fault
 from roomba.world.fleet import Fleet
 from roomba.world.home.home import Home, Move
-from roomba.world.layers.layer import list_homes, load_home
+from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Simulator
 
 RADIUS = SimulatedRobotConfig().body.radius

@@ -15,9 +15,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.configuration.sensors import LidarConfig
+from roomba.files.home_layer import list_homes
 from roomba.files.shipped import HOMES
 from roomba.grid import GridFrame
-from roomba.world.layers.layer import list_homes, load_home
+from roomba.world.layers.layer import load_home
 from roomba.world.lidar import Lidar
 
 FAR = LidarConfig(min_range=1e-6, max_range=1e3)

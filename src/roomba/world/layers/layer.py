@@ -15,9 +15,9 @@ import numpy as np
 
 from roomba.configuration.body import BodyConfig
 from roomba.errors import HomeError
-from roomba.files.home_layer import LAYER_NAME, MAP_NAME, Layer, read_layer
+from roomba.files.home_layer import MAP_NAME, Layer, files_of_home, read_layer
 from roomba.files.occupancy_map import load_map
-from roomba.files.strict_yaml import YamlFile, suggestion
+from roomba.files.strict_yaml import YamlFile
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.world.home.home import DirtSource, Home
@@ -36,11 +36,6 @@ EVEN_DIRT = 0.5
 """g/m²; on the floor of a home whose layer names no sources: some days of dust."""
 EVEN_DIRT_RATE = 0.005
 """g/(m² h); what falls on it later: about 0.1 g/m² a day."""
-
-
-def list_homes(directory: Path) -> list[str]:
-    """Return the names of the homes in a folder, sorted; of a folder that is not there, none."""
-    return sorted(entry.parent.name for entry in directory.glob(f"*/{MAP_NAME}"))
 
 
 def load_home(
@@ -147,34 +142,6 @@ def _even_dirt(floor: FurnishedFloor) -> DirtSource:
         EVEN_DIRT * area,
         EVEN_DIRT_RATE * area,
     )
-
-
-def files_of_home(name_or_path: str, homes_directory: Path) -> tuple[Path, Path | None]:
-    """Return the map's file of a home, and the layer's if there is one; raises HomeError."""
-    named = homes_directory / name_or_path / MAP_NAME
-    path = Path(name_or_path).expanduser()
-    is_name = bool(name_or_path) and Path(name_or_path).name == name_or_path
-    if is_name and named.is_file():
-        map_path = named
-    elif name_or_path and path.is_dir():
-        map_path = path / MAP_NAME
-    elif name_or_path and path.is_file():
-        map_path = path
-    else:
-        hint = suggestion(name_or_path, list_homes(homes_directory))
-        raise HomeError(
-            f"{homes_directory}: expected the name of a home there or the path of a map_server "
-            f"yaml, got {name_or_path!r}; {hint}"
-        )
-    if not map_path.is_file():
-        raise HomeError(f"{map_path.parent}: expected a home with a {MAP_NAME}, got none; add it")
-    beside = map_path.with_name(f"{map_path.stem}.home.yaml")
-    in_folder = map_path.with_name(LAYER_NAME)
-    if beside.is_file():
-        return map_path, beside
-    if map_path.name == MAP_NAME and in_folder.is_file():
-        return map_path, in_folder
-    return map_path, None
 
 
 def _name_of(map_path: Path) -> str:

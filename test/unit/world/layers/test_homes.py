@@ -12,6 +12,7 @@ import shapely
 
 from roomba.commands.draw_homes import drawn_map
 from roomba.configuration.body import BodyConfig
+from roomba.files.home_layer import list_homes
 from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES
 from roomba.grid import FREE, OCCUPIED
@@ -25,7 +26,7 @@ from roomba.world.home.raster import (
     largest_component,
     where_body_fits,
 )
-from roomba.world.layers.layer import list_homes, load_home
+from roomba.world.layers.layer import load_home
 
 NAMES = [
     "apartment",

@@ -11,11 +11,12 @@ from fixtures.homes.home_layers import STATION, loaded, room_map, value_at
 
 from roomba.configuration.body import BodyConfig
 from roomba.errors import HomeError
+from roomba.files.home_layer import list_homes
 from roomba.files.occupancy_map import save_map
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.world.home.raster import distance_to_cells
-from roomba.world.layers.layer import EVEN_DIRT, list_homes, load_home
+from roomba.world.layers.layer import EVEN_DIRT, load_home
 
 
 def test_home_is_found_by_name_folder_and_map(tmp_path: Path) -> None:
