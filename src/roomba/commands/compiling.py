@@ -36,7 +36,7 @@ def compiled_functions_told() -> Iterator[None]:
 def compiling_counted(tell: Callable[[str], None]) -> Iterator[None]:
     """Tell, in words for people, how many functions numba has begun to compile here.
 
-    The installed library has no set-up that compiles them: its first run does, for some minutes.
+    In an installed library a first exploration compiles what only mapping needs.
     """
 
     def count(number: int, _: str) -> None:

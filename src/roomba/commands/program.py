@@ -1,7 +1,6 @@
 """The program ``roomba`` of the installed library: the commands that need no ROS.
 
-``./roomba`` of a checkout has the same commands, some of them by this program, and those that need
-ROS beside.
+``./roomba`` of a checkout does them by this program as well, and has those that need ROS beside.
 """
 
 from __future__ import annotations

@@ -10,6 +10,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from roomba.commands.campaign.options import PROGRAM, CampaignOptions, options_of
+from roomba.commands.ending import INTERRUPTED
+from roomba.commands.guarding import USAGE
 from roomba.commands.options import UsageError
 from roomba.commands.progress import Show, progress
 from roomba.commands.telling import clock, named_table, tell_tables, write_json
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
     from roomba.commands.campaign.running.specification import Campaign
     from roomba.commands.campaign.running.store import ResultStore, Row
 
-DONE, SOME_FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
+DONE, SOME_FAILED = 0, 1
 _PARQUET: Final = "results.parquet"
 _PLOT: Final = "differences.png"
 

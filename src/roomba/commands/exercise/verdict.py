@@ -27,7 +27,7 @@ def expect(is_right: bool, sentence: str) -> None:
 
 
 def loaded(file: Path) -> ModuleType:
-    """Return the learner's module; raises what the file raises, whatever its name ends with."""
+    """Return the learner's module, of a file of any name; raises what the file raises."""
     loader = SourceFileLoader("answer", str(file))
     spec = importlib.util.spec_from_loader("answer", loader)
     assert spec is not None

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import time
 
+from roomba.commands.guarding import COMPLETED, guarded
 from roomba.commands.localize.options import PROGRAM, LocalizeOptions, options_of
-from roomba.commands.map.command import COMPLETED, guarded
 from roomba.commands.options import UsageError
 from roomba.commands.progress import progress
 from roomba.commands.telling import named_table, tell_tables, write_json
@@ -20,7 +20,7 @@ from roomba.grid import OccupancyMap
 
 def main(arguments: list[str] | None = None) -> int:
     """Localize; returns the exit status."""
-    return guarded(lambda: _run(options_of(arguments)), program=PROGRAM)
+    return guarded(lambda: _run(options_of(arguments)), PROGRAM)
 
 
 def _run(options: LocalizeOptions) -> int:

@@ -4,51 +4,25 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
+from roomba.commands.guarding import COMPLETED, ENDED_OTHERWISE, USAGE, guarded
 from roomba.commands.importing import nothing_thrown_away
 from roomba.commands.map.options import PROGRAM, MapOptions, Output, options_of
 from roomba.commands.options import UsageError
 from roomba.commands.progress import Show, progress
 from roomba.commands.telling import tell_tables, write_json
-from roomba.errors import RoombaError
 
 if TYPE_CHECKING:
     from roomba.commands.map.runs import MapRun, MapScene, ObservedExplorer, RunObserver
 
-COMPLETED, ENDED_OTHERWISE, USAGE, INTERRUPTED = 0, 1, 2, 130
 _SHOWN: Final = 0.25
 """s between two updates of the progress."""
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Do what a command line asks for; returns the exit status."""
-    return guarded(lambda: _explore(options_of(_without_bag(arguments))), USAGE)
-
-
-def guarded(work: Callable[[], int], refused: int = ENDED_OTHERWISE, program: str = PROGRAM) -> int:
-    """Return the exit status of some work of a ``program``; an error is printed in a line.
-
-    ``refused`` is the status for an input that cannot be used.
-    """
-
-    def complain(text: str, status: int) -> int:
-        print(f"{program}: {' '.join(text.split())}", file=sys.stderr)
-        return status
-
-    try:
-        return work()
-    except UsageError as error:
-        return complain(str(error), USAGE)
-    except RoombaError as error:
-        return complain(str(error), refused)
-    except BrokenPipeError:
-        raise  # the reader of the output has gone: roomba.commands.ending
-    except OSError as error:
-        return complain(f"{error}; choose another file", ENDED_OTHERWISE)
-    except KeyboardInterrupt:
-        return complain("stopped on the way", INTERRUPTED)
+    return guarded(lambda: _explore(options_of(_without_bag(arguments))), PROGRAM, USAGE)
 
 
 def _without_bag(arguments: list[str] | None) -> list[str] | None:

@@ -11,6 +11,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from roomba.commands.guarding import COMPLETED, ENDED_OTHERWISE, USAGE, guarded
 from roomba.commands.importing import nothing_thrown_away
 from roomba.commands.options import UsageError
 from roomba.commands.progress import Show, progress
@@ -30,31 +31,21 @@ BagOpener = Callable[[Path, "TrialSetup"], AbstractContextManager["RunObserver"]
 
 BAG_BURST: Final = 2
 """Ticks between two looks for a bag: its fastest topics have 10 Hz."""
-COMPLETED, ENDED_OTHERWISE, USAGE, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(arguments: list[str] | None = None, open_bag: BagOpener | None = None) -> int:
     """Do what a command line asks for; returns the exit status."""
-    try:
-        options = options_of(arguments)
-        if options.bag is not None and open_bag is None:
-            raise UsageError(f"--bag: expected a Python with ROS, got none; call {PROGRAM} --bag")
-        if options.homes is not None:
-            return _run_homes(options, options.homes)
-        return _run_one(options, open_bag, sys.argv[1:] if arguments is None else arguments)
-    except RoombaError as error:
-        return _complain(str(error), USAGE)
-    except BrokenPipeError:
-        raise  # the reader of the output has gone: roomba.commands.ending
-    except OSError as error:
-        return _complain(f"{error}; choose another file", ENDED_OTHERWISE)
-    except KeyboardInterrupt:
-        return _complain("stopped on the way", INTERRUPTED)
+    words = sys.argv[1:] if arguments is None else arguments
+    return guarded(lambda: _run(words, open_bag), PROGRAM, USAGE)
 
 
-def _complain(text: str, status: int) -> int:
-    print(f"{PROGRAM}: {' '.join(text.split())}", file=sys.stderr)
-    return status
+def _run(words: list[str], open_bag: BagOpener | None) -> int:
+    options = options_of(words)
+    if options.bag is not None and open_bag is None:
+        raise UsageError(f"--bag: expected a Python with ROS, got none; call {PROGRAM} --bag")
+    if options.homes is not None:
+        return _run_homes(options, options.homes)
+    return _run_one(options, open_bag, words)
 
 
 # ---------------------------------------------------------------- one run

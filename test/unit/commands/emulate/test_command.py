@@ -18,18 +18,12 @@ from roomba.drivers.lidars.ld19 import HEAD, Ld19Frames
 from roomba.drivers.line import SerialLine
 from roomba.drivers.neato.conversation import Conversation
 
+EMULATE = (sys.executable, "-m", "roomba.commands.program", "emulate")
+
 
 def test_it_answers_on_its_line_until_it_is_interrupted(tmp_path: Path) -> None:
     link = tmp_path / "neato"
-    words = [
-        sys.executable,
-        "-m",
-        "roomba.commands.program",
-        "emulate",
-        "neato",
-        "--link",
-        str(link),
-    ]
+    words = [*EMULATE, "neato", "--link", str(link)]
     emulator = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
     try:
         wait_until(link.is_symlink, 30.0, "the line is there")
@@ -47,7 +41,7 @@ def test_it_answers_on_its_line_until_it_is_interrupted(tmp_path: Path) -> None:
 
 def test_a_create2_and_its_lidar_are_on_lines_of_their_own(tmp_path: Path) -> None:
     link, lidar_link = tmp_path / "create2", tmp_path / "ld19"
-    words = [sys.executable, "-m", "roomba.commands.program", "emulate", "create2", "--serial"]
+    words = [*EMULATE, "create2", "--serial"]
     words += ["--baud", "19200", "--link", str(link), "--lidar-link", str(lidar_link)]
     emulator = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
     try:
@@ -75,15 +69,7 @@ def test_a_create2_and_its_lidar_are_on_lines_of_their_own(tmp_path: Path) -> No
 
 def test_a_lidar_stands_alone(tmp_path: Path) -> None:
     link = tmp_path / "ld19"
-    words = [
-        sys.executable,
-        "-m",
-        "roomba.commands.program",
-        "emulate",
-        "ld19",
-        "--link",
-        str(link),
-    ]
+    words = [*EMULATE, "ld19", "--link", str(link)]
     emulator = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
     try:
         wait_until(link.is_symlink, 30.0, "the line is there")

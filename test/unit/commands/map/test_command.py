@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import pytest
 
-from roomba.commands.map import command, runs
+from roomba.commands.map import runs
 from roomba.commands.map.command import main
 from roomba.commands.map.json_file import TIMES, run_as_json
 from roomba.commands.map.plot import picture_of
@@ -177,20 +177,3 @@ def test_what_ends_otherwise_has_a_status_of_its_own(
     monkeypatch.setattr(runs.MapScene, "run", lambda self, observers: stopped)
     assert main(["--home", "closet"]) == 1
     assert "STOPPED" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    ("error", "status", "said"),
-    [
-        (KeyboardInterrupt(), 130, "stopped on the way"),
-        (OSError("the disk is full"), 1, "the disk is full; choose another file"),
-    ],
-)
-def test_what_goes_wrong_is_told_in_a_line(
-    error: BaseException, status: int, said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def work() -> int:
-        raise error
-
-    assert command.guarded(work) == status
-    assert capsys.readouterr().err == f"./roomba map: {said}\n"

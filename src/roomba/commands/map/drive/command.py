@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import time
 
-from roomba.commands.map.command import COMPLETED, guarded
+from roomba.commands.guarding import COMPLETED, guarded
 from roomba.commands.map.drive.options import DriveOptions, options_of
+from roomba.commands.map.options import PROGRAM
 from roomba.commands.progress import progress
 from roomba.commands.telling import named_table, tell_tables, write_json
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Map; returns the exit status."""
-    return guarded(lambda: _run(options_of(arguments)))
+    return guarded(lambda: _run(options_of(arguments)), PROGRAM)
 
 
 def _run(options: DriveOptions) -> int:
