@@ -209,7 +209,7 @@ class Burst:
         readings, clock = self._body.read(), float(row["clock"])
         if clock != 0.0:
             readings = replace(readings, time=readings.time + clock)
-        brain.told(readings)
+        brain.drove_on(readings)
         self._finish_scan(readings.time)
         time, x, y = row["last"].tolist()
         senses = brain.senses()

@@ -13,7 +13,7 @@ from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.nodes import PlacingConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.control.speed_loop import SpeedLoop
+from roomba.control.speed_loop import Hazards, SpeedLoop
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap
@@ -279,11 +279,15 @@ class Brain:
         self._mapped.limit_speed(max_speed)
 
     def told(self, readings: Readings) -> None:
-        """Take readings without acting on them.
+        """Take readings without acting on them, after which no time passed."""
+        self._readings = readings
 
-        This is for steady ticks that compiled code computed on the parts' own arrays, and for
-        readings after which no time passed.
+    def drove_on(self, readings: Readings) -> None:
+        """Take the readings at the end of steady ticks, in which nothing held the drive.
+
+        Compiled code computed these ticks on the parts' own arrays.
         """
+        self._drive.set_hazards(Hazards())
         self._readings = readings
 
     # ---------------------------------------------------------------- parts

@@ -6,6 +6,7 @@ That it does what the ordinary classes do is the matter of test/conformance.
 from __future__ import annotations
 
 import contextlib
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -15,17 +16,20 @@ from fixtures.robots.missions import HOME, TWO_ROOMS, in_phase, until
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.errors import HomeError
-from roomba.geometry import Pose
+from roomba.geometry import Pose, Twist
 from roomba.headless.burst import Burst
 from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.rows import BELIEVED, GYRO, ODOMETRY, PASSED, TIME, TRUE
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.localization.estimate import Knowledge
+from roomba.robot.readings import CliffReading
 from roomba.world.engine.state.arrays import Fault
 from roomba.world.home.turned import turned_home
 
 TICK: Final = NOISY.timing.tick
+LONG_BACKING: Final = NOISY.body.cliff_backing_time
+"""s; after so long it backs away no more."""
 
 
 def burst_of(robot: HeadlessMission, longest: int = 100) -> Burst:
@@ -103,6 +107,19 @@ def test_it_ends_when_anything_is_the_matter(is_mapped: bool, fault: Fault) -> N
     robot.simulator.inject(fault, 1.0)
     assert len(burst.run()) == 1
     assert len(burst_of(robot).run()) == 0
+
+
+@BOTH
+def test_after_it_an_edge_is_backed_away_from_as_one_before_it_was(is_mapped: bool) -> None:
+    robot = under_way(is_mapped=is_mapped)
+    brain, before = robot.brain, robot.brain.readings
+    edge = CliffReading(right=True)
+    brain.told(replace(before, cliff=edge, time=before.time - 2.0 * LONG_BACKING))
+    assert brain.steer(Twist(0.1, 0.0)).twist.linear < 0.0
+    brain.told(before)
+    assert len(burst_of(robot).run())
+    brain.told(replace(brain.readings, cliff=edge))
+    assert brain.steer(Twist(0.1, 0.0)).twist.linear < 0.0
 
 
 @BOTH
