@@ -31,27 +31,18 @@ Mask = NDArray[np.bool_]
 
 
 class ShortestWays:
-    """Shortest ways that keep out of ``closed``, which is in cells: there the corners are exact."""
+    """Shortest ways of a disc of ``radius`` m among ``solid`` cells, which it may touch.
 
-    def __init__(self, closed: shapely.Geometry, frame: GridFrame) -> None:
-        """Make it with :meth:`of_disc` or :meth:`over_cells`."""
+    ``solid`` is bool [rows, columns] of ``frame``.
+    """
+
+    def __init__(self, solid: Mask, frame: GridFrame, radius: float) -> None:
+        """Build what the disc's middle keeps out of, in cells: there corners are exact."""
         self._frame = frame
+        closed = _area(solid).buffer(radius / frame.resolution, quad_segs=_CHORDS)
         self._closed = closed.buffer(-_TOUCH)
         shapely.prepare(self._closed)
         self._corners, self._sides = _convex_corners(closed)
-
-    @classmethod
-    def of_disc(cls, solid: Mask, frame: GridFrame, radius: float) -> ShortestWays:
-        """Return those of a disc of ``radius`` m among solid cells, which it may touch."""
-        walls = _area(solid, 0.0)
-        return cls(walls.buffer(radius / frame.resolution, quad_segs=_CHORDS), frame)
-
-    @classmethod
-    def over_cells(cls, fits: Mask, frame: GridFrame) -> ShortestWays:
-        """Return those of a point that must stay between centres of cells that fit."""
-        between = fits[:-1, :-1] & fits[1:, :-1] & fits[:-1, 1:] & fits[1:, 1:]
-        rows, columns = fits.shape
-        return cls(shapely.box(0, 0, columns, rows).difference(_area(between, 0.5)), frame)
 
     def length(self, start: Point, goal: Point) -> float:
         """Return the length of the shortest way between points (x, y), m; infinite if none."""
@@ -119,8 +110,7 @@ def _cross(first: Floats, second: Floats) -> Floats:
     return first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
 
 
-def _area(cells: Mask, shift: float) -> shapely.Geometry:
-    """Return what true cells cover, shifted by a part of a cell along both axes."""
+def _area(cells: Mask) -> shapely.Geometry:
+    """Return what true cells cover."""
     rows, columns = np.nonzero(cells)
-    left, low = columns + shift, rows + shift
-    return shapely.union_all(shapely.box(left, low, left + 1.0, low + 1.0)).simplify(0.0)
+    return shapely.union_all(shapely.box(columns, rows, columns + 1.0, rows + 1.0)).simplify(0.0)

@@ -24,7 +24,7 @@ from roomba.perception.floors.map_changes import MapChanges
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.rooms.rooms import segment
-from roomba.planning.path.grid_path import shortest_grid_path
+from roomba.planning.path.search.grid_path import shortest_grid_path
 from roomba.world.camera.camera import Camera, Scene
 from roomba.world.home.home import DirtSource, Home
 from roomba.world.simulator import Simulator

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.grid import GridFrame
-from roomba.planning.path.grid_path import GridSearch
+from roomba.planning.path.search.grid_path import GridSearch
 from roomba.raster.regions import numbered_regions
 from roomba.world.home.raster import where_body_fits
 from roomba_bench.coverage.floor import TOOL, length

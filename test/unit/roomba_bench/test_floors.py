@@ -70,7 +70,7 @@ def test_links_cut_no_corners() -> None:
 def test_the_shortest_way_leads_around_a_wall() -> None:
     solid = np.zeros(FRAME.shape, bool)
     solid[:30, 30] = True  # from (2.0, 2.0) up to (2.1, 5.0)
-    ways = ShortestWays.of_disc(solid, FRAME, 0.0)
+    ways = ShortestWays(solid, FRAME, 0.0)
     straight = ways.length((0.0, 5.5), (4.0, 5.5))
     assert straight == pytest.approx(4.0)
     over = ways.length((0.0, 5.0 - 1.5), (4.1, 5.0 - 1.5))
@@ -80,16 +80,16 @@ def test_the_shortest_way_leads_around_a_wall() -> None:
 def test_a_disc_keeps_its_radius_from_a_corner() -> None:
     solid = np.zeros(FRAME.shape, bool)
     solid[:30, 30] = True
-    way = ShortestWays.of_disc(solid, FRAME, 0.5).length((0.0, 5.5), (4.1, 5.5))
+    way = ShortestWays(solid, FRAME, 0.5).length((0.0, 5.5), (4.1, 5.5))
     assert way == pytest.approx(4.1)
-    lower = ShortestWays.of_disc(solid, FRAME, 0.5).length((0.0, 5.0), (4.1, 5.0))
+    lower = ShortestWays(solid, FRAME, 0.5).length((0.0, 5.0), (4.1, 5.0))
     tangent, turn = math.hypot(2.0, 0.0) ** 2 - 0.5**2, math.asin(0.5 / 2.0)
     assert lower == pytest.approx(2 * (math.sqrt(tangent) + 0.5 * turn) + 0.1, rel=2e-3)
 
 
-def test_no_way_is_infinitely_long_and_cells_are_kept_between() -> None:
-    fits = np.ones(FRAME.shape, bool)
-    fits[:, 30] = False
-    ways = ShortestWays.over_cells(fits, FRAME)
-    assert ways.length((0.0, 4.0), (4.0, 4.0)) == math.inf
-    assert ways.length((0.0, 4.0), (1.0, 5.0)) == pytest.approx(math.sqrt(2.0))
+def test_no_way_is_infinitely_long() -> None:
+    solid = np.zeros(FRAME.shape, bool)
+    solid[10:31, [5, 25]] = solid[[10, 30], 5:26] = True  # around (0.5, 4.0)
+    ways = ShortestWays(solid, FRAME, 0.1)
+    assert ways.length((0.5, 4.0), (4.0, 4.0)) == math.inf
+    assert ways.length((0.0, 4.0), (1.0, 4.5)) == pytest.approx(math.hypot(1.0, 0.5))

@@ -46,6 +46,7 @@ from roomba.commands.pictures.teaching.bends import picture_of_bends
 from roomba.commands.pictures.teaching.floor_plan import picture_of_floor_plan
 from roomba.commands.pictures.teaching.loop import picture_of_loop_closing
 from roomba.commands.pictures.teaching.matching import picture_of_matching
+from roomba.commands.pictures.teaching.paths import picture_of_paths
 from roomba.commands.pictures.teaching.stages import picture_of_stages
 from roomba.commands.pictures.teaching.things import picture_of_things
 from roomba.commands.pictures.terminal import picture_of_top
@@ -91,6 +92,7 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "things": ("studio", picture_of_things),
     "stages": ("studio", picture_of_stages),
     "bends": ("empty", picture_of_bends),
+    "paths": ("apartment", picture_of_paths),
     "loop_closing": ("empty", picture_of_loop_closing),
 }
 """Each picture by the name of its file: the home that it is of, and what makes it."""

@@ -37,7 +37,8 @@ class FitMap:
     the disc touches no square of a cell that is not free, no obstacle, and nothing outside the map.
     Between neighbouring centres that fit, a wall's corner can be nearer than ``reach`` by the
     sagitta, ``resolution**2 / (8 * reach)``, at most: 1.7 mm for 5 cm cells and 0.18 m. Straight
-    walls that lie aslant are solid where they are within their cells.
+    walls that lie aslant are solid where they are within their cells: ``solid``, bool, has squares
+    of ``cell``, m, the map's cells or parts of them.
     """
 
     map: OccupancyMap
@@ -45,8 +46,8 @@ class FitMap:
     obstacles: tuple[RoundObstacle, ...]
     fits: Mask
     _fits_walls: Mask
-    _solid: Mask
-    _cell: float
+    solid: Mask
+    cell: float
 
     @classmethod
     def build(
@@ -106,11 +107,11 @@ class FitMap:
         Exact; 0 in solid things, below 0 inside a round obstacle, never more than ``reach`` plus
         one cell, where nothing that matters is near.
         """
-        frame, cell = self.map.frame, self._cell
+        frame, cell = self.map.frame, self.cell
         limit = self.reach + frame.resolution
         (x, y), (to_x, to_y) = start, end
         room = cell * _room_among_cells(
-            self._solid,
+            self.solid,
             (x - frame.origin_x) / cell,
             (y - frame.origin_y) / cell,
             (to_x - frame.origin_x) / cell,

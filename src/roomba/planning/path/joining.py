@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from roomba.planning.path.any_angle import Joints
 from roomba.planning.path.costmap import FitMap, Point
+from roomba.planning.path.search.any_angle import Joints
 
 _NEAR = 2.0
 """cells; how far a point at which the body fits is joined to, along each axis."""

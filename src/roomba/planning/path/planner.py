@@ -2,9 +2,10 @@
 
 :class:`PathPlanner` keeps a comfortable distance from walls where there is room, and a tight one
 where there is not. Its stages: :mod:`~roomba.planning.path.costmap` tells where the body fits, the
-ends
-are joined to the cells that do, :mod:`~roomba.planning.path.grid_path` finds what narrow places
-cannot be avoided, :mod:`~roomba.planning.path.any_angle` the shortest path.
+ends are joined to the cells that do, :mod:`~roomba.planning.path.search.grid_path` finds what
+narrow places cannot be avoided, :mod:`~roomba.planning.path.search.any_angle` the shortest path
+over the cells, and :mod:`~roomba.planning.path.string_pulling` makes it the shortest between the
+walls.
 """
 
 from __future__ import annotations
@@ -21,11 +22,12 @@ from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
 from roomba.grid import GridFrame, OccupancyMap
-from roomba.planning.path.any_angle import AnyAngleSearch, FreeSpace, Joints
 from roomba.planning.path.costmap import FitMap, Mask, Point, RoundObstacle
-from roomba.planning.path.grid_path import GridSearch
 from roomba.planning.path.joining import join_goal, join_start
 from roomba.planning.path.polyline import Path
+from roomba.planning.path.search.any_angle import AnyAngleSearch, FreeSpace, Joints
+from roomba.planning.path.search.grid_path import GridSearch
+from roomba.planning.path.string_pulling import StringPulling
 from roomba.raster.regions import dilated
 
 __all__ = ["NoPathError", "NoPathReason", "Path", "PathPlanner"]
@@ -104,6 +106,7 @@ class PathPlanner:
         )
         self._among_obstacles = self._among_walls
         self._any_angle = AnyAngleSearch(map.frame.shape)
+        self._string = StringPulling(self._among_walls.comfortable)
         self._grid = GridSearch()
         self._reachable: dict[frozenset[int], Mask] = {}
 
@@ -128,7 +131,7 @@ class PathPlanner:
         if math.dist(start, goal) <= _NEXT_DOOR * self.frame.resolution and (
             room.tight.fits_along(start, goal)
         ):
-            return _path(start, np.zeros((0, 2)), goal)
+            return Path(_without_repeats(np.array((start, goal))))
         floor = self._floor(room, start_joints, goal_joints)
         if floor is None:
             raise self._refusal(room, start_joints, goal, NoPathReason.GOAL_UNREACHABLE)
@@ -137,7 +140,8 @@ class PathPlanner:
         )
         if bends is None:
             raise self._refusal(room, start_joints, goal, NoPathReason.GOAL_UNREACHABLE)
-        return _path(start, self._to_metres(bends), goal)
+        way = _without_repeats(np.vstack((start, self._to_metres(bends), goal)))
+        return _path(self._string.pulled(way, room.comfortable))
 
     def reachable(self, start: Point, obstacles: Iterable[RoundObstacle] = ()) -> Mask:
         """Return the cells whose centres can be reached from ``start``, bool [rows, columns].
@@ -253,15 +257,21 @@ def _check_finite(name: str, point: Point) -> None:
         )
 
 
-def _path(start: Point, bends: NDArray[np.float64], goal: Point) -> Path:
-    """Return the path from exactly start to exactly goal, without bends that do not bend it."""
+def _without_repeats(way: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a way's points, float64 [n, 2], but for bends that are where the last point is."""
+    start, *bends, goal = way.tolist()
     points = [start]
-    for bend in bends.tolist():
+    for bend in bends:
         if math.dist(points[-1], bend) > _SAME and math.dist(bend, goal) > _SAME:
-            points.append((bend[0], bend[1]))
+            points.append(bend)
     if goal != start:
         points.append(goal)
-    path = Path(np.array(points, np.float64))
+    return np.array(points, np.float64)
+
+
+def _path(points: NDArray[np.float64]) -> Path:
+    """Return the path along points, float64 [n, 2], without those that do not bend it."""
+    path = Path(points)
     kept = np.abs(path.corner_angles) > _STRAIGHT
     kept[[0, -1]] = True
-    return Path(path.points[kept])
+    return Path(points[kept])

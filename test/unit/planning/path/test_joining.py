@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.planning.path.any_angle import Joints
 from roomba.planning.path.costmap import FitMap, Mask, Point, RoundObstacle
 from roomba.planning.path.joining import join_goal, join_start
+from roomba.planning.path.search.any_angle import Joints
 
 CELL, REACH = 0.1, 0.13
 SURE = 1e-6

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from fixtures.homes.planned_rooms import (
+    CHORD,
     CLEARANCE,
     RADIUS,
     SAGITTA,
@@ -24,9 +25,10 @@ from hypothesis import strategies as st
 
 from roomba.grid import OccupancyMap
 from roomba.planning.path.costmap import FitMap
-from roomba.planning.path.grid_path import shortest_grid_path
 from roomba.planning.path.joining import join_goal, join_start
 from roomba.planning.path.planner import NoPathError, NoPathReason, Path, PathPlanner
+from roomba.planning.path.search.grid_path import shortest_grid_path
+from roomba_bench.shortest import ShortestWays
 
 BOXES = st.lists(
     st.tuples(
@@ -85,13 +87,34 @@ def check_path(
     assert np.array_equal(planner.plan(start, goal, obstacles).points, path.points)
 
 
+@given(
+    st.lists(st.tuples(st.floats(-0.5, 2.3), st.floats(-1.5, 1.3)), max_size=6),
+    POINTS,
+    POINTS,
+)
+@settings(max_examples=examples(100), deadline=None)
+def test_among_pillars_a_path_is_as_short_as_a_disc_can_go(
+    pillars: list[Point], start: Point, goal: Point
+) -> None:
+    """Where all gaps are as wide as cells can tell, it is the shortest between the walls."""
+    map = room(*[(x, y, x + 0.2, y + 0.2) for x, y in pillars])
+    wide = FitMap.build(map, RADIUS, CLEARANCE + 0.05)
+    assume(wide.fits_at(*start) and wide.fits_at(*goal))
+    exact = ShortestWays(map.solid, map.frame, RADIUS + CLEARANCE + 0.05).length(start, goal)
+    assume(math.isfinite(exact))
+    ways = ShortestWays(map.solid, map.frame, RADIUS + CLEARANCE)
+    length = planner_for(map).plan(start, goal).length
+    assert ways.length(start, goal) * 0.995 <= length <= exact * 1.002 + 1e-9
+
+
 def test_where_there_is_room_the_path_keeps_comfortably_clear() -> None:
     map = room((0.5, -0.5, 1.5, 0.5))
     path = planner_for(map).plan((0.0, 0.0), (2.0, 0.1))
     comfortable = FitMap.build(map, RADIUS, CLEARANCE)
+    least = (RADIUS + CLEARANCE - SAGITTA) * (1.0 - CHORD)
     assert len(path.points) > 2
     for point in samples(path):
-        assert comfortable.room_along(point, point) >= RADIUS + CLEARANCE - SAGITTA - 1e-9
+        assert comfortable.room_along(point, point) >= least
 
 
 def test_a_gap_too_narrow_for_comfort_is_passed_tightly_and_only_there() -> None:

@@ -14,7 +14,7 @@ from roomba.compilation import allocating_entry
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.tour.net import Net
 from roomba.planning.coverage.tour.ways import taut, way_between
-from roomba.planning.path.grid_path import shortest_grid_path
+from roomba.planning.path.search.grid_path import shortest_grid_path
 from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from roomba.compilation import allocating_entry, allocating_part, inner_part
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.tour.net import STEP_X, STEP_Y, Net, blocks_near, leg_to
-from roomba.planning.path.heap_kernels import heap_pop, heap_push
+from roomba.planning.path.search.heap_kernels import heap_pop, heap_push
 from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]

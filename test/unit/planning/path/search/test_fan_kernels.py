@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
-from roomba.planning.path.any_angle import FreeSpace
-from roomba.planning.path.fan_kernels import (
+from roomba.planning.path.search.any_angle import FreeSpace
+from roomba.planning.path.search.fan_kernels import (
     BEFORE_GOAL,
     DIRECTION,
     EPOCH,
@@ -28,7 +28,7 @@ from roomba.planning.path.fan_kernels import (
     drive_fan,
     offer_root,
 )
-from roomba.planning.path.floor_kernels import CROSSING
+from roomba.planning.path.search.floor_kernels import CROSSING
 
 Mask = NDArray[np.bool_]
 FAR = 1e18

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from roomba.planning.path.grid_path import GridSearch, shortest_grid_path
+from roomba.planning.path.search.grid_path import GridSearch, shortest_grid_path
 
 Mask = NDArray[np.bool_]
 Cell = tuple[int, int]

@@ -1,6 +1,6 @@
 """Compiled fans of the any-angle search: what a root sees of a row, and how they go on to the next.
 
-See :mod:`roomba.planning.path.path_kernels` for the search. Lengths in cells.
+See :mod:`roomba.planning.path.search.path_kernels` for the search. Lengths in cells.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import entry, inner_part, part
-from roomba.planning.path.floor_kernels import BEND, CROSSING, SIDE_X, SIDE_Y
-from roomba.planning.path.heap_kernels import heap_push
+from roomba.planning.path.search.floor_kernels import BEND, CROSSING, SIDE_X, SIDE_Y
+from roomba.planning.path.search.heap_kernels import heap_push
 
 Bytes = NDArray[np.uint8]
 Floats = NDArray[np.float64]

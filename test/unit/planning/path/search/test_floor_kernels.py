@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
-from roomba.planning.path.floor_kernels import BEND, CROSSING, SIDE_X, SIDE_Y, survey
+from roomba.planning.path.search.floor_kernels import BEND, CROSSING, SIDE_X, SIDE_Y, survey
 
 Mask = NDArray[np.bool_]
 FLOORS = arrays(np.bool_, st.tuples(st.integers(1, 6), st.integers(1, 6)))

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from roomba.compilation import entry, inner_part, part
-from roomba.planning.path.fan_kernels import (
+from roomba.planning.path.search.fan_kernels import (
     EPOCH,
     EPSILON,
     FANS,
@@ -28,8 +28,8 @@ from roomba.planning.path.fan_kernels import (
     offer_root,
     see,
 )
-from roomba.planning.path.floor_kernels import BEND, CROSSING, EXIT, SIDE_X, SIDE_Y
-from roomba.planning.path.heap_kernels import heap_pop
+from roomba.planning.path.search.floor_kernels import BEND, CROSSING, EXIT, SIDE_X, SIDE_Y
+from roomba.planning.path.search.heap_kernels import heap_pop
 
 START = -1
 """Stands for the start where a root is asked for."""

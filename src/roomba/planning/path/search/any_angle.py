@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.planning.path.fan_kernels import BEFORE_GOAL, EPOCH, GOAL_SQUARE, Work
-from roomba.planning.path.floor_kernels import survey
-from roomba.planning.path.path_kernels import FOUND, FULL, START, search
+from roomba.planning.path.search.fan_kernels import BEFORE_GOAL, EPOCH, GOAL_SQUARE, Work
+from roomba.planning.path.search.floor_kernels import survey
+from roomba.planning.path.search.path_kernels import FOUND, FULL, START, search
 
 _INSIDE = 1e-6
 """cells; ends on an open square's rim are searched from this far inside it."""

@@ -9,7 +9,7 @@ from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roomba.planning.path.heap_kernels import heap_pop, heap_push
+from roomba.planning.path.search.heap_kernels import heap_pop, heap_push
 
 STEPS = st.lists(st.one_of(st.none(), st.integers(-20, 20)), max_size=60)
 """Keys to push, and None for a pop; few different keys, so that many are equal."""

@@ -13,9 +13,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from roomba.planning.path.any_angle import FreeSpace
-from roomba.planning.path.fan_kernels import BEFORE_GOAL, GOAL_SQUARE, Work
-from roomba.planning.path.path_kernels import FOUND, FULL, NO_PATH, START, search
+from roomba.planning.path.search.any_angle import FreeSpace
+from roomba.planning.path.search.fan_kernels import BEFORE_GOAL, GOAL_SQUARE, Work
+from roomba.planning.path.search.path_kernels import FOUND, FULL, NO_PATH, START, search
 
 FLOORS = arrays(
     np.bool_,

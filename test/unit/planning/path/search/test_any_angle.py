@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
-from roomba.planning.path.any_angle import AnyAngleSearch, FreeSpace, Joints
+from roomba.planning.path.search.any_angle import AnyAngleSearch, FreeSpace, Joints
 
 FLOORS = arrays(
     np.bool_,

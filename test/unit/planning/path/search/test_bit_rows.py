@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
-from roomba.planning.path.bit_rows import NOWHERE, bit_rows, is_set, jump
+from roomba.planning.path.search.bit_rows import NOWHERE, bit_rows, is_set, jump
 
 Cells = NDArray[np.uint8]
 

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import allocating_entry, entry, inner_part, part
-from roomba.planning.path.bit_rows import NOWHERE, Bits, bit_rows, is_set, jump
-from roomba.planning.path.heap_kernels import heap_pop, heap_push
+from roomba.planning.path.search.bit_rows import NOWHERE, Bits, bit_rows, is_set, jump
+from roomba.planning.path.search.heap_kernels import heap_pop, heap_push
 
 Cell = tuple[int, int]
 

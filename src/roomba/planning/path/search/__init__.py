@@ -1,0 +1,1 @@
+"""Searches over the cells that fit: any-angle, and from cell to cell."""

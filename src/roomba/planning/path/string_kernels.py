@@ -1,0 +1,305 @@
+"""Compiled string pulling: a way becomes taut around the corners of what is solid.
+
+Places in cells of the solid grid; whole numbers are the cells' sides and corners.
+
+A disc that passes a corner keeps its room from it: its middle goes around an arc about the corner.
+Points on such arcs, and on circles about round things, stand for all that is solid. A bend of the
+way gives way to the convex hull of those points that lie within the triangle of it and its two
+neighbours. When the hull of each bend is the bend itself, the way is the shortest of all that pass
+the points on the same sides (Hershberger & Snoeyink, "Computing minimum length paths of a given
+homotopy class", Computational Geometry 4, 1994, on what is shortest among points).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.compilation import entry, inner_part, part
+
+Bytes = NDArray[np.uint8]
+Floats = NDArray[np.float64]
+
+QUARTER: Final = 16
+"""Steps of an arc of 90 degrees: its chords are nearer to the corner by 0.12 % of the room."""
+FULL: Final = -1
+"""Asks for a larger String."""
+_EPSILON: Final = 1e-9
+"""cells; what is nearer to a line lies on it."""
+_MOST_SWEEPS: Final = 40
+"""Over the whole way; five do for nearly all."""
+
+
+class String(NamedTuple):
+    """A way that is pulled; reused, by one way at a time."""
+
+    points: Floats
+    """float64 [capacity, 2]: the way, x and y."""
+    pinned: Bytes
+    """uint8 [capacity]: 1 for points that stay."""
+    held: Floats
+    """float64 [capacity, 2]: what holds a bend, the points within its triangle."""
+    hull: Floats
+    """float64 [capacity, 2]: the points that take a bend's place."""
+
+
+class Pegs(NamedTuple):
+    """What a way is pulled around."""
+
+    corners: Bytes
+    """uint8 [rows + 1, columns + 1], from :func:`mark_corners`."""
+    room: float
+    """What the way keeps from corners, cells."""
+    circles: Floats
+    """float64 [n, 3]: x and y of round things, and what the way keeps from their middle, cells."""
+    arc: Floats
+    """float64 [4 * QUARTER, 2]: unit vectors all around, counterclockwise from the east."""
+
+
+class _Bend(NamedTuple):
+    """A bend between its two neighbours, and which way it turns: left 1, right -1."""
+
+    from_x: float
+    from_y: float
+    x: float
+    y: float
+    to_x: float
+    to_y: float
+    turn: float
+
+
+@entry
+def mark_corners(solid: NDArray[np.bool_], corners: Bytes) -> None:
+    """Mark the corners of what is solid that a disc can go around; all outside is solid, too.
+
+    ``solid`` is bool [rows, columns], ``corners`` uint8 [rows + 1, columns + 1]; its bits 1, 2, 4
+    and 8 tell that the cell to the NE, NW, SW or SE has such a corner there (x goes to the east, y
+    to the north).
+    """
+    rows, columns = solid.shape
+    for y in range(rows + 1):
+        for x in range(columns + 1):
+            south, north, west, east = y == 0, y == rows, x == 0, x == columns
+            north_east = north or east or solid[y, x]
+            north_west = north or west or solid[y, x - 1]
+            south_west = south or west or solid[y - 1, x - 1]
+            south_east = south or east or solid[y - 1, x]
+            found = 0
+            if not (north_west or south_east):
+                found |= (1 if north_east else 0) | (4 if south_west else 0)
+            if not (north_east or south_west):
+                found |= (2 if north_west else 0) | (8 if south_east else 0)
+            corners[y, x] = found
+
+
+@entry
+def pull(string: String, size: int, pegs: Pegs) -> int:
+    """Pull the first ``size`` points of a way taut; return how many it has then, or FULL.
+
+    The way keeps the pegs' room, but for that of pinned points.
+    """
+    for _ in range(_MOST_SWEEPS):
+        is_taut = True
+        at = 1
+        while at < size - 1:
+            if string.pinned[at]:
+                at += 1
+                continue
+            found = _hull_of_bend(string, at, pegs)
+            if found == FULL or size + found > len(string.points):
+                return FULL
+            if found != 1 or not _is_there(string, at):
+                _replace(string, size, at, found)
+                size += found - 1
+                is_taut = False
+            at += found
+        if is_taut:
+            break
+    return size
+
+
+@inner_part
+def _is_there(string: String, at: int) -> bool:
+    """Whether the first point of the hull is a point of the way already."""
+    is_there: bool = (
+        string.hull[0, 0] == string.points[at, 0] and string.hull[0, 1] == string.points[at, 1]
+    )
+    return is_there
+
+
+@part
+def _replace(string: String, size: int, at: int, found: int) -> None:
+    """Put the ``found`` points of the hull where a point of the way was."""
+    moved = found - 1
+    if moved > 0:
+        for n in range(size - 1, at, -1):
+            _put(string, n + moved, string.points[n, 0], string.points[n, 1], string.pinned[n])
+    elif moved < 0:
+        for n in range(at + 1, size):
+            _put(string, n - 1, string.points[n, 0], string.points[n, 1], string.pinned[n])
+    for n in range(found):
+        _put(string, at + n, string.hull[n, 0], string.hull[n, 1], 0)
+
+
+@inner_part
+def _put(string: String, at: int, x: float, y: float, pinned: int) -> None:
+    string.points[at, 0], string.points[at, 1], string.pinned[at] = x, y, pinned
+
+
+@part
+def _hull_of_bend(string: String, at: int, pegs: Pegs) -> int:
+    """Find the points of the taut way between the neighbours of a bend, in ``string.hull``.
+
+    Returns how many they are, or FULL.
+    """
+    points = string.points
+    from_x, from_y = points[at - 1, 0], points[at - 1, 1]
+    x, y = points[at, 0], points[at, 1]
+    to_x, to_y = points[at + 1, 0], points[at + 1, 1]
+    turn = _cross(x - from_x, y - from_y, to_x - x, to_y - y)
+    if abs(turn) <= _EPSILON * max(math.hypot(to_x - from_x, to_y - from_y), 1.0):
+        return 0
+    bend = _Bend(from_x, from_y, x, y, to_x, to_y, math.copysign(1.0, turn))
+    held = _hold_corners(string.held, bend, pegs)
+    if held != FULL:
+        held = _hold_circles(string.held, held, bend, pegs)
+    if held == FULL:
+        return FULL
+    return _wrap(string, held, bend)
+
+
+@inner_part
+def _cross(x: float, y: float, to_x: float, to_y: float) -> float:
+    return x * to_y - y * to_x
+
+
+@part
+def _hold_corners(held: Floats, bend: _Bend, pegs: Pegs) -> int:
+    """Note the points of corners' arcs that hold a bend; return how many, or FULL."""
+    room, corners = pegs.room, pegs.corners
+    size = 0
+    first = math.ceil(min(bend.from_y, bend.y, bend.to_y) - room)
+    last = math.floor(max(bend.from_y, bend.y, bend.to_y) + room)
+    for y in range(max(first, 0), min(last, len(corners) - 1) + 1):
+        low, high = _span(bend, y - room, y + room)
+        left, right = math.ceil(low - room), math.floor(high + room)
+        for x in range(max(left, 0), min(right, corners.shape[1] - 1) + 1):
+            bits = corners[y, x]
+            for quarter in range(4 if bits else 0):
+                # The arc to the NE is about a corner of the cell to the SW, and so on.
+                if bits & (1 << ((quarter + 2) % 4)):
+                    first_step = quarter * QUARTER
+                    size = _hold_arc(
+                        held, size, bend, pegs, x, y, room, first_step, first_step + QUARTER
+                    )
+                if size == FULL:
+                    return FULL
+    return size
+
+
+@part
+def _hold_circles(held: Floats, size: int, bend: _Bend, pegs: Pegs) -> int:
+    """Note the points of circles that hold a bend; return how many there are now, or FULL."""
+    circles, last = pegs.circles, 4 * QUARTER - 1
+    for n in range(len(circles)):
+        x, y, room = circles[n, 0], circles[n, 1], circles[n, 2]
+        size = _hold_arc(held, size, bend, pegs, x, y, room, 0, last)
+        if size == FULL:
+            return FULL
+    return size
+
+
+@inner_part
+def _hold_arc(
+    held: Floats,
+    size: int,
+    bend: _Bend,
+    pegs: Pegs,
+    x: float,
+    y: float,
+    room: float,
+    first: int,
+    last: int,
+) -> int:
+    """Note the points of an arc about (x, y), from its first to its last step, that hold a bend."""
+    for n in range(first, last + 1):
+        step = n % (4 * QUARTER)
+        at_x, at_y = x + room * pegs.arc[step, 0], y + room * pegs.arc[step, 1]
+        if not _holds(bend, at_x, at_y, x, y):
+            continue
+        if size == len(held):
+            return FULL
+        held[size, 0], held[size, 1] = at_x, at_y
+        size += 1
+    return size
+
+
+@inner_part
+def _holds(bend: _Bend, x: float, y: float, about_x: float, about_y: float) -> bool:
+    """Whether a point of an arc about another one lies in a bend's triangle.
+
+    Its side between the neighbours is not counted, and on a leg only what the arc of which is about
+    something on the inside of the bend: what lies outside of it does not hold it.
+    """
+    turn, to_about_x, to_about_y = bend.turn, about_x - x, about_y - y
+    leg_x, leg_y = bend.x - bend.from_x, bend.y - bend.from_y
+    inside = turn * _cross(leg_x, leg_y, x - bend.from_x, y - bend.from_y)
+    if not _is_within(inside, turn * _cross(leg_x, leg_y, to_about_x, to_about_y)):
+        return False
+    leg_x, leg_y = bend.to_x - bend.x, bend.to_y - bend.y
+    inside = turn * _cross(leg_x, leg_y, x - bend.x, y - bend.y)
+    if not _is_within(inside, turn * _cross(leg_x, leg_y, to_about_x, to_about_y)):
+        return False
+    across_x, across_y = bend.to_x - bend.from_x, bend.to_y - bend.from_y
+    return turn * _cross(across_x, across_y, x - bend.from_x, y - bend.from_y) < -_EPSILON
+
+
+@inner_part
+def _is_within(inside: float, about_inside: float) -> bool:
+    """Whether a point lies on the inside of a leg, or on it and what its arc is about inside."""
+    return inside > _EPSILON or (inside >= -_EPSILON and about_inside > 0.0)
+
+
+@inner_part
+def _span(bend: _Bend, low: float, high: float) -> tuple[float, float]:
+    """Return the least and the largest x of a bend's triangle between two heights."""
+    left, right = math.inf, -math.inf
+    for from_x, from_y, to_x, to_y in (
+        (bend.from_x, bend.from_y, bend.x, bend.y),
+        (bend.x, bend.y, bend.to_x, bend.to_y),
+        (bend.to_x, bend.to_y, bend.from_x, bend.from_y),
+    ):
+        rise = to_y - from_y
+        begin, end = 0.0, 1.0
+        if rise != 0.0:
+            enter, leave = (low - from_y) / rise, (high - from_y) / rise
+            begin, end = max(min(enter, leave), 0.0), min(max(enter, leave), 1.0)
+        if begin <= end and max(from_y, to_y) >= low and min(from_y, to_y) <= high:
+            at_begin, at_end = from_x + begin * (to_x - from_x), from_x + end * (to_x - from_x)
+            left, right = min(left, at_begin, at_end), max(right, at_begin, at_end)
+    return left, right
+
+
+@part
+def _wrap(string: String, held: int, bend: _Bend) -> int:
+    """Find the hull of what holds a bend, from neighbour to neighbour (Jarvis march)."""
+    x, y = bend.from_x, bend.from_y
+    size = 0
+    while True:
+        next_x, next_y, is_held = bend.to_x, bend.to_y, False
+        for n in range(held):
+            other_x, other_y = string.held[n, 0], string.held[n, 1]
+            turn = bend.turn * _cross(next_x - x, next_y - y, other_x - x, other_y - y)
+            is_farther = math.hypot(other_x - x, other_y - y) > math.hypot(next_x - x, next_y - y)
+            if turn < -_EPSILON or (is_held and turn <= _EPSILON and is_farther):
+                next_x, next_y, is_held = other_x, other_y, True
+        if not is_held:
+            return size
+        if size == len(string.hull):
+            return FULL
+        string.hull[size, 0], string.hull[size, 1] = next_x, next_y
+        x, y = next_x, next_y
+        size += 1

@@ -1,0 +1,95 @@
+"""String pulling: ways over the cells that fit, made the shortest for the disc between the walls.
+
+A way over cells bends at their centres, up to half a cell farther from corners than it must be.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.planning.path.costmap import FitMap
+from roomba.planning.path.string_kernels import FULL, QUARTER, Pegs, String, mark_corners, pull
+
+_ANGLES = np.arange(4 * QUARTER) * (math.pi / (2 * QUARTER))
+_ARC = np.column_stack((np.cos(_ANGLES), np.sin(_ANGLES)))
+_TOUCH = 1e-9
+"""m; a way that keeps just the room may be pulled."""
+_FIRST_CAPACITY = 256
+
+
+class StringPulling:
+    """Pulls ways among the walls of one map; not for two threads at once."""
+
+    def __init__(self, walls: FitMap) -> None:
+        """Take where the disc fits on the map, without round obstacles."""
+        frame = walls.map.frame
+        half = 0.5 * frame.resolution
+        self._walls = walls
+        self.room = math.sqrt(max(walls.reach**2 - half**2, 0.0))
+        """m; what ways between centres that fit keep from walls, and pulled ones but for 0.12 %.
+        Of a disc smaller than half a cell they may keep nothing, and are not pulled."""
+        self._make_room(_FIRST_CAPACITY)
+
+    def _make_room(self, capacity: int) -> None:
+        self._string = String(
+            np.zeros((capacity, 2)),
+            np.zeros(capacity, np.uint8),
+            np.zeros((capacity, 2)),
+            np.zeros((capacity, 2)),
+        )
+
+    @cached_property
+    def _corners(self) -> NDArray[np.uint8]:
+        rows, columns = self._walls.solid.shape
+        corners = np.zeros((rows + 1, columns + 1), np.uint8)
+        mark_corners(self._walls.solid, corners)
+        return corners
+
+    def pulled(self, points: NDArray[np.float64], fit: FitMap) -> NDArray[np.float64]:
+        """Return the shortest way that a way can be pulled to, float64 [n, 2], m, as ``points``.
+
+        ``fit`` is where the disc fits among the obstacles of the moment. Legs that have less than
+        :attr:`room` stay as they are.
+        """
+        if self.room == 0.0 or len(points) < 3:
+            return points
+        pinned = self._pinned(points, fit)
+        if pinned.all():
+            return points
+        frame, cell = fit.map.frame, fit.cell
+        origin = np.array((frame.origin_x, frame.origin_y))
+        circles = np.array(fit.obstacles, np.float64).reshape(-1, 3)
+        circles[:, 2] += self.room
+        circles[:, :2] -= origin
+        pegs = Pegs(self._corners, self.room / cell, circles / cell, _ARC)
+        size = self._pull((points - origin) / cell, pinned, pegs)
+        pulled: NDArray[np.float64] = self._string.points[:size] * cell + origin
+        # What stays is where it was, to the last bit.
+        pulled[self._string.pinned[:size] > 0] = points[pinned]
+        return pulled
+
+    def _pinned(self, points: NDArray[np.float64], fit: FitMap) -> NDArray[np.bool_]:
+        """Tell which points stay, bool [n]: both ends, and those of legs with too little room."""
+        pinned = np.zeros(len(points), np.bool_)
+        pinned[[0, -1]] = True
+        for leg, (start, end) in enumerate(pairwise(points.tolist())):
+            if fit.room_along(start, end) < self.room - _TOUCH:
+                pinned[leg : leg + 2] = True
+        return pinned
+
+    def _pull(self, points: NDArray[np.float64], pinned: NDArray[np.bool_], pegs: Pegs) -> int:
+        """Pull a way in the work arrays, and return how many points it has then."""
+        while True:
+            size = len(points)
+            if size <= len(self._string.points):
+                self._string.points[:size] = points
+                self._string.pinned[:size] = pinned
+                size = pull(self._string, size, pegs)
+                if size != FULL:
+                    return size
+            self._make_room(2 * len(self._string.points))
