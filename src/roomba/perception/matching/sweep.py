@@ -17,6 +17,7 @@ from roomba.angles import wrapped
 from roomba.compilation import entry, inner_part
 from roomba.perception.matching.beams import LidarBeams, is_all_around
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_in, stretch_at
+from roomba.trigonometry import direction_of, sine_cosine
 
 Floats = NDArray[np.float64]
 Ranges = NDArray[np.float32]
@@ -28,7 +29,7 @@ lies between them, and so much, m."""
 _MOST_TURNED: Final = 0.5
 """Share of the angle between two beams by which ends may lie apart at most to be neighbours still,
 beyond that angle itself."""
-SWEEP_WORK: Final = 4
+SWEEP_WORK: Final = 6
 """Rows of what :func:`at_once` works in."""
 
 
@@ -36,13 +37,16 @@ class Ends(NamedTuple):
     """Where beams ended, as seen by the lidar from where the first was measured, each [beams].
 
     ``places`` are their directions, in beams, ``lengths`` their distances, m, nan of those that met
-    nothing, ``x`` and ``y`` where they are, m.
+    nothing, ``x`` and ``y`` where they are, m. In ``cosines`` and ``sines`` it works. All is done
+    stage by stage, each without branches, so that the compiler works on eight beams together.
     """
 
     places: Floats
     lengths: Floats
     x: Floats
     y: Floats
+    cosines: Floats
+    sines: Floats
 
 
 @entry
@@ -60,7 +64,7 @@ def at_once(
     robot was. A direction that no beam came near is nan. ``work`` is [SWEEP_WORK, beams].
     """
     beams = ranges.size
-    ends = Ends(work[0], work[1], work[2], work[3])
+    ends = Ends(work[0], work[1], work[2], work[3], work[4], work[5])
     _see_from_first(ranges, lidar, path, stamp, ends)
     for beam in range(beams):
         still[beam] = math.nan
@@ -81,37 +85,76 @@ def _see_from_first(
     ranges: Ranges, lidar: LidarBeams, path: ReckonedPath, stamp: float, ends: Ends
 ) -> None:
     """Find where the ends of beams are, as seen by the lidar from where the first was measured."""
+    first = pose_in(stretch_at(path, stamp), stamp)
+    _follow(lidar, path, stamp, first, ends)
+    _see_lidar(lidar, first[2], ends)
+    _see_ends(ranges, lidar, ends)
+    _place(ranges, lidar, ends)
+
+
+@inner_part
+def _follow(
+    lidar: LidarBeams,
+    path: ReckonedPath,
+    stamp: float,
+    first: tuple[float, float, float],
+    ends: Ends,
+) -> None:
+    """Find how far the robot has come at each beam, x and y, and turned, ``places``, rad."""
     stretch = stretch_at(path, stamp)
-    first_x, first_y, first_theta = pose_in(stretch, stamp)
+    for beam in range(ends.places.size):
+        now = stamp + beam * lidar.time_increment
+        if not now < stretch.until:
+            stretch = stretch_at(path, now)
+        x, y, theta = pose_in(stretch, now)
+        ends.x[beam], ends.y[beam] = x - first[0], y - first[1]
+        ends.places[beam] = wrapped(theta - first[2])
+
+
+@inner_part
+def _see_lidar(lidar: LidarBeams, first_theta: float, ends: Ends) -> None:
+    """Find where the lidar is at each beam, in its own frame at the first: x and y in place."""
+    for beam in range(ends.places.size):
+        ends.sines[beam], ends.cosines[beam] = sine_cosine(ends.places[beam])
     cosine, sine = math.cos(first_theta), math.sin(first_theta)
     # From the robot to its lidar at the first beam.
     arm_x = cosine * lidar.mount[0] - sine * lidar.mount[1]
     arm_y = sine * lidar.mount[0] + cosine * lidar.mount[1]
     back = first_theta + lidar.mount[2]
     back_cosine, back_sine = math.cos(back), math.sin(back)
+    for beam in range(ends.places.size):
+        cosine, sine = ends.cosines[beam], ends.sines[beam]
+        off_x = ends.x[beam] + (cosine - 1.0) * arm_x - sine * arm_y
+        off_y = ends.y[beam] + sine * arm_x + (cosine - 1.0) * arm_y
+        ends.x[beam] = back_cosine * off_x + back_sine * off_y
+        ends.y[beam] = back_cosine * off_y - back_sine * off_x
+
+
+@inner_part
+def _see_ends(ranges: Ranges, lidar: LidarBeams, ends: Ends) -> None:
+    """Find the ends as seen along each beam's direction: x ahead, y aside, where the lidar was."""
     for beam in range(ranges.size):
-        now = stamp + beam * lidar.time_increment
-        if not now < stretch.until:
-            stretch = stretch_at(path, now)
-        x, y, theta = pose_in(stretch, now)
-        turned = wrapped(theta - first_theta)
-        ends.places[beam] = beam + turned / lidar.step
-        ends.lengths[beam] = math.nan
-        length = ranges[beam]
-        if not lidar.nearest <= length < lidar.farthest:
-            continue
-        cosine, sine = math.cos(turned), math.sin(turned)
-        # Where the lidar is by now, in its frame at the first beam.
-        off_x = x - first_x + (cosine - 1.0) * arm_x - sine * arm_y
-        off_y = y - first_y + sine * arm_x + (cosine - 1.0) * arm_y
-        away_x = back_cosine * off_x + back_sine * off_y
-        away_y = back_cosine * off_y - back_sine * off_x
-        # The same, and the end, as seen along the beam's direction.
+        ends.cosines[beam] *= ranges[beam]
+        ends.sines[beam] *= ranges[beam]
+    for beam in range(ranges.size):
         along, across = lidar.directions[beam, 0], lidar.directions[beam, 1]
-        ahead = length * cosine + along * away_x + across * away_y
-        aside = length * sine + along * away_y - across * away_x
-        ends.places[beam] = beam + math.atan2(aside, ahead) / lidar.step
-        ends.lengths[beam] = math.sqrt(ahead * ahead + aside * aside)
+        away_x, away_y = ends.x[beam], ends.y[beam]
+        ends.x[beam] = ends.cosines[beam] + along * away_x + across * away_y
+        ends.y[beam] = ends.sines[beam] + along * away_y - across * away_x
+
+
+@inner_part
+def _place(ranges: Ranges, lidar: LidarBeams, ends: Ends) -> None:
+    """Make directions and lengths of the ends; a beam that met nothing is only turned."""
+    for beam in range(ranges.size):
+        is_met = (ranges[beam] >= lidar.nearest) & (ranges[beam] < lidar.farthest)
+        ahead, aside = ends.x[beam], ends.y[beam]
+        turned = direction_of(aside, ahead) if is_met else ends.places[beam]
+        ends.places[beam] = beam + turned / lidar.step
+        ends.lengths[beam] = math.sqrt(ahead * ahead + aside * aside) if is_met else math.nan
+    for beam in range(ranges.size):
+        along, across = lidar.directions[beam, 0], lidar.directions[beam, 1]
+        ahead, aside = ends.x[beam], ends.y[beam]
         ends.x[beam] = along * ahead - across * aside
         ends.y[beam] = across * ahead + along * aside
 

@@ -14,7 +14,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.raster.distance import distance_to_nearest
 from roomba.world.engine.lidar.edges import LidarEdges, lidar_edges
-from roomba.world.engine.lidar.free_squares import free_squares
+from roomba.world.engine.lidar.free_squares import QUADRANTS, free_squares
 from roomba.world.engine.state.arrays import (
     BOX,
     CARPET,
@@ -40,6 +40,7 @@ class Layout:
 
     homes: Rows
     cells: Rows
+    squares: NDArray[np.uint8]
     faces: Rows
     floors: NDArray[np.bool_]
     sources: Rows
@@ -57,6 +58,8 @@ def layout_of(homes: Sequence[Home], config: SimulatedRobotConfig) -> Layout:
     edges = [lidar_edges(seen_by_lidar(home), home.frame.resolution) for home in homes]
     rows = np.zeros(len(homes), HOME)
     cells_at = _starts([home.solid.size for home in homes])
+    squares = [free_squares(home.solid).reshape(QUADRANTS, -1) for home in homes]
+    squares_at = _starts([part.shape[1] for part in squares])
     floors_at = _starts([field.micrograms.size for field in fields])
     tiles_at = _starts([len(part.starts) for part in edges])
     faces = [faces_of(home) for home in homes]
@@ -69,6 +72,7 @@ def layout_of(homes: Sequence[Home], config: SimulatedRobotConfig) -> Layout:
             frame.origin_y,
         )
         row["cells_at"], row["rows"], row["columns"] = cells_at[number], *frame.shape
+        row["squares_at"] = squares_at[number]
         row["station_x"], row["station_y"], row["station_theta"] = (
             station.x,
             station.y,
@@ -87,6 +91,7 @@ def layout_of(homes: Sequence[Home], config: SimulatedRobotConfig) -> Layout:
     return Layout(
         homes=rows,
         cells=np.concatenate([_cells(home) for home in homes]),
+        squares=np.concatenate(squares, axis=1),
         faces=np.concatenate(faces),
         floors=np.concatenate([field.floor.ravel() for field in fields]),
         sources=_rows(SOURCE, [row for home in homes for row in _sources(home, crumb)]),
@@ -150,7 +155,6 @@ def _cells(home: Home) -> Rows:
     cells["solid"] = home.solid.ravel()
     near = home.solid if home.free_walls is None else home.solid | home.free_walls.touched
     cells["room"] = room_around(near, home.frame.resolution).ravel()
-    cells["free"] = free_squares(home.solid).ravel()
     if home.surfaces is not None:
         cells["surface"] = home.surfaces.ravel()
     ground = np.full(home.frame.shape, FLOOR, np.uint8)

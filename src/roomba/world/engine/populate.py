@@ -78,6 +78,7 @@ def first_state(
         worlds=worlds,
         solid=Solid(
             cells=layout.cells,
+            squares=layout.squares,
             faces=layout.faces,
             things=np.array(things, THING),
             boxes=layout.boxes,

@@ -51,7 +51,8 @@ def advance(
             for robot in range(world.robots_at, world.robots_end):
                 if row.is_swept > 0.0:
                     around = Surroundings(state.solid, home, world, robot, row, quantiles)
-                    sweep(around, (state.made, state.underway, state.ranges), dt)
+                    scans = state.made, state.underway, state.ranges
+                    sweep(around, buffers.bundles, scans, dt)
                 elif is_scan_due(world, state.solid.robots[robot], row.scan_period):
                     scan(
                         state.solid,

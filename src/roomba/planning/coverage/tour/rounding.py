@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from roomba.compilation import allocating_entry, inner_part, part
 from roomba.configuration.coverage import CoverageConfig
-from roomba.planning.coverage.floor.masks import way_fits
+from roomba.planning.coverage.floor.masks import grown, half_widths, way_fits
 from roomba.planning.coverage.passes.sweep import (
     left_without,
     replace_legs,
@@ -37,7 +37,6 @@ from roomba.planning.coverage.tour.bends import (
     turn_at,
 )
 from roomba.planning.coverage.tour.connection import tidy
-from roomba.raster.distance import distance_to_nearest
 from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
@@ -75,7 +74,7 @@ def rounded(
         np.zeros(1, np.int64),
         np.zeros(need.shape, np.int16),
         need,
-        distance_to_nearest(~fits) > _BESIDE,
+        ~grown(~fits, half_widths(_BESIDE)),
         np.empty((ROOM, 2)),
         np.empty((ROOM, 2)),
         np.zeros(2, np.int64),

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import inner_part, part
+from roomba.trigonometry import sine_cosine
 from roomba.world.engine.lidar.face_kernels import mirrored, ray_to_faces
 from roomba.world.engine.lidar.ray_kernels import ray_to_cells, ray_to_movable
 from roomba.world.engine.state.arrays import Row, Solid
@@ -97,13 +98,19 @@ def is_seen(found: float, facing: float, reflected: float, numbers: Row, fading:
 
 
 @part
-def ray(around: Surroundings, x: float, y: float, angle: float, chance: float) -> Met:
+def ray_at(around: Surroundings, x: float, y: float, angle: float, chance: float) -> Met:
     """Return what a ray meets, through glass and by mirrors; ``chance`` of 0..1 is the beam's own.
 
     By a mirror the robot itself is seen.
     """
+    sine, cosine = sine_cosine(angle)
+    return ray(around, x, y, cosine, sine, chance)
+
+
+@part
+def ray(around: Surroundings, x: float, y: float, cosine: float, sine: float, chance: float) -> Met:
+    """Return the same by the ray's direction."""
     home = around.home
-    cosine, sine = math.cos(angle), math.sin(angle)
     if home.faces_end > home.faces_at:
         return ray_among_faces(around, x, y, cosine, sine, chance)
     reach = around.numbers.max_range
@@ -124,7 +131,7 @@ def meet(
 ) -> tuple[float, float, int]:
     """Return the way to cells and what moves, how squarely, and which of both; not the viewer."""
     solid, numbers = around.solid, around.numbers
-    found, facing = ray_to_cells(solid.cells, around.home, x, y, cosine, sine, reach)
+    found, facing = ray_to_cells(solid.squares, around.home, x, y, cosine, sine, reach)
     nearer, square = ray_to_movable(
         solid,
         around.world,
@@ -195,7 +202,7 @@ def given_back(around: Surroundings, met: Met) -> float:
 
 @inner_part
 def is_echo(around: Surroundings, met: Met, fading: float) -> bool:
-    """Tell whether enough light comes back of what a ray met (see :func:`ray`)."""
+    """Tell whether enough light comes back of what a ray met (see :func:`ray_at`)."""
     if met.what >= 0 and around.solid.faces[met.what].finish == _GLASS:
         return True
     shared = given_back(around, met) * met.light
@@ -237,7 +244,7 @@ def look_through(around: Surroundings, ranges: Floats, key: np.uint32) -> None:
             if numbers.noisy > 0.0:
                 bits = hashed(np.uint32(key + np.uint32(beam) * np.uint32(0x9E3779B9)))
                 chance = float(bits >> np.uint32(12)) * _UNIT_20
-            found = ray(around, eye[0], eye[1], angle, chance).way
+            found = ray_at(around, eye[0], eye[1], angle, chance).way
             if found < numbers.min_range:
                 found = -math.inf
             elif found >= numbers.max_range:

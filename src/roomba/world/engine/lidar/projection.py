@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from roomba.angles import wrapped
 from roomba.compilation import any_order_part
+from roomba.world.engine.lidar.bundle_kernels import BEAMS
 from roomba.world.engine.lidar.edges import FACINGS, GROUPS
 from roomba.world.engine.lidar.span_kernels import (
     COSINE,
@@ -77,6 +78,8 @@ class ScanBuffers(NamedTuple):
     """[2, tiles]: the number of the last scan that looked at each, and the tiles in a queue."""
     scans: NDArray[np.int64]
     """[1]: number of scans made so far."""
+    bundles: Rows
+    """BEAMS [1]: the beams of a sweep that are measured together, see :mod:`.bundle_kernels`."""
 
 
 def buffers_for(edges: Edges, beams: int) -> ScanBuffers:
@@ -92,6 +95,7 @@ def buffers_for(edges: Edges, beams: int) -> ScanBuffers:
         items=np.zeros(most + 1, np.int64),
         tiles=np.zeros((2, len(edges.starts)), np.int64),
         scans=np.zeros(1, np.int64),
+        bundles=np.zeros(1, BEAMS),
     )
 
 

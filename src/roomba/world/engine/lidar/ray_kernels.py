@@ -9,9 +9,12 @@ from __future__ import annotations
 import math
 from typing import Final
 
+import numpy as np
+from numpy.typing import NDArray
+
 from roomba.compilation import inner_part, part
-from roomba.world.engine.lidar.free_squares import LARGEST, RIGHT, UP
-from roomba.world.engine.state.arrays import Row, Rows, Solid
+from roomba.world.engine.lidar.free_squares import MARGIN, RIGHT, UP
+from roomba.world.engine.state.arrays import Row, Solid
 
 _TINY: Final = 1e-12
 """A direction with a smaller component never comes to a line across it."""
@@ -21,7 +24,13 @@ _NEVER: Final = 1e30
 
 @inner_part
 def ray_to_cells(
-    cells: Rows, home: Row, x: float, y: float, cosine: float, sine: float, reach: float
+    squares: NDArray[np.uint8],
+    home: Row,
+    x: float,
+    y: float,
+    cosine: float,
+    sine: float,
+    reach: float,
 ) -> tuple[float, float]:
     """Return the way to the nearest solid cell, m, and the cosine of the angle to its normal.
 
@@ -31,15 +40,18 @@ def ray_to_cells(
     """
     x, y = (x - home.left) / home.resolution, (y - home.bottom) / home.resolution
     column, row = math.floor(x), math.floor(y)
+    if not (0 <= column < home.columns and 0 <= row < home.rows):
+        return 0.0, 1.0
     goes_right, goes_up = cosine >= 0.0, sine >= 0.0
-    shift = (RIGHT if goes_right else 0) + (UP if goes_up else 0)
+    # Unsigned: it is not asked at each cell whether a number counts from the end.
+    quadrant = np.uint64((RIGHT if goes_right else 0) + (UP if goes_up else 0))
+    width = home.columns + 2 * MARGIN
+    first = home.squares_at + MARGIN * width + MARGIN
     per_column, per_row = inverse_of(cosine), inverse_of(sine)
     farthest = reach / home.resolution
     along, facing = 0.0, 1.0
     while along <= farthest:
-        if not (0 <= column < home.columns and 0 <= row < home.rows):
-            return along * home.resolution, facing
-        side = int(cells[home.cells_at + row * home.columns + column].free >> shift) & LARGEST
+        side = int(squares[quadrant, np.uint64(first + row * width + column)])
         if side == 0:
             return along * home.resolution, facing
         line_x = column + side if goes_right else column + 1 - side

@@ -15,16 +15,22 @@ from numpy.typing import NDArray
 
 from roomba.angles import wrapped
 from roomba.compilation import inner_part
-from roomba.world.engine.lidar.light_kernels import Met, Surroundings, is_echo, lidar_at, ray
-from roomba.world.engine.state.arrays import Row
-from roomba.world.engine.state.random_kernels import hashed, next_bits
+from roomba.world.engine.lidar.bundle_kernels import BUNDLE, aim, draw
+from roomba.world.engine.lidar.light_kernels import (
+    Met,
+    Surroundings,
+    is_echo,
+    lidar_at,
+    ray,
+    ray_at,
+)
+from roomba.world.engine.state.arrays import Row, Rows
+from roomba.world.engine.state.random_kernels import next_bits
 
 Floats = NDArray[np.float32]
 
 _SLACK: Final = 1e-9
 """s; a beam is due when the time is as near to it as this."""
-_STRAIGHT: Final = 1e-9
-"""rad; a step that turns by less counts as straight: the middle of its arc is too far away."""
 _FLATTEST: Final = 0.1
 """Cosine; no beam counts as more grazing than this."""
 _UNIT_16: Final = 1.0 / (1 << 16)
@@ -32,11 +38,13 @@ _UNIT_20: Final = 1.0 / (1 << 20)
 
 
 @inner_part
-def sweep(around: Surroundings, scans: tuple[Floats, Floats, Floats], dt: float) -> None:
+def sweep(
+    around: Surroundings, bundles: Rows, scans: tuple[Floats, Floats, Floats], dt: float
+) -> None:
     """Measure what is due in the step of ``dt`` s that ends now; deliver what has waited.
 
     ``scans``, float32 [robots, beams] each: the sweep that is made, one that is on the line, and
-    the newest that arrived.
+    the newest that arrived. ``bundles`` is BEAMS [1], to work in.
     """
     world, robot, numbers = around.world, around.robot, around.numbers
     body = around.solid.robots[robot]
@@ -49,7 +57,7 @@ def sweep(around: Surroundings, scans: tuple[Floats, Floats, Floats], dt: float)
         if numbers.time_increment > 0.0:
             due = math.floor((world.time - body.sweep_start + _SLACK) / numbers.time_increment) + 1
             due = min(due, beams)
-        measure_beams(around, made, due, dt)
+        measure_beams(around, bundles, made, due, dt)
         if due < beams:
             break
         # The delay is no longer than the period: what was on the line has arrived by now.
@@ -96,7 +104,7 @@ def deliver(body: Row, robot: int, underway: Floats, arrived: Floats) -> None:
 
 
 @inner_part
-def measure_beams(around: Surroundings, ranges: Floats, due: int, dt: float) -> None:
+def measure_beams(around: Surroundings, bundles: Rows, ranges: Floats, due: int, dt: float) -> None:
     """Measure the beams from the next one to before ``due``, each where the lidar was at its time.
 
     Between its poses before and after the step it goes along an arc.
@@ -107,34 +115,14 @@ def measure_beams(around: Surroundings, ranges: Floats, due: int, dt: float) -> 
         body, numbers, body.before_x, body.before_y, body.before_theta
     )
     last_x, last_y, last_theta = lidar_at(body, numbers, body.x, body.y, body.theta)
-    turn = wrapped(last_theta - first_theta)
-    chord_x, chord_y = last_x - first_x, last_y - first_y
-    spoke_x, spoke_y = spoke_of(chord_x, chord_y, turn)
-    for beam in range(int(body.next_beam), due):
-        time = body.sweep_start + beam * numbers.time_increment
-        share = min(max((time - (world.time - dt)) / dt, 0.0), 1.0)
-        way_x, way_y = share * chord_x, share * chord_y
-        if abs(turn) > _STRAIGHT:
-            ahead, aside = math.cos(share * turn) - 1.0, math.sin(share * turn)
-            way_x = ahead * spoke_x - aside * spoke_y
-            way_y = aside * spoke_x + ahead * spoke_y
-        theta = first_theta + share * turn
-        ranges[around.robot, beam] = measure(around, beam, first_x + way_x, first_y + way_y, theta)
+    way = last_x - first_x, last_y - first_y, wrapped(last_theta - first_theta)
+    start, bundle = (first_x, first_y, first_theta), bundles[0]
+    for first in range(int(body.next_beam), due, BUNDLE):
+        draw(bundle, np.uint32(body.sweep_key & np.uint64(0xFFFFFFFF)), first)
+        aim(bundle, (body.sweep_start, world.time - dt), dt, numbers, first, start, way)
+        for beam in range(first, min(first + BUNDLE, due)):
+            ranges[around.robot, beam] = measure(around, bundle, beam - first)
     body.next_beam = due
-
-
-@inner_part
-def spoke_of(chord_x: float, chord_y: float, turn: float) -> tuple[float, float]:
-    """Return the vector from the middle of an arc, which turns by ``turn``, rad, to its start.
-
-    As complex numbers: the spoke times ``exp(i turn)``, less the spoke, is the chord.
-    """
-    ahead, aside = math.cos(turn) - 1.0, math.sin(turn)
-    square = ahead * ahead + aside * aside
-    return (
-        (chord_x * ahead + chord_y * aside) / square,
-        (chord_y * ahead - chord_x * aside) / square,
-    )
 
 
 @inner_part
@@ -149,33 +137,29 @@ def with_noise(found: float, facing: float, numbers: Row, chance: float) -> floa
 
 
 @inner_part
-def measure(around: Surroundings, beam: int, x: float, y: float, theta: float) -> float:
-    """Return what one beam measures from a pose, m: inf without an echo, -inf too near."""
+def measure(around: Surroundings, beams: Row, number: int) -> float:
+    """Return what a beam of a bundle measures, m: inf without an echo, -inf too near."""
     numbers, quantiles = around.numbers, around.quantiles
     body = around.solid.robots[around.robot]
     if body.lidar_blocked > 0.0:
         return math.inf
-    key = np.uint32(body.sweep_key & np.uint64(0xFFFFFFFF))
-    first = hashed(np.uint32(key + np.uint32(beam) * np.uint32(0x9E3779B9)))
-    second = hashed(np.uint32(first ^ np.uint32(0x85EBCA6B)))
-    third = hashed(np.uint32(second ^ np.uint32(0xC2B2AE35)))
-    aside = numbers.angle_rounding * (float(second & np.uint32(65535)) * _UNIT_16 - 0.5)
-    angle = theta + numbers.first_angle + beam * numbers.beam_step + aside
+    first, second, third = beams.first[number], beams.second[number], beams.third[number]
+    x, y, angle = beams.x[number], beams.y[number], beams.angle[number]
     chance = 1.0
     if numbers.noisy > 0.0:
         chance = float(third >> np.uint32(12)) * _UNIT_20
-    met = ray(around, x, y, angle, chance)
+    met = ray(around, x, y, beams.cosine[number], beams.sine[number], chance)
     found = met.way
     last, body.last_range = body.last_range, found
     if numbers.spot > 0.0 and abs(found - last) > numbers.edge:
-        right = ray(around, x, y, angle - numbers.spot, chance).way
-        left = ray(around, x, y, angle + numbers.spot, chance).way
+        right = ray_at(around, x, y, angle - numbers.spot, chance).way
+        left = ray_at(around, x, y, angle + numbers.spot, chance).way
         if abs(left - right) > numbers.edge and left + right < math.inf:
             # The spot lies on both sides of an edge: as much of either as chance has it.
             share = float(second >> np.uint32(16)) * _UNIT_16
             found = share * left + (1.0 - share) * right
             farther = found - met.way
-            x, y = met.x + farther * math.cos(angle), met.y + farther * math.sin(angle)
+            x, y = met.x + farther * beams.cosine[number], met.y + farther * beams.sine[number]
             met = Met(found, met.facing, met.what, x, y, met.light)
     if found > numbers.max_range:
         return math.inf

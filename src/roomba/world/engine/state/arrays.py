@@ -34,6 +34,7 @@ HOME: Final = np.dtype(
         ("left", "f8"),  # lower left corner of the grid
         ("bottom", "f8"),
         ("cells_at", "i8"),
+        ("squares_at", "i8"),
         ("rows", "i8"),
         ("columns", "i8"),
         ("station_x", "f8"),  # pose of the docked robot
@@ -55,7 +56,6 @@ HOME: Final = np.dtype(
 CELL: Final = np.dtype(
     [
         ("room", "f4"),  # no solid cell is nearer than this to the cell's middle
-        ("free", "u4"),  # sides of the free squares that begin here, see lidar.free_squares
         ("solid", "?"),
         ("ground", "u1"),
         ("surface", "u1"),  # what it does to light, 0: as its place says
@@ -277,6 +277,8 @@ class Solid(NamedTuple):
 
     cells: Rows
     """CELL: those of all homes, row by row."""
+    squares: NDArray[np.uint8]
+    """[QUADRANTS, cells and margins of all homes]: see lidar.free_squares."""
     faces: Rows
     """FACE: those of all homes."""
     things: Rows

@@ -18,8 +18,10 @@ from numpy.typing import NDArray
 from roomba.compilation import compiled
 from roomba.grid import GridFrame
 from roomba.world.engine.lidar import ray_kernels
-from roomba.world.engine.lidar.free_squares import free_squares
-from roomba.world.engine.state.arrays import CELL, HOME, Rows
+from roomba.world.engine.lidar.free_squares import QUADRANTS, free_squares
+from roomba.world.engine.state.arrays import HOME, Rows
+
+Squares = NDArray[np.uint8]
 
 SIZE = 0.05
 REACH = 30.0
@@ -27,25 +29,26 @@ REACH = 30.0
 
 @compiled()
 def ray(
-    cells: Rows, homes: Rows, x: float, y: float, angle: float, reach: float
+    squares: Squares, homes: Rows, x: float, y: float, angle: float, reach: float
 ) -> tuple[float, float]:
-    return ray_kernels.ray_to_cells(cells, homes[0], x, y, math.cos(angle), math.sin(angle), reach)
+    return ray_kernels.ray_to_cells(
+        squares, homes[0], x, y, math.cos(angle), math.sin(angle), reach
+    )
 
 
 @compiled()
 def straight(
-    cells: Rows, homes: Rows, x: float, y: float, cosine: float, sine: float
+    squares: Squares, homes: Rows, x: float, y: float, cosine: float, sine: float
 ) -> tuple[float, float]:
-    return ray_kernels.ray_to_cells(cells, homes[0], x, y, cosine, sine, REACH)
+    return ray_kernels.ray_to_cells(squares, homes[0], x, y, cosine, sine, REACH)
 
 
-def home_of(solid: NDArray[np.bool_], left: float, bottom: float) -> tuple[Rows, Rows]:
-    """The cells and the row of a home."""
-    cells, homes = np.zeros(solid.size, CELL), np.zeros(1, HOME)
-    cells["solid"], cells["free"] = solid.ravel(), free_squares(solid).ravel()
+def home_of(solid: NDArray[np.bool_], left: float, bottom: float) -> tuple[Squares, Rows]:
+    """The free squares and the row of a home."""
+    homes = np.zeros(1, HOME)
     homes["rows"], homes["columns"] = solid.shape
     homes["resolution"], homes["left"], homes["bottom"] = SIZE, left, bottom
-    return cells.view(np.recarray), homes.view(np.recarray)
+    return free_squares(solid).reshape(QUADRANTS, -1), homes.view(np.recarray)
 
 
 @settings(max_examples=examples(60))
@@ -61,24 +64,24 @@ def test_a_ray_ends_where_plain_geometry_has_it(seed: int, density: float) -> No
     y = frame.origin_y + SIZE * (row + random.uniform(0.01, 0.99))
     turn = random.choice([0.0, random.uniform(-math.pi, math.pi)])
     expected = ranges_to_cells(solid, frame, x, y, turn, 64)
-    cells, homes = home_of(solid, -1.0, 0.5)
+    squares, homes = home_of(solid, -1.0, 0.5)
     for beam, way in enumerate(expected.tolist()):
-        found, facing = ray(cells, homes, x, y, turn + beam * math.pi / 32.0, REACH)
+        found, facing = ray(squares, homes, x, y, turn + beam * math.pi / 32.0, REACH)
         assert found == pytest.approx(way, abs=1e-6)
         assert 0.0 <= facing <= 1.0
 
 
 def test_squares_larger_than_a_byte_tells_are_gone_through_piece_by_piece() -> None:
-    cells, homes = home_of(np.zeros((600, 600), np.bool_), 0.0, 0.0)
+    squares, homes = home_of(np.zeros((600, 600), np.bool_), 0.0, 0.0)
     for angle, expected in ((0.0, 29.0), (0.25 * math.pi, 29.0 * math.sqrt(2.0))):
-        assert ray(cells, homes, 1.0, 1.0, angle, 50.0)[0] == pytest.approx(expected)
+        assert ray(squares, homes, 1.0, 1.0, angle, 50.0)[0] == pytest.approx(expected)
 
 
 def test_it_tells_how_squarely_it_meets_a_wall() -> None:
-    cells, homes = home_of(np.zeros((20, 20), np.bool_), 0.0, 0.0)
+    squares, homes = home_of(np.zeros((20, 20), np.bool_), 0.0, 0.0)
     for angle in (0.3, math.pi - 0.3, math.pi + 0.3, -0.3):
-        assert ray(cells, homes, 0.5, 0.5, angle, REACH)[1] == pytest.approx(math.cos(0.3))
-        assert ray(cells, homes, 0.5, 0.5, angle + math.pi / 2, REACH)[1] == pytest.approx(
+        assert ray(squares, homes, 0.5, 0.5, angle, REACH)[1] == pytest.approx(math.cos(0.3))
+        assert ray(squares, homes, 0.5, 0.5, angle + math.pi / 2, REACH)[1] == pytest.approx(
             math.cos(0.3)
         )
 
@@ -88,22 +91,22 @@ def test_a_ray_on_a_line_between_cells_is_in_those_above_it_or_right_of_it(is_ac
     for wall, expected in ((9, 0.5), (10, 0.0)):
         solid = np.zeros((20, 20), np.bool_)
         solid[wall, 12:] = True
-        cells, homes = home_of(solid.T if is_across else solid, 0.0, 0.0)
+        squares, homes = home_of(solid.T if is_across else solid, 0.0, 0.0)
         cosine, sine = (0.0, 1.0) if is_across else (1.0, 0.0)
-        found, _ = straight(cells, homes, 0.5, 0.5, cosine, sine)
+        found, _ = straight(squares, homes, 0.5, 0.5, cosine, sine)
         assert found == pytest.approx(expected if expected else 0.1)
 
 
 def test_what_is_beyond_its_reach_is_not_met() -> None:
-    cells, homes = home_of(np.zeros((20, 20), np.bool_), 0.0, 0.0)
-    assert ray(cells, homes, 0.5, 0.5, 0.0, 0.49) == (math.inf, 1.0)
-    assert ray(cells, homes, 0.5, 0.5, 0.0, 0.51)[0] == pytest.approx(0.5)
+    squares, homes = home_of(np.zeros((20, 20), np.bool_), 0.0, 0.0)
+    assert ray(squares, homes, 0.5, 0.5, 0.0, 0.49) == (math.inf, 1.0)
+    assert ray(squares, homes, 0.5, 0.5, 0.0, 0.51)[0] == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize("place", [(-0.1, 0.5), (0.5, 1.1), (0.5, 0.5)])
 def test_outside_and_in_what_is_solid_it_ends_at_once(place: tuple[float, float]) -> None:
-    cells, homes = home_of(np.ones((20, 20), np.bool_), 0.0, 0.0)
-    assert ray(cells, homes, *place, 0.3, REACH)[0] == 0.0
+    squares, homes = home_of(np.ones((20, 20), np.bool_), 0.0, 0.0)
+    assert ray(squares, homes, *place, 0.3, REACH)[0] == 0.0
 
 
 @settings(max_examples=examples(60))
@@ -112,8 +115,8 @@ def test_through_corners_of_cells_it_comes_to_an_end(
     eighth: int, first: int, size: int, nudge: int
 ) -> None:
     """From corners, along diagonals and axes, where rounding may take it to either side."""
-    cells, homes = home_of(np.zeros((20, 20), np.bool_), -first / 7.0, size / 3.0)
+    squares, homes = home_of(np.zeros((20, 20), np.bool_), -first / 7.0, size / 3.0)
     angle = eighth * math.pi / 4.0 + nudge * 1e-16
     x, y = -first / 7.0 + 10 * SIZE, size / 3.0 + 10 * SIZE
-    found, _ = ray(cells, homes, x, y, angle, REACH)
+    found, _ = ray(squares, homes, x, y, angle, REACH)
     assert found == pytest.approx(0.5 * (math.sqrt(2.0) if eighth % 2 else 1.0), abs=1e-6)
