@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from roomba.plots.style import (
     BLUE,
     GREEN,
     GREY,
+    INK,
     ORANGE,
     Area,
     area_of,
@@ -35,6 +37,8 @@ _TO: Final = (3.71, 6.18)
 """m."""
 _NEAR: Final[Area] = (7.0, 3.95, 8.1, 5.05)
 """What is shown larger."""
+_ON_ARC: Final = 1e-6
+"""m; points as near as this to an arc are its own."""
 
 
 @drawn
@@ -47,15 +51,18 @@ def picture_of_paths(home: Home) -> Figure:
     pulled = string.pulled(over_cells, fit)
     figure = empty_figure(1150, 580)
     whole, near = figure.subplots(1, 2)
-    for axes, area in ((whole, area_of(home)), (near, _NEAR)):
-        show_floor_plan(axes, home, area)
+    show_floor_plan(whole, home, area_of(home))
+    _show_cells(near, fit)
+    for axes in (whole, near):
         axes.plot(*over_cells.T, "o-", color=ORANGE, ms=4, lw=1.4, label="over the cells")
         axes.plot(*pulled.T, color=BLUE, lw=2.0, label="pulled taut")
     lengths = [float(np.hypot(*np.diff(way, axis=0).T).sum()) for way in (over_cells, pulled)]
     whole.set_title(f"{lengths[0]:.2f} m over the cells, {lengths[1]:.2f} m pulled taut")
     whole.legend(loc="lower left")
     near.set_title("Around a corner: centres that fit, and the room that is kept")
-    _draw_room(near, fit, string.room, pulled)
+    for corner in _corners(fit):
+        if abs(np.hypot(*(pulled - corner).T) - string.room).min() < _ON_ARC:
+            near.add_patch(Circle(corner, string.room, fill=False, color=GREEN, lw=1.2))
     return figure
 
 
@@ -83,16 +90,27 @@ def path_over_cells(fit: FitMap, start: Point, goal: Point) -> Floats:
     return np.vstack((start, np.column_stack(frame.centres(bends[:, 1], bends[:, 0])), goal))
 
 
-def _draw_room(axes: Axes, fit: FitMap, room: float, way: Floats) -> None:
-    """Draw the centres of cells that fit, and circles about the corners that a way goes around."""
-    rows, columns = np.nonzero(fit.fits)
-    x, y = fit.map.frame.centres(rows, columns)
+def _show_cells(axes: Axes, fit: FitMap) -> None:
+    """Draw the solid cells of the map near a corner, and the centres of those that fit."""
+    frame = fit.map.frame
     left, bottom, right, top = _NEAR
+    sides = (frame.origin_x, frame.origin_y)
+    ends = (
+        sides[0] + frame.columns * frame.resolution,
+        sides[1] + frame.rows * frame.resolution,
+    )
+    axes.imshow(
+        fit.map.solid,
+        extent=(sides[0], ends[0], sides[1], ends[1]),
+        origin="lower",
+        cmap=ListedColormap(["white", INK]),
+        interpolation="nearest",
+    )
+    x, y = frame.centres(*np.nonzero(fit.fits))
     shown = (x > left) & (x < right) & (y > bottom) & (y < top)
     axes.plot(x[shown], y[shown], ".", color=GREY, ms=3)
-    for corner in _corners(fit):
-        if abs(np.hypot(*(way - corner).T) - room).min() < 1e-6:
-            axes.add_patch(Circle(corner, room, fill=False, color=GREEN, lw=1.2))
+    axes.set(xlim=(left, right), ylim=(bottom, top), xlabel="x, m", ylabel="y, m")
+    axes.grid(visible=False)
 
 
 def _corners(fit: FitMap) -> Floats:
