@@ -30,6 +30,7 @@ from roomba.world.layers.assembly import (
     with_station,
 )
 from roomba.world.layers.automatic_station import automatic_station
+from roomba.world.layers.definite_map import definite_map
 from roomba.world.layers.parts import Parts, parts_of
 
 EVEN_DIRT = 0.5
@@ -51,7 +52,7 @@ def load_home(
     :class:`HomeError`: ``file:line: reason``.
     """
     map_path, layer_path = files_of_home(name_or_path, homes_directory)
-    occupancy = load_map(map_path)
+    occupancy = definite_map(load_map(map_path))
     if layer_path is None:
         layer, file = Layer(), YamlFile(map_path, {}, None)
     else:

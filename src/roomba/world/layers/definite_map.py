@@ -1,0 +1,62 @@
+"""What the map of a file says of a floor, for certain: each cell is floor or keeps the body out.
+
+Maps of map_server tell how likely a cell is occupied, leave specks unknown that no beam went
+through, and may end in the middle of free floor. A world has none of this, and the robot in it is
+given the very map of which its world is made.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.raster.regions import dilated, numbered_regions
+
+SPECK: Final = 0.01
+"""m²; no larger unknown spot with free floor all around it is floor as well."""
+FENCE: Final = 0.1
+"""m; thickness of a wall where a map ends: what a lidar sees a little too far lies in it."""
+_SIDES: Final = np.array([[False, True, False], [True, True, True], [False, True, False]])
+"""A cell and those over its sides."""
+
+
+def definite_map(map: OccupancyMap) -> OccupancyMap:
+    """Return a map of free, occupied and unknown cells whose floor has an end on every side."""
+    return _without_specks(_fenced(_decided(map)))
+
+
+def _decided(map: OccupancyMap) -> OccupancyMap:
+    """Return a map in which what is neither free nor likely occupied is not known."""
+    is_decided = (map.values <= FREE) | (map.values == OCCUPIED)
+    decisions = np.where(map.likely_solid, np.int8(OCCUPIED), np.int8(UNKNOWN))
+    return OccupancyMap(map.frame, np.where(is_decided, map.values, decisions))
+
+
+def _fenced(map: OccupancyMap) -> OccupancyMap:
+    """Return a map with a wall around it, if there is floor where the wall of its end would be."""
+    values, frame = map.values, map.frame
+    wall = math.ceil(FENCE / frame.resolution - 1e-9)
+    ends = (values[:wall], values[-wall:], values[:, :wall], values[:, -wall:])
+    if not any((end == FREE).any() for end in ends):
+        return map
+    around = GridFrame(
+        frame.resolution,
+        frame.origin_x - wall * frame.resolution,
+        frame.origin_y - wall * frame.resolution,
+        frame.rows + 2 * wall,
+        frame.columns + 2 * wall,
+    )
+    return OccupancyMap(around, np.pad(values, wall, constant_values=OCCUPIED))
+
+
+def _without_specks(map: OccupancyMap) -> OccupancyMap:
+    """Return a map in which small unknown spots in the midst of floor are floor."""
+    spots = numbered_regions(map.values == UNKNOWN)
+    areas = np.bincount(spots.ravel()) * map.frame.resolution**2
+    is_speck = areas <= SPECK + 1e-9
+    is_speck[spots[dilated(map.values == OCCUPIED, _SIDES)]] = False
+    is_speck[0] = False
+    return OccupancyMap(map.frame, np.where(is_speck[spots], np.int8(FREE), map.values))

@@ -1,0 +1,145 @@
+"""Maps of others as floors: what they leave open is settled, for the world and its robot alike."""
+
+from __future__ import annotations
+
+from collections import deque
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from numpy.typing import NDArray
+
+from roomba.commands.trials.runs import run_trial
+from roomba.commands.trials.trial import Trial
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.world.layers.definite_map import FENCE, SPECK, definite_map
+from roomba.world.layers.layer import load_home
+
+SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
+CELL = 0.05
+PIXELS = {FREE: 254, UNKNOWN: 205, OCCUPIED: 0}
+"""As map_saver writes them."""
+Values = NDArray[np.int8]
+
+
+def map_of(values: Values, cell: float = CELL) -> OccupancyMap:
+    return OccupancyMap(GridFrame(cell, -1.0, 2.0, *values.shape), values)
+
+
+def room() -> Values:
+    """Return 2.4 x 1.8 m of floor with a wall around it, and nothing known beyond."""
+    values = np.full((46, 58), UNKNOWN, np.int8)
+    values[3:-3, 3:-3] = OCCUPIED
+    values[5:-5, 5:-5] = FREE
+    return values
+
+
+def specked(values: Values, per_m2: float) -> Values:
+    """Return a map of whose floor single cells are not known."""
+    floor = np.argwhere(values == FREE)
+    count = round(per_m2 * len(floor) * CELL**2)
+    chosen = floor[np.random.default_rng(1).choice(len(floor), count, replace=False)]
+    values = values.copy()
+    values[chosen[:, 0], chosen[:, 1]] = UNKNOWN
+    return values
+
+
+def written(folder: Path, values: Values, mode: str) -> str:
+    """Write a map as map_saver does, but for the mode."""
+    pixels = np.zeros(values.shape, np.uint8)
+    for value, pixel in PIXELS.items():
+        pixels[values == value] = pixel
+    cv2.imwrite(str(folder / "map.png"), pixels[::-1])
+    (folder / "map.yaml").write_text(
+        f"image: map.png\nresolution: {CELL}\norigin: [0.0, 0.0, 0.0]\nnegate: 0\n"
+        f"occupied_thresh: 0.65\nfree_thresh: 0.196\nmode: {mode}\n",
+        encoding="utf-8",
+    )
+    return str(folder / "map.yaml")
+
+
+@pytest.mark.parametrize("mode", ["trinary", "scale"])
+@pytest.mark.parametrize("kind", ["room", "floor without a wall", "specks"])
+def test_maps_of_others_are_cleaned(tmp_path: Path, kind: str, mode: str) -> None:
+    values = {
+        "room": room(),
+        "floor without a wall": np.full((40, 52), FREE, np.int8),
+        "specks": specked(room(), 8.0),
+    }[kind]
+    found = run_trial(Trial(home=written(tmp_path, values, mode), seed=1)).figures
+    area = np.count_nonzero(values == FREE) * CELL**2
+    assert (found.outcome, found.docked, found.hits) == ("COMPLETED", True, 0)
+    assert found.fraction > 0.98
+    assert found.coverable_m2 > 0.8 * area
+
+
+@pytest.mark.parametrize("mode", ["trinary", "scale"])
+def test_world_and_robot_hold_the_same_cells_for_solid(tmp_path: Path, mode: str) -> None:
+    home = load_home(written(tmp_path, specked(room(), 8.0), mode), tmp_path)
+    assert np.array_equal(home.solid, home.map.solid)
+    assert np.array_equal(home.solid, home.map.likely_solid)
+
+
+def test_shares_are_settled_by_the_half() -> None:
+    values = room()
+    values[20, 20:26] = [1, 20, 49, 50, 75, 99]
+    settled = definite_map(map_of(values)).values
+    # Three of them are a spot of 75 cm2 that a wall ends.
+    assert settled[20, 20:26].tolist() == [UNKNOWN] * 3 + [OCCUPIED] * 3
+    values[20, 20:26] = values[20, 19]
+    settled[20, 20:26] = values[20, 19]
+    assert np.array_equal(settled, values)
+
+
+@pytest.mark.parametrize("cell", [0.05, 0.03, 0.01, 0.2])
+def test_floor_at_the_end_of_a_map_gets_a_wall_beyond_it(cell: float) -> None:
+    values = np.full((9, 7), OCCUPIED, np.int8)
+    values[3:6, :5] = FREE
+    fenced = definite_map(map_of(values, cell))
+    wall = round((fenced.frame.rows - 9) / 2)
+    assert FENCE <= wall * cell + 1e-9 < FENCE + cell
+    assert np.array_equal(fenced.values, np.pad(values, wall, constant_values=OCCUPIED))
+    x, y = map_of(values, cell).frame.centre_of(4, 2)
+    assert fenced.frame.centre_of(4 + wall, 2 + wall) == pytest.approx((x, y))
+    assert definite_map(fenced).frame == fenced.frame
+
+
+def test_a_map_with_a_wall_around_it_keeps_its_frame() -> None:
+    before = map_of(room())
+    after = definite_map(before)
+    assert after.frame == before.frame
+    assert np.array_equal(after.values, before.values)
+
+
+def spots(unknown: NDArray[np.bool_]) -> list[list[tuple[int, int]]]:
+    """Return the cells of each unknown spot that hangs together over sides, one by one."""
+    left, found = {(int(row), int(column)) for row, column in np.argwhere(unknown)}, []
+    while left:
+        spot, queue = [], deque([left.pop()])
+        while queue:
+            row, column = queue.popleft()
+            spot.append((row, column))
+            for up, aside in SIDES:
+                beside = row + up, column + aside
+                if beside in left:
+                    left.remove(beside)
+                    queue.append(beside)
+        found.append(spot)
+    return found
+
+
+@given(hnp.arrays(np.int8, (9, 11), elements=st.sampled_from([FREE, FREE, UNKNOWN, OCCUPIED])))
+def test_small_unknown_spots_are_floor_where_only_floor_is_beside_them(inside: Values) -> None:
+    values = np.pad(inside, 2, constant_values=OCCUPIED)
+    wanted = values.copy()
+    for spot in spots(values == UNKNOWN):
+        beside = {
+            int(values[row + up, column + aside]) for row, column in spot for up, aside in SIDES
+        }
+        if len(spot) * CELL**2 <= SPECK + 1e-9 and OCCUPIED not in beside:
+            wanted[tuple(np.transpose(spot))] = FREE
+    assert np.array_equal(definite_map(map_of(values)).values, wanted)
