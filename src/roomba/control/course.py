@@ -19,6 +19,8 @@ SHORTEST_LEG: Final = 1e-4
 """m; points nearer to the one before are left out."""
 _STEP: Final = 0.004
 """m; at most, between samples of the curve."""
+_ROUNDING: Final = 1e-6
+"""Steps; by no more is a length off that was made of legs in any direction."""
 
 
 def course_of(points: Floats, config: TrackingConfig, body: BodyConfig) -> Course:
@@ -54,7 +56,7 @@ def _sections(stations: Floats, stops: NDArray[np.intp], config: TrackingConfig)
     sections["leg"], sections["end_leg"] = begins, ends
     lengths = sections["end"] - sections["begin"]
     # A straight one is told by its ends.
-    steps = np.where(ends - begins == 1, 1.0, np.ceil(lengths / _STEP))
+    steps = np.where(ends - begins == 1, 1.0, np.ceil(lengths / _STEP - _ROUNDING))
     sections["around"] = np.ceil(config.longest_blend * steps / lengths)
     sections["last"] = np.cumsum(steps + 1.0) - 1.0
     sections["first"] = sections["last"] - steps

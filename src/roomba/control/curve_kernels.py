@@ -65,6 +65,8 @@ _HALVINGS: Final = 10
 """Of the interval in which a mean's width is looked for."""
 _WIDENING: Final = 0.5
 """By so much of the way from one corner to the next the mean may widen."""
+_STRAIGHT: Final = 1e-6
+"""1/m; less is no bend to either side, but how places are rounded."""
 
 
 class Course(NamedTuple):
@@ -229,5 +231,6 @@ def _tighten(samples: Any, section: Row, step: float) -> None:
     for at in range(first, last + 1):
         low, high = max(at - 1, first), min(at + 1, last)
         before, after = samples[low].curvature, samples[high].curvature
-        change = abs(after - before) if before * after < 0.0 else abs(after) - abs(before)
+        changes_sides = min(before, after) < -_STRAIGHT and max(before, after) > _STRAIGHT
+        change = abs(after - before) if changes_sides else abs(after) - abs(before)
         samples[at].tightening = change / ((high - low) * step)

@@ -18,6 +18,8 @@ from roomba.control.curve_kernels import Course
 
 BODY, CONFIG = RobotConfig().body, RobotConfig().tracking
 ROUNDING = 1e-9
+STRAIGHT = 1e-6
+"""1/m; less is no bend to a side."""
 
 Legs = list[tuple[float, float]]
 Floats = NDArray[np.float64]
@@ -134,7 +136,8 @@ def test_speeds_are_what_drive_and_brakes_can_do(legs: Legs) -> None:
     assert (outer[is_free] <= BODY.max_speed + ROUNDING).all()
     before, after = samples["curvature"][:-2], samples["curvature"][2:]
     faster = speeds[1:-1] ** 2 * np.abs(after - before) / (2.0 * step)
-    opens = (before * after >= 0.0) & (np.abs(after) <= np.abs(before))
+    changes_sides = (before * after < 0.0) & (np.minimum(np.abs(before), np.abs(after)) > STRAIGHT)
+    opens = ~changes_sides & (np.abs(after) <= np.abs(before))
     most = np.where(opens, CONFIG.corner_braking, CONFIG.corner_acceleration)
     assert (faster <= most + 1e-6)[is_free[1:-1]].all()
 
@@ -252,3 +255,19 @@ def test_no_bend_is_taken_faster_than_the_body_turns_up_and_down() -> None:
         (is_free & opens, slow.max_angular_deceleration),
     ):
         assert 0.9 * most < rates[those].max() <= most + 1e-6
+
+
+@given(
+    st.sampled_from([0.37, 0.5, 1.0]),
+    st.lists(st.sampled_from([-0.45, -0.375, 0.2, 0.375, 0.45]), min_size=1, max_size=4),
+    st.floats(0.0, math.tau),
+    st.tuples(st.floats(-50.0, 50.0), st.floats(-50.0, 50.0)),
+)
+def test_the_heading_of_a_whole_path_changes_nothing(
+    way: float, turns: list[float], heading: float, place: tuple[float, float]
+) -> None:
+    legs = [(turn, way) for turn in turns]
+    plain = course((0.0, way), *legs).samples
+    moved = course_of(path((heading, way), *legs) + place, CONFIG, BODY).samples
+    assert len(moved) == len(plain)
+    assert moved["speed"] == pytest.approx(plain["speed"], abs=1e-6)
