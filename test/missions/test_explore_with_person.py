@@ -34,11 +34,11 @@ OUTLINE = 12
 def graph(tmp_path: Path) -> Iterator[RosGraph]:
     """The name of the robot's map of the home was mistyped: it begins a new one.
 
-    A person walks about there.
+    A person walks about there. ``./roomba run`` would refuse that name.
     """
     with RosGraph(tmp_path) as own:
         keep_home_map(tmp_path / "ros_home", "home")
-        own.launch(f"home:={mapping_home(tmp_path, has_walker=True)}", "map:=hom", SPEED)
+        own.roslaunch(f"home:={mapping_home(tmp_path, has_walker=True)}", "map:=hom", SPEED)
         yield own
 
 

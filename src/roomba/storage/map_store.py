@@ -77,6 +77,10 @@ class MapStore:
         _wait_for_disk(self.folder)
         self._keep_before(name)
 
+    def require(self, name: str) -> None:
+        """Raise MapStoreError, which says what maps there are, for a name that none has."""
+        self._folder_of(name)
+
     def load(self, name: str) -> StoredMap:
         """Return a map. Raises MapStoreError, which names the file, for one that is broken.
 

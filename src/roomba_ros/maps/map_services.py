@@ -25,7 +25,8 @@ from roomba_ros.localization.topics import LocalizationTopics
 from roomba_ros.maps.change_topics import ChangeTopics
 from roomba_ros.maps.map_maker import MapMaker
 from roomba_ros.maps.map_shelf import MapShelf
-from roomba_ros.maps.own_map import GIVEN, NO_STATION, NONE, OWN, OwnMap
+from roomba_ros.maps.map_wish import GIVEN, NONE, OWN
+from roomba_ros.maps.own_map import NO_STATION, OwnMap
 
 _BECOMES_WHOLE: Final = 5.0
 """s of wall time that a map is waited for which is about to be whole."""

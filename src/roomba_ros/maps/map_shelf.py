@@ -17,6 +17,7 @@ from roomba.storage.map_bound import map_digest
 from roomba.storage.map_store import MapStore, MapStoreError, StoredMap
 from roomba.storage.rooms import save_rooms
 from roomba.storage.zones import save_zones
+from roomba_ros.maps.map_wish import FOLDER
 from roomba_ros.rooms.topics import RoomTopics
 from roomba_ros.runtime.parameters import folder_of
 
@@ -36,7 +37,7 @@ class MapShelf:
 
     def start(self) -> None:
         """Read the parameters."""
-        self._store = MapStore(folder_of("~maps_folder", "maps"), rospy.logwarn)
+        self._store = MapStore(folder_of("~maps_folder", FOLDER), rospy.logwarn)
         self._zones_folder = folder_of("~zones_folder", "zones")
 
     @property

@@ -20,7 +20,8 @@ from roomba_ros.maps.map_maker import MapMaker
 from roomba_ros.maps.map_memory import MapMemory
 from roomba_ros.maps.map_services import MapServices
 from roomba_ros.maps.map_shelf import MapShelf
-from roomba_ros.maps.own_map import GIVEN, NO_STATION, NONE, OWN, OwnMap
+from roomba_ros.maps.map_wish import GIVEN, NONE, OWN
+from roomba_ros.maps.own_map import NO_STATION, OwnMap
 from roomba_ros.rooms.topics import RoomTopics
 from roomba_ros.runtime.background import Background
 from roomba_ros.runtime.parameters import read_mapping_config

@@ -26,11 +26,6 @@ from roomba_ros.rooms.topics import RoomTopics
 from roomba_ros.runtime.background import Background
 from roomba_ros.runtime.subscriptions import subscribe
 
-GIVEN: Final = "given"
-NONE: Final = "none"
-OWN: Final = "own"
-"""Values of the parameter ``~map``: a map that others tell; a new one of its own; the own one of
-this floor. All others are names of saved maps."""
 _SETTLED: Final = 2.0
 """s of wall time; the master is told within milliseconds."""
 NO_STATION: Final = "the map is being made: put the robot on its station, so that it knows it"

@@ -107,8 +107,12 @@ def folder_of(parameter: str, name: str) -> Path:
     """Return the folder that a parameter names; by default one of that name for this robot's files,
     in roomba_robot in the ROS home folder.
     """
-    folder = str(rospy.get_param(parameter, ""))
-    return Path(folder or Path(rospkg.get_ros_home()) / "roomba_robot" / name)
+    return folder_for(str(rospy.get_param(parameter, "")), name)
+
+
+def folder_for(given: str, name: str) -> Path:
+    """Return the folder that was given, or the one of that name for this robot's files."""
+    return Path(given or Path(rospkg.get_ros_home()) / "roomba_robot" / name)
 
 
 def package_folder() -> Path:

@@ -22,7 +22,9 @@ from roomba.configuration.nodes import NodesConfig
 from roomba.errors import RoombaError
 from roomba.files.home_layer import files_of_home
 from roomba.files.shipped import CONFIGURATION, HOMES
+from roomba_ros.maps.map_wish import FOLDER, require_map
 from roomba_ros.runtime.alone import living
+from roomba_ros.runtime.parameters import folder_for
 from roomba_ros.runtime.senders import SUPERVISOR
 from roomba_ros.supervision.kept_master import be_master, wait_for_master
 from roomba_ros.supervision.launch_file import Launch, ProcessEntry, described, read_launch
@@ -36,6 +38,10 @@ USAGE: Final = 2
 _CALLER: Final = "/roomba_run"
 _HOME: Final = "/home_sim_node/home"
 """The end of the parameter's name."""
+_MAP: Final = "/position_pub_node/map"
+"""The end of the parameter's name, beside which that of the maps' folder stands."""
+_WORDS: Final = "ROOMBA_LAUNCHING"
+"""The environment variable with what ``./roomba`` wants to be said when nothing is refused."""
 _MASTER_WITHIN: Final = 20.0
 """s of wall time in which the master answers, on a busy machine too."""
 
@@ -50,11 +56,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return 0
         launch = read_launch(file, given)
         _require_home(launch)
+        _require_map(launch)
         _require_host_of_master()
         _refuse_second(launch)
     except RoombaError as error:
         print(f"./roomba run: {error}", file=sys.stderr)
         return USAGE
+    if words := os.environ.pop(_WORDS, ""):
+        print(words, file=sys.stderr, flush=True)
     return _run(launch, package_folder() / "scripts")
 
 
@@ -93,6 +102,14 @@ def _require_home(launch: Launch) -> None:
     for name, value in launch.parameters.items():
         if name.endswith(_HOME):
             files_of_home(str(value), HOMES)
+
+
+def _require_map(launch: Launch) -> None:
+    """Raise MapStoreError when no map of that name is saved: the robot would make a new one."""
+    for name, value in launch.parameters.items():
+        if name.endswith(_MAP):
+            given = str(launch.parameters.get(f"{name}s_folder", ""))
+            require_map(str(value), folder_for(given, FOLDER))
 
 
 def _require_host_of_master() -> None:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from roomba.storage.map_store import MapStoreError
+from roomba_ros.maps.map_wish import require_map
 from roomba_ros.supervision.run import USAGE, main
 
 
@@ -17,3 +21,34 @@ def test_a_home_that_is_not_there_is_refused_before_anything_starts(
     assert "expected the name of a home there or the path of a map_server yaml" in told.err
     assert "got 'studoi'" in told.err
     assert "studio" in told.err
+
+
+@pytest.mark.parametrize(
+    ("argument", "reason"),
+    [
+        ("bogus", "bogus"),
+        ("map:=nosuch", "expected one of no maps, got 'nosuch'"),
+    ],
+)
+def test_what_is_refused_is_refused_before_a_launch_is_told(
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    argument: str,
+    reason: str,
+) -> None:
+    monkeypatch.setenv("ROS_HOME", str(tmp_path))
+    monkeypatch.setenv("ROOMBA_LAUNCHING", "Launching the robot.")
+    assert main([argument]) == USAGE
+    told = capsys.readouterr()
+    assert "Launching" not in told.out + told.err
+    assert reason in told.err
+
+
+def test_a_map_that_is_not_saved_is_refused_with_those_that_are(tmp_path: Path) -> None:
+    for name in ("attic", "cellar"):
+        (tmp_path / name).mkdir()
+    for wish in ("given", "none", "own", "attic"):
+        require_map(wish, tmp_path)
+    with pytest.raises(MapStoreError, match=r"'attic', 'cellar', got 'celar'; did you mean"):
+        require_map("celar", tmp_path)

@@ -1,0 +1,23 @@
+"""Which map the robot shall go by: the values of the parameter ``~map``, or a saved map's name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+GIVEN: Final = "given"
+NONE: Final = "none"
+OWN: Final = "own"
+"""A map that others tell; a new one of its own; the own one of this floor."""
+FOLDER: Final = "maps"
+"""Where saved maps are, unless another folder is given."""
+
+
+def require_map(wish: str, folder: Path) -> None:
+    """Raise MapStoreError where ``folder`` has no map of the name that is wished."""
+    if wish in (GIVEN, NONE, OWN):
+        return
+    # Here: most robots start without, and at once.
+    from roomba.storage.map_store import MapStore
+
+    MapStore(folder).require(wish)
