@@ -5,6 +5,7 @@
 """
 
 from roomba.client.protocol import CleanProgress
+from roomba.commands.ending import quiet_end
 from roomba_ros.client.roomba_client import RoombaClient
 
 
@@ -23,4 +24,5 @@ def tell(progress: CleanProgress) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    with quiet_end():  # of Ctrl-C: the robot goes on cleaning
+        main()

@@ -13,6 +13,7 @@ from rich.console import Console
 
 from roomba.commands.ending import quiet_end
 from roomba.commands.first_use import require_compiled
+from roomba.commands.options import UsageError, check_written, file_of
 from roomba.commands.spelling import spelled
 from roomba_bench.bench import Bench
 from roomba_bench.machine import Machine
@@ -38,6 +39,11 @@ def main(arguments: list[str] | None = None) -> int:
     if options.peers is not None and not options.peers.is_file():
         parser.error(f"--peers: expected a program, the Python of the peers; came {options.peers}")
     topics = list(dict.fromkeys(options.topics)) or _usual_topics()
+    picture = options.plot or options.out / f"{'-'.join(topics)}.png"
+    try:
+        _check_written(options, picture)
+    except (UsageError, OSError) as error:
+        parser.error(str(error))
     require_compiled(is_quiet=False)
     pace = QUICK if options.quick else THOROUGH
     machine = Machine.this()
@@ -47,12 +53,23 @@ def main(arguments: list[str] | None = None) -> int:
         with tempfile.TemporaryDirectory() as folder:
             records += _measure(topic, _bench(options, pace, Path(folder)))
     _tell(records, preface, to_errors=options.json == "-")
-    write_plot(options.plot or options.out / f"{'-'.join(topics)}.png", records, " ".join(preface))
+    write_plot(picture, records, " ".join(preface))
     if options.json:
-        write_json(None if options.json == "-" else Path(options.json), records)
+        write_json(file_of(options.json), records)
     if options.markdown:
         options.markdown.write_text(markdown(records, preface) + "\n", encoding="utf-8")
     return 1 if any(record.value is None and not record.lacks_peer for record in records) else 0
+
+
+def _check_written(options: argparse.Namespace, picture: Path) -> None:
+    """Refuse at once what could not be written after minutes; raises UsageError and OSError."""
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    written = [
+        ("--plot", picture),
+        ("--json", file_of(options.json)),
+        ("--markdown", options.markdown),
+    ]
+    check_written(written, [])
 
 
 def _usual_topics() -> list[str]:

@@ -33,7 +33,6 @@ def write_plot(path: Path, records: Sequence[Record], caption: str) -> None:
     if not drawn:
         panels[0, 0].set_axis_off()
     figure.suptitle(caption, fontsize=8, wrap=True)
-    path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=110)
 
 

@@ -19,7 +19,7 @@ from typing import Final
 from rich.console import Console
 
 from roomba.commands.compiling import is_kept
-from roomba.commands.ending import quiet_end
+from roomba.commands.ending import quiet_end, quiet_loading
 
 _CLEAN, _PLAN = "roomba.commands.trials.warm", "roomba.commands.warm_up"
 _TITLE: Final = "Compiling what a clean needs, once"
@@ -35,8 +35,9 @@ def require_compiled(*, is_quiet: bool) -> None:
 
     What does not compile is compiled again where it is called, and tells there what is wrong.
     """
-    from roomba.headless.burst_kernels import run
-    from roomba.planning.coverage.tour.tour import shaken
+    with quiet_loading():
+        from roomba.headless.burst_kernels import run
+        from roomba.planning.coverage.tour.tour import shaken
 
     # The last and largest ones of both halves.
     if is_kept(run) and is_kept(shaken):

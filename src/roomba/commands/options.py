@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 import re
+import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final, NoReturn, TypeAlias
@@ -125,6 +127,19 @@ def check_written(written: Sequence[Named], read: Sequence[Named]) -> None:
             raise UsageError(f"--plot: expected a name that ends with .png, got {path}")
         if path.is_dir() or not path.absolute().parent.is_dir():
             raise UsageError(f"{option}: expected a file in a folder that is there, got {path}")
+        if not _is_writable(path):
+            raise UsageError(f"{option}: expected a file that can be written, got {path}")
         other = used.setdefault(path.resolve(), option)
         if other != option:
             raise UsageError(f"{option}: {path} is the file of {other} already; choose another one")
+
+
+def _is_writable(path: Path) -> bool:
+    """Whether a file can be written, and made if it is not there yet."""
+    if path.exists():
+        return os.access(path, os.W_OK)
+    try:
+        with tempfile.TemporaryFile(dir=path.absolute().parent):
+            return True
+    except OSError:
+        return False

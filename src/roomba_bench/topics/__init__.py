@@ -8,6 +8,7 @@ from __future__ import annotations
 import importlib
 from types import MappingProxyType
 
+from roomba.commands.ending import quiet_loading
 from roomba_bench.bench import Bench
 from roomba_bench.record import Record
 from roomba_bench.ros.graph import NO_ROS, has_ros
@@ -39,5 +40,7 @@ def left_out(topic: str) -> str:
 
 def measure(topic: str, bench: Bench) -> list[Record]:
     """Return the rows of a topic; its module is loaded only now."""
-    records: list[Record] = importlib.import_module(f"roomba_bench.topics.{topic}").measure(bench)
+    with quiet_loading():
+        module = importlib.import_module(f"roomba_bench.topics.{topic}")
+    records: list[Record] = module.measure(bench)
     return records

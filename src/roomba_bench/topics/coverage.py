@@ -5,14 +5,12 @@ Everything is driven: closed loop with sensors, localization, planning and contr
 
 from __future__ import annotations
 
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field, replace
-from multiprocessing import get_context
 
 import numpy as np
 
 from roomba.commands.trials.warm import warm_up
-from roomba.cores import usable_cores
 from roomba.world.home.home import Home
 from roomba_bench.bench import Bench
 from roomba_bench.coverage.aims import COVERAGE, aims_of
@@ -41,6 +39,7 @@ from roomba_bench.coverage.rows import (
     over_time_rows,
 )
 from roomba_bench.record import PeerFigure, Record
+from roomba_bench.workers import Workers
 
 _SHIPPED = ("empty", "lshape", "apartment", "flat", "studio", "family")
 """Not the hall: a plane of 200 m is no floor to clean."""
@@ -96,9 +95,7 @@ def measured(bench: Bench, extent: Extent) -> list[Record]:
             place.records += _timed_rows(bench, place, extent)
         except Exception as error:
             place.records.append(broken_row(place.case.title, error))
-    at_once = usable_cores()
-    # A fork would take over the locks of threads that are not there any more.
-    with ProcessPoolExecutor(at_once, mp_context=get_context("spawn")) as pool:
+    with Workers() as pool:
         return _rest(bench, pool, places, extent)
 
 

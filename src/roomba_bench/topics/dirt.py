@@ -7,14 +7,12 @@ learned, counts for the way, and not for how clean it is.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from typing import Final
 
-from roomba.cores import usable_cores
 from roomba_bench.bench import Bench
 from roomba_bench.dirt.month import PLANS, Life, live
 from roomba_bench.record import Better, PeerFigure, Record
+from roomba_bench.workers import Workers
 
 _TOPIC: Final = "dirt"
 _HOMES: Final = ("flat", "family")
@@ -35,8 +33,7 @@ def measure(bench: Bench) -> list[Record]:
     days = _QUICK_DAYS if bench.is_quick else _DAYS
     homes, seeds = (_HOMES[:1], _SEEDS[:1]) if bench.is_quick else (_HOMES, _SEEDS)
     records: list[Record] = []
-    at_once = usable_cores()
-    with ProcessPoolExecutor(at_once, mp_context=get_context("spawn")) as pool:
+    with Workers() as pool:
         for home in homes:
             case = f"{home}, {days} days, {len(seeds)} seeds"
             bench.say(case)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass
-from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +19,7 @@ from roomba_bench.localization.peers import Followed, ScannedDrive, follow, matc
 from roomba_bench.localization.plot import plot_drive, plot_spread
 from roomba_bench.localization.rows import broken_row, drive_rows, kidnap_rows
 from roomba_bench.record import Record
+from roomba_bench.workers import Workers
 
 _SHIPPED = ("flat", "studio", "family", "apartment", "empty", "lshape", "hall")
 _CHANGED = ("flat", "apartment")
@@ -83,8 +83,7 @@ def measured(bench: Bench, extent: Extent, homes: Sequence[Homes] | None = None)
     """Return the rows for some homes; by default the shipped ones and those of the maps."""
     at_once = usable_cores()
     records = []
-    # A fork would take over the locks of threads that are not there any more.
-    with ProcessPoolExecutor(at_once, mp_context=get_context("spawn")) as pool:
+    with Workers() as pool:
         for group in homes or (*_shipped(extent), *_of_maps(bench, extent)):
             records += _rows(bench, group, _begin(bench, pool, group, extent), extent, at_once)
     return [*records, *_match_rows(bench)]

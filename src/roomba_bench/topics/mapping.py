@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass
-from multiprocessing import get_context
 from typing import TypeVar
 
 from roomba.commands.map.warm import warm_up
-from roomba.cores import usable_cores
 from roomba_bench.bench import Bench
 from roomba_bench.mapping.cost import recorded, share_of_core, speed
 from roomba_bench.mapping.explore import Explored, Task, clean, clean_unknown, explore
@@ -25,6 +23,7 @@ from roomba_bench.mapping.rows import (
     speed_row,
 )
 from roomba_bench.record import Record
+from roomba_bench.workers import Workers
 
 _SHIPPED = ("flat", "studio", "family", "apartment", "empty", "lshape")
 """Not the hall: in a plane of 200 m the lidar sees nothing most of the time."""
@@ -58,9 +57,7 @@ def measured(bench: Bench, extent: Extent) -> list[Record]:
     """
     warm_up()
     records = _timed_rows(bench, extent)
-    at_once = usable_cores()
-    # A fork would take over the locks of threads that are not there any more.
-    with ProcessPoolExecutor(at_once, mp_context=get_context("spawn")) as pool:
+    with Workers() as pool:
         return records + _rest(bench, pool, extent)
 
 

@@ -71,6 +71,7 @@ def test_what_cannot_be_written_is_refused_before_the_work(tmp_path: Path) -> No
     for written, reason in (
         ([("--plot", tmp_path / "a.jpg")], "--plot: expected a name that ends with .png"),
         ([("--json", tmp_path)], "--json: expected a file in a folder that is there"),
+        ([("--json", Path("/proc/a.json"))], "--json: expected a file that can be written"),
         ([("--json", tmp_path / "none" / "a")], "--json: expected a file in a folder"),
         (
             [("--json", tmp_path / "a"), ("--bag", tmp_path / "a")],

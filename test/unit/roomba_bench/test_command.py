@@ -64,6 +64,17 @@ def test_a_folder_that_is_not_there_is_refused_before_anything_is_measured(
     assert f"{option}: expected a folder of" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("option", ["--plot", "--json", "--markdown", "--out"])
+def test_what_cannot_be_written_is_refused_before_anything_is_measured(
+    run: Run, option: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    place = "/proc/new" if option == "--out" else "/proc/out.png"
+    with pytest.raises(SystemExit):
+        command.main(["plan", option, place])
+    assert "/proc" in capsys.readouterr().err
+    assert run("camera")[1] == [("camera", THOROUGH)]
+
+
 def test_what_needs_ros_is_left_out_and_told_where_there_is_none(
     run: Run, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -6,6 +6,7 @@ import ast
 from pathlib import Path
 
 import pytest
+from fixtures.processes.ctrl_c import ended
 
 import roomba_bench
 from roomba_bench.topics import TOPICS, left_out
@@ -65,3 +66,18 @@ def test_each_peer_is_installed_by_the_list(script: Path) -> None:
     ]
     name = ast.literal_eval(line.partition("=")[2].strip())
     assert name == "" or name in listed
+
+
+def test_ctrl_c_is_not_lost_while_the_module_of_a_topic_is_loaded() -> None:
+    done = ended(
+        "import importlib, signal\n"
+        "from roomba_bench import topics\n"
+        "def load(name):\n"
+        "    try:\n"
+        "        signal.raise_signal(signal.SIGINT)\n"
+        "    except KeyboardInterrupt:\n"
+        "        pass  # as compiled modules lose it\n"
+        "importlib.import_module = load\n"
+        "topics.measure('plan', None)"
+    )
+    assert (done.returncode, done.stderr) == (130, "stopped on the way\n")

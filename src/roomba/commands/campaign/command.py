@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from roomba.commands.campaign.options import PROGRAM, CampaignOptions, options_of
-from roomba.commands.ending import INTERRUPTED
+from roomba.commands.ending import INTERRUPTED, quiet_loading
 from roomba.commands.guarding import USAGE
 from roomba.commands.options import UsageError
 from roomba.commands.progress import Show, progress
@@ -61,11 +61,12 @@ def _complain(text: str, status: int) -> int:
 
 def _run(options: CampaignOptions, words: Sequence[str]) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
-    from roomba.commands.campaign.checked import check_campaign
-    from roomba.commands.campaign.running.runs import runs_of
-    from roomba.commands.campaign.running.specification import read_campaign
-    from roomba.commands.campaign.running.store import opened_store
-    from roomba.commands.first_use import require_compiled
+    with quiet_loading():
+        from roomba.commands.campaign.checked import check_campaign
+        from roomba.commands.campaign.running.runs import runs_of
+        from roomba.commands.campaign.running.specification import read_campaign
+        from roomba.commands.campaign.running.store import opened_store
+        from roomba.commands.first_use import require_compiled
 
     campaign = read_campaign(options.file)
     check_campaign(campaign, options.machines)

@@ -6,6 +6,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Final
 
+from roomba.commands.ending import quiet_loading
 from roomba.commands.guarding import COMPLETED, ENDED_OTHERWISE, USAGE, guarded
 from roomba.commands.importing import nothing_thrown_away
 from roomba.commands.map.options import PROGRAM, MapOptions, Output, options_of
@@ -37,7 +38,7 @@ def _without_bag(arguments: list[str] | None) -> list[str] | None:
 
 def _explore(options: MapOptions) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
-    with nothing_thrown_away():
+    with quiet_loading(), nothing_thrown_away():
         from roomba.commands.compiling import compiling_counted
         from roomba.commands.first_use import require_compiled
         from roomba.commands.map.runs import MapScene

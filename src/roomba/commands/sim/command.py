@@ -11,6 +11,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from roomba.commands.ending import quiet_loading
 from roomba.commands.guarding import COMPLETED, ENDED_OTHERWISE, USAGE, guarded
 from roomba.commands.importing import nothing_thrown_away
 from roomba.commands.options import UsageError
@@ -53,7 +54,7 @@ def _run(words: list[str], open_bag: BagOpener | None) -> int:
 
 def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
-    with nothing_thrown_away():
+    with quiet_loading(), nothing_thrown_away():
         from roomba.commands.first_use import require_compiled
         from roomba.commands.sim.state_samples import StateSamples
         from roomba.commands.trials.runs import TrialSetup
@@ -119,8 +120,9 @@ def _tell_run(options: SimOptions, run: Run) -> None:
 
 
 def _run_homes(options: SimOptions, homes: int) -> int:
-    from roomba.commands.first_use import require_compiled
-    from roomba.commands.trials.many import figures_of, run_many
+    with quiet_loading():
+        from roomba.commands.first_use import require_compiled
+        from roomba.commands.trials.many import figures_of, run_many
 
     require_compiled(is_quiet=options.quiet)
     first = options.trial.seed

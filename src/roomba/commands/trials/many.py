@@ -13,6 +13,7 @@ from concurrent.futures import (
     TimeoutError as FutureTimeoutError,  # before 3.11 not the built-in one
 )
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import resource_tracker
 from typing import Any, Final, TypeAlias, TypeVar
 
 from pebble import ProcessExpired, ProcessPool
@@ -87,6 +88,7 @@ def _run_in_pool(
     A pool breaks when a process dies that has nothing to do.
     """
     count = min(processes or usable_cores(), len(left))
+    others = set(multiprocessing.active_children())
     pool = ProcessPool(count, context=multiprocessing.get_context(method))
     at_work: dict[Future[_Result], _Item] = {}
 
@@ -111,6 +113,9 @@ def _run_in_pool(
         finally:
             left.extendleft(at_work.values())
             pool.stop()
+            # One that only starts would tell by a traceback that the pool's locks are gone.
+            for process in set(multiprocessing.active_children()) - others:
+                process.kill()
             pool.join()
 
 
@@ -142,6 +147,8 @@ def one_thread_each() -> Iterator[None]:
 def undisturbed() -> Iterator[None]:
     """Put off Ctrl-C; what is started meanwhile never sees it: it is for this process."""
     came: list[Any] = []
+    # Python starts it before the first process, and lets the signal through again.
+    resource_tracker.ensure_running()
     handler = signal.signal(signal.SIGINT, lambda *_: came.append(True))
     # Inherited by what is started; here another thread may get the signal all the same.
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})

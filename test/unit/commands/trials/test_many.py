@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from fixtures.processes.ctrl_c import blocks_ctrl_c
 from fixtures.waiting import wait_until
 
 from roomba.commands.trials import many
@@ -108,3 +109,13 @@ def test_each_process_computes_in_one_thread() -> None:
     names = ["NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENCV_FOR_THREADS_NUM"]
     assert dict(run_many(names, os.getenv, 2)) == dict.fromkeys(names, "1")
     assert os.environ.get("NUMBA_NUM_THREADS") == before
+
+
+def test_processes_do_not_see_ctrl_c_from_their_begin_on() -> None:
+    # In a process of its own: what starts with the first one there is opened the signal again.
+    assert blocks_ctrl_c(
+        "from pathlib import Path\n"
+        "from roomba.commands.trials.many import run_many\n"
+        "[(_, status)] = run_many([Path('/proc/self/status')], Path.read_text, 1)\n"
+        "print(status)"
+    )

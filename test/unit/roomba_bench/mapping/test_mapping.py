@@ -226,7 +226,7 @@ def test_homes_and_maps_of_a_folder_are_measured(
         return _explored(task.seed, 300.0, _error(0.99, 0.99, 0), _error(0.6, 0.8, 100))
 
     looped = Looped(105.0, 0.01, 0.02, 0.4, _error(1.0, 1.0, 0), _error(0.3, 0.6, 9), NOTHING)
-    monkeypatch.setattr(mapping, "ProcessPoolExecutor", _Pool)
+    monkeypatch.setattr(mapping, "Workers", _Pool)
     monkeypatch.setattr(mapping, "warm_up", lambda: None)
     monkeypatch.setattr(mapping, "explore", explored)
     monkeypatch.setattr(mapping, "clean", lambda task, known: Cleaned(1.0, 1800.0, True))
