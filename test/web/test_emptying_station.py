@@ -22,11 +22,13 @@ from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
 
 DEADLINE = 20.0
 """s of wall time."""
+SPEED = 4.0
+"""Emptying takes 8 s of the robot's, so 2 s: long enough for a busy page to show it."""
 
 
 @pytest.fixture
 def household(tmp_path: Path) -> Iterator[LiveHousehold]:
-    robot = live_client("studio", seed=1, speed=20.0, knows_map=True, station_empties=True)
+    robot = live_client("studio", seed=1, speed=SPEED, knows_map=True, station_empties=True)
     config = HouseholdConfig()
     household = LiveHousehold(
         robot, tmp_path, config, 100.0, lambda text: pytest.fail(text), period=0.05

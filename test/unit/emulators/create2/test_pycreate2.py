@@ -15,6 +15,9 @@ from roomba.emulators.create2.server import Create2Server
 from roomba.emulators.living import LivingWorld
 from roomba.emulators.pseudo_terminal import PseudoTerminal
 
+DEADLINE = 20.0
+"""s of wall time."""
+
 
 @pytest.fixture
 def robot() -> Iterator[tuple[Create2Robot, str]]:
@@ -38,16 +41,16 @@ def drive_off_and_sing(port: str, made: Create2Robot) -> None:
     assert sensors.battery_capacity == 3000
     stranger.full()
     stranger.drive_direct(-200, -200)
-    wait_until(lambda: not stranger.get_sensors().charger_available.home_base, 5.0, "off it")
-    wait_until(lambda: stranger.get_sensors().encoder_counts_left < 64_000, 5.0, "it counts")
+    wait_until(lambda: not stranger.get_sensors().charger_available.home_base, DEADLINE, "off it")
+    wait_until(lambda: stranger.get_sensors().encoder_counts_left < 64_000, DEADLINE, "it counts")
     sensors = stranger.get_sensors()
     assert (sensors.velocity_left, sensors.velocity_right) == (-200, -200)
     assert sensors.encoder_counts_left == pytest.approx(sensors.encoder_counts_right, abs=40)
     stranger.drive_stop()
-    assert made.simulator.observe().twist.linear == 0.0
+    wait_until(lambda: made.simulator.observe().twist.linear == 0.0, DEADLINE, "it stands")
     stranger.createSong(1, [60, 64])
     stranger.playSong(1)
-    wait_until(lambda: stranger.get_sensors().song_playing, 2.0, "it sings")
+    wait_until(lambda: stranger.get_sensors().song_playing, DEADLINE, "it sings")
 
 
 def test_pycreate2_drives_it_off_its_station_and_reads_all_of_it(
@@ -56,4 +59,4 @@ def test_pycreate2_drives_it_off_its_station_and_reads_all_of_it(
     made, port = robot
     drive_off_and_sing(port, made)
     # It gives the robot back when it is forgotten.
-    wait_until(lambda: made.mode is OpenMode.OFF, 5.0, "it was given back")
+    wait_until(lambda: made.mode is OpenMode.OFF, DEADLINE, "it was given back")
