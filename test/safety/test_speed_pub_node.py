@@ -13,7 +13,7 @@ import rospy
 from fixtures.nodes.lockstep import Lockstep
 from geometry_msgs.msg import Twist as TwistMessage
 from nav_msgs.msg import Odometry
-from roomba_robot.msg import Bumper, Cliff, WheelDrop
+from roomba_robot.msg import BodyState, Bumper, Cliff, WheelDrop
 from roomba_robot.srv import EmergencyStop, EmergencyStopRequest
 from std_msgs.msg import Float32, String
 
@@ -80,16 +80,30 @@ def test_a_command_is_passed_on_at_once_and_then_at_ticks_until_it_is_old(rig: R
     assert [rig.ticked() for _ in range(4)] == [[AHEAD], [AHEAD], [STANDSTILL], [STANDSTILL]]
 
 
-def test_of_a_flood_the_first_message_of_each_topic_is_passed_on_between_ticks(rig: Rig) -> None:
+def test_of_a_flood_the_first_change_of_each_topic_is_passed_on_between_ticks(rig: Rig) -> None:
     rig.start()
-    for _ in range(3):
-        assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
+    for first in (AHEAD, Twist(0.3, -0.1), AHEAD):
+        assert rig.told("cmd_vel", twist_message(first)) == [first]
         assert rig.told("cmd_vel", twist_message(Twist(0.1, 0.0))) == []
-        assert rig.told("cmd_vel", twist_message(AHEAD)) == []
-        assert rig.told("cmd_vel_mission", twist_message(Twist(0.1, 0.0))) == [AHEAD]
-        assert rig.told("change_speed", Float32(0.4)) == [AHEAD]
+        assert rig.told("cmd_vel", twist_message(Twist(0.4, 0.0))) == []
+        assert rig.told("change_speed", Float32(0.2)) == [Twist(0.2, 0.0)]
         assert rig.told("change_speed", Float32(0.45)) == []
-        assert rig.ticked() == [AHEAD]
+        assert rig.ticked() == [Twist(0.4, 0.0)]
+
+
+def test_what_changes_nothing_waits_for_the_tick_and_holds_up_no_change(rig: Rig) -> None:
+    rig.start()
+    assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
+    assert rig.ticked() == [AHEAD]
+    assert rig.told("cmd_vel", twist_message(AHEAD)) == []
+    assert rig.told("cmd_vel_mission", twist_message(Twist(0.1, 0.0))) == []
+    assert rig.told("change_speed", Float32(0.45)) == []
+    assert rig.told("cmd_vel", twist_message(STANDSTILL)) == [STANDSTILL]
+    assert rig.ticked() == [STANDSTILL]
+    assert rig.told("change_speed", Float32(0.0)) == []
+    assert rig.told("cmd_vel", twist_message(AHEAD)) == []
+    assert rig.ticked() == [STANDSTILL]
+    assert rig.told("change_speed", Float32(0.45)) == [AHEAD]
 
 
 @pytest.mark.parametrize("parts", [(math.nan, 0.0), (0.0, math.inf)])
@@ -144,10 +158,80 @@ def test_a_hazard_is_obeyed_at_once_and_its_end_at_the_next_tick(
     assert rig.ticked() == [AHEAD]
 
 
+@pytest.mark.parametrize(
+    ("hazard", "driven"),
+    [
+        ("is_left_pressed", Twist(-0.1, 0.0)),
+        ("is_right_pressed", Twist(-0.1, 0.0)),
+        ("is_cliff_left", Twist(-0.1, 0.0)),
+        ("is_cliff_front_left", Twist(-0.1, 0.0)),
+        ("is_cliff_front_right", Twist(-0.1, 0.0)),
+        ("is_cliff_right", Twist(-0.1, 0.0)),
+        ("is_left_dropped", STANDSTILL),
+        ("is_right_dropped", STANDSTILL),
+    ],
+)
+def test_a_hazard_that_the_body_tells_in_one_message_is_obeyed_at_once(
+    rig: Rig, hazard: str, driven: Twist
+) -> None:
+    rig.start()
+    assert rig.told("body", BodyState()) == []
+    assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
+    assert rig.told("body", BodyState(**{hazard: True})) == [driven]
+    assert rig.told("body", BodyState(**{hazard: True})) == []
+    assert rig.ticked() == [driven]
+    assert rig.told("body", BodyState()) == []
+    assert rig.ticked() == [AHEAD]
+
+
+def test_a_command_in_the_same_tick_does_not_use_up_the_bodys_turn(rig: Rig) -> None:
+    rig.start()
+    assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
+    assert rig.told("body", BodyState(is_left_pressed=True)) == [Twist(-0.1, 0.0)]
+    assert rig.told("body", BodyState(is_left_dropped=True)) == []
+    assert rig.ticked() == [STANDSTILL]
+
+
+def test_the_single_topics_count_while_no_message_tells_all_of_the_body(rig: Rig) -> None:
+    rig.start()
+    rig.told("cmd_vel", twist_message(AHEAD))
+    rig.told("body", BodyState(linear=-0.25), "/body")
+    assert rig.ticked() == [AHEAD]
+    assert rig.speeds == [0.25]
+    assert rig.told("bumper", Bumper(is_left_pressed=True), "/body") == []
+    rig.told("odom", odometry(0.4), "/body")
+    rig.ticked()
+    rig.ticked()
+    assert rig.speeds == [0.25, 0.25]
+    rig.graph.leave("body")
+    rig.told("cmd_vel", twist_message(AHEAD))
+    rig.ticked()
+    assert rig.told("bumper", Bumper(is_left_pressed=True), "/body") == [Twist(-0.1, 0.0)]
+    rig.told("odom", odometry(0.4), "/body")
+    rig.ticked()
+    assert rig.speeds == pytest.approx([0.25, 0.25, 0.4])
+
+
+def test_another_node_does_not_take_the_place_of_the_body(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    rig.start()
+    rig.told("odom", odometry(0.2), "/body")
+    rig.told("body", BodyState(is_left_dropped=True, linear=0.5), "/other")
+    assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
+    rig.ticked()
+    assert rig.told("bumper", Bumper(is_left_pressed=True), "/body") == [Twist(-0.1, 0.0)]
+    assert rig.speeds == pytest.approx([0.2])
+    now[0] += 1.1
+    assert rig.told("body", BodyState(is_left_dropped=True), "/other") == [STANDSTILL]
+
+
 def test_hazards_and_a_wanted_speed_do_not_use_up_each_others_turn(rig: Rig) -> None:
     rig.start()
     rig.told("cmd_vel", twist_message(AHEAD))
-    assert rig.told("change_speed", Float32(0.4)) == [AHEAD]
+    assert rig.told("change_speed", Float32(0.15)) == [Twist(0.15, 0.05)]
     assert rig.told("bumper", Bumper(is_left_pressed=True)) == [Twist(-0.1, 0.0)]
     assert rig.told("wheel_drop", WheelDrop(is_left_dropped=True)) == [STANDSTILL]
 
@@ -245,7 +329,7 @@ def test_the_emergency_stop_holds_at_once_is_told_and_answered(rig: Rig) -> None
     assert rig.held == ["", "smoke"]
     assert rospy.get_param(EMERGENCY_PARAMETER) == "smoke"
     assert rig.ticked() == [STANDSTILL]
-    assert rig.told("cmd_vel", twist_message(AHEAD)) == [STANDSTILL]
+    assert rig.told("cmd_vel", twist_message(AHEAD)) == []
     before = len(rig.driven)
     assert rig.stop("ignored", engage=False) == "the drive is free again"
     assert rig.driven[before:] == [STANDSTILL]
@@ -394,6 +478,7 @@ def test_the_newest_message_alone_waits_and_commands_go_out_without_delay(
         "emergency_stop": {"kind": String, "queue_size": 1, "latch": True},
     }
     at_once = {
+        "body": BodyState,
         "bumper": Bumper,
         "cliff": Cliff,
         "wheel_drop": WheelDrop,

@@ -46,7 +46,16 @@ _ORDERS: Final = (
 )
 """How topics begin that give orders: a message of nothing may be one, to clean all or to stand."""
 _SENSES: Final = (
-    *("/odom", "/imu", "/bumper", "/cliff", "/wheel_drop", "/battery_state", "/dock_status"),
+    *(
+        "/body",
+        "/odom",
+        "/imu",
+        "/bumper",
+        "/cliff",
+        "/wheel_drop",
+        "/battery_state",
+        "/dock_status",
+    ),
     *("/ir_omni", "/dirt_detect", "/bin_level"),
 )
 """Topics of the body, which the simulator tells: what another node says there does not count."""

@@ -82,6 +82,12 @@ class PeriodsConfig(Frozen):
     """s of wall time from one wish for the whole map to the next, while the mission waits."""
     pictures: Positive = 0.2
     """s of wall time between two pictures of the simulated camera's stream."""
+    true_pose_wall: Positive = 0.04
+    """s of wall time between two tellings of where a simulated robot really is,"""
+    true_dirt_wall: Positive = 0.5
+    """and of the dirt that really lies in its home."""
+    cruise_speed: AtLeastOne = 4
+    """Ticks between two cruise speeds of a walk that did not change."""
 
 
 class MemoryConfig(Frozen):
@@ -143,7 +149,7 @@ class PicturesConfig(Frozen):
     """m from where it was taken."""
     turned: Positive = 0.3
     """rad from the heading at which it was taken."""
-    rest: Positive = 1.0
+    rest: Positive = 2.5
     """s of wall time between two pictures, at least: one is much work, on a fast clock too."""
 
 

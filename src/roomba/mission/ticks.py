@@ -85,7 +85,8 @@ class MissionTicks:
         self.carpet.note(senses.brush_current)
         self._job.account(senses, self.last, sweeps=self.sweeps)
         self._note_carpet(senses, np.array([self.last_place]))
-        self._count_time(senses, np.array([[senses.pose.x, senses.pose.y]]))
+        here, (x, y) = senses.pose, self.last_place
+        self._count_time(senses, np.array([np.hypot(here.x - x, here.y - y)]))
         self._notice(senses)
         step = self._act(senses)
         self.last = senses
@@ -113,7 +114,8 @@ class MissionTicks:
             self._job.bin.passed(places)
         self._note_carpet(senses, places)
         self._job.ledger.note(senses, way)
-        self._count_time(senses, places)
+        ways = np.diff(np.vstack((self.last_place, places)), axis=0)
+        self._count_time(senses, np.hypot(ways[:, 0], ways[:, 1]))
         self.last = senses
 
     def speed_limit(self, senses: Senses) -> float:
@@ -150,20 +152,20 @@ class MissionTicks:
         if self.sweeps and senses.brush_current > 0.0:
             self.carpets.note(places, is_on=self.carpet.is_on)
 
-    def _count_time(self, senses: Senses, places: NDArray[np.float64]) -> None:
-        """Count what the time since the last tick went into; each tick ended at one of ``places``.
+    def _count_time(self, senses: Senses, ways: NDArray[np.float64]) -> None:
+        """Count what the time since the last tick went into; ``ways``, float64 [ticks], m, were
+        driven from each tick to the next.
 
         A clock that was set tells nothing.
         """
-        each = (senses.now - self.last.now) / len(places)
+        each = (senses.now - self.last.now) / len(ways)
         if not 0.0 <= each <= LONGEST_TICK:
             return
-        ways = np.diff(np.vstack((self.last_place, places)), axis=0)
         waits = self._drives.driver is None and self._retries.is_waiting(senses.now)
         cleaning = self._job.cleaning
         self._job.times.note(
             self._phase,
-            np.hypot(ways[:, 0], ways[:, 1]),
+            ways,
             each,
             self.speed_limit(senses),
             is_again=cleaning is not None and cleaning.is_again,

@@ -27,7 +27,7 @@ from roomba_ros.runtime.subscriptions import subscribe
 class TurnCameraService:
     """Keeps a picture of each of five angles up to date: one every 3 s while the robot travels.
 
-    On a fast clock it takes no more than one in a second of wall time.
+    On a fast clock it takes hardly more of them by wall time.
 
     Services: ``turn_camera`` (TurnCamera: the newest picture of the angle nearest to the wish).
     Calls: ``camera/capture`` (TurnCamera) of the robot's camera.

@@ -44,7 +44,6 @@ from roomba.mission.cleaning.request import (
     Missed,
     MissReason,
 )
-from roomba.mission.docking.beams import StationBeams
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Battery
 from roomba.perception.rooms.felt_carpets import FeltCarpets
@@ -64,12 +63,6 @@ CARPETS = {getattr(CleanGoal, f"CARPETS_{way.name}"): way for way in CarpetWay}
 EDGES = {getattr(CleanGoal, f"EDGES_{order.name}"): order for order in EdgeOrder}
 KINDS = {getattr(ZoneMessage, kind.name): kind for kind in ZoneKind}
 
-_RED = 8
-_GREEN = 4
-_HALO = 1
-"""Bits of the code that Create 2's receiver has for the station's beams."""
-_BEAMS = 160
-"""Codes from this one on, but for the bits above, are of the station."""
 _LEAST_CORNERS = 3
 """Of an outline that encloses something."""
 _DRAWN = 0.003
@@ -217,19 +210,6 @@ def battery_of(message: BatteryState, voltage: float, is_docked: bool = False) -
     if not (math.isfinite(energy) and energy > 0.0):
         return Battery(level, is_docked=is_docked)
     return Battery(level, energy, is_docked)
-
-
-def beams_of(code: int) -> StationBeams:
-    """Return which beams a receiver's code stands for, as Create 2 codes them."""
-    if code & ~(_RED | _GREEN | _HALO) != _BEAMS:
-        return StationBeams()
-    return StationBeams(bool(code & _HALO), bool(code & _GREEN), bool(code & _RED))
-
-
-def code_of_beams(beams: StationBeams) -> int:
-    """Return the code that stands for beams, as Create 2 codes them; 0 for none."""
-    seen = beams.halo * _HALO + beams.green * _GREEN + beams.red * _RED
-    return _BEAMS + seen if seen else 0
 
 
 def outlines_of(message: RoomArray) -> RoomOutlines:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 from roomba_robot.msg import (
+    BodyState,
     Bumper,
     Cliff,
     DockStatus,
@@ -16,11 +18,19 @@ from roomba_robot.msg import (
 )
 from sensor_msgs.msg import Imu
 
-from roomba.geometry import Pose, Twist
-from roomba.mission.inputs.senses import EmptyingTold
-from roomba.robot.readings import CliffReading
+from roomba.geometry import Pose, Twist, wrap_angle
+from roomba.mission.docking.beams import StationBeams
+from roomba.mission.inputs.senses import Battery, EmptyingTold
+from roomba.robot.readings import CliffReading, Readings
 from roomba_ros.convert.common import pose_of, pose_of_odometry, twist_of
 from roomba_ros.convert.errors import MessageError, require_finite
+
+_RED = 8
+_GREEN = 4
+_HALO = 1
+"""Bits of the code that Create 2's receiver has for the station's beams."""
+_BEAMS = 160
+"""Codes from this one on, but for the bits above, are of the station."""
 
 
 class OdometryReading(NamedTuple):
@@ -63,6 +73,39 @@ def odometry_of(message: Odometry) -> OdometryReading:
     return OdometryReading(stamp, pose_of_odometry(message), twist_of(message.twist.twist))
 
 
+def body_of(message: BodyState, bin_capacity: float) -> Readings:
+    """Return all that the body tells but its scan; the bin holds ``bin_capacity``, g."""
+    where, moves = (message.x, message.y, message.theta), (message.linear, message.angular)
+    counts = message.dirt_detect, message.bin_level, message.brush_current
+    require_finite("a body's readings", *where, *moves, *counts, message.battery_capacity)
+    if math.isinf(message.turning):
+        raise MessageError(f"expected a turning speed, or NaN, got {message.turning:g}")
+    if not 0.0 <= message.battery <= 1.0:
+        raise MessageError(f"expected a charge from 0 to 1, got {message.battery:g}")
+    return Readings(
+        message.header.stamp.to_sec(),
+        Pose(message.x, message.y, wrap_angle(message.theta)),
+        Twist(message.linear, message.angular),
+        None if math.isnan(message.turning) else message.turning,
+        None,
+        message.is_left_pressed,
+        message.is_right_pressed,
+        CliffReading(
+            message.is_cliff_left,
+            message.is_cliff_front_left,
+            message.is_cliff_front_right,
+            message.is_cliff_right,
+        ),
+        message.is_left_dropped,
+        message.is_right_dropped,
+        beams_of(message.ir_omni),
+        Battery(message.battery, message.battery_capacity, message.is_docked),
+        message.dirt_detect,
+        message.bin_level * bin_capacity,
+        message.brush_current,
+    )
+
+
 def stamped_pose_of(message: PoseStamped) -> StampedPose:
     """Return a pose and its time."""
     return StampedPose(message.header.stamp.to_sec(), pose_of(message))
@@ -98,6 +141,19 @@ def wheel_drop_of(message: WheelDrop) -> Sides:
 def is_docked_of(message: DockStatus) -> bool:
     """Return whether the contacts of the station touch."""
     return bool(message.is_docked)
+
+
+def beams_of(code: int) -> StationBeams:
+    """Return which beams a receiver's code stands for, as Create 2 codes them."""
+    if code & ~(_RED | _GREEN | _HALO) != _BEAMS:
+        return StationBeams()
+    return StationBeams(bool(code & _HALO), bool(code & _GREEN), bool(code & _RED))
+
+
+def code_of_beams(beams: StationBeams) -> int:
+    """Return the code that stands for beams, as Create 2 codes them; 0 for none."""
+    seen = beams.halo * _HALO + beams.green * _GREEN + beams.red * _RED
+    return _BEAMS + seen if seen else 0
 
 
 def emptying_of(message: EmptyingStation) -> EmptyingTold:

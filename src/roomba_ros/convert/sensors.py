@@ -13,18 +13,19 @@ from nav_msgs.msg import OccupancyGrid
 from numpy.typing import NDArray
 from PIL import Image as Picture
 from roomba_robot.msg import (
-    Bumper as BumperMessage,
-)
-from roomba_robot.msg import (
-    Cliff as CliffMessage,
-)
-from roomba_robot.msg import (
+    BodyState,
     DockStatus,
     HazardDetection,
     HazardDetectionVector,
     Rectangle,
     SimHome,
     WheelDrop,
+)
+from roomba_robot.msg import (
+    Bumper as BumperMessage,
+)
+from roomba_robot.msg import (
+    Cliff as CliffMessage,
 )
 from roomba_robot.msg import Door as DoorMessage
 from sensor_msgs.msg import (
@@ -43,7 +44,7 @@ from roomba.world.power import BatteryState
 from roomba.world.simulator import Bumper, Cliff, Observation, Wheels
 from roomba.world.truth import DoorNow, HomeNow
 from roomba_ros.convert.common import header, map_message
-from roomba_ros.convert.readings import Sides
+from roomba_ros.convert.readings import Sides, code_of_beams
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")
 _JPEG_QUALITY = 85
@@ -52,6 +53,70 @@ _NOT_MEASURED = 1e6
 """A variance so large that no reader takes it for a measurement."""
 _UNKNOWN = -1.0
 """In the first element of a covariance: there is no such measurement."""
+
+
+def body_message(
+    now: float, seen: Observation, beams: int, bin_capacity: float, frame_id: str
+) -> BodyState:
+    """Return all that a simulated body tells but its scan.
+
+    ``beams`` is the code of what it sees of the station; the bin holds ``bin_capacity``, g.
+    """
+    where, moves, wheels = seen.odometry, seen.odometry_twist, seen.wheels
+    bumper, cliff, battery = seen.bumper, seen.cliff, seen.battery
+    return BodyState(
+        header(now, frame_id),
+        where.x,
+        where.y,
+        where.theta,
+        moves.linear,
+        moves.angular,
+        seen.angular_velocity,
+        bumper.left,
+        bumper.right,
+        cliff.left,
+        cliff.front_left,
+        cliff.front_right,
+        cliff.right,
+        wheels.dropped_left,
+        wheels.dropped_right,
+        beams,
+        battery.level,
+        battery.capacity,
+        battery.is_docked,
+        seen.grains,
+        seen.in_bin / bin_capacity,
+        seen.brush_current,
+    )
+
+
+def told_body_message(now: float, told: Readings, bin_capacity: float, frame_id: str) -> BodyState:
+    """Return all that a robot tells but its scan; ``bin_capacity`` is in g."""
+    where, moves, cliff, battery = told.odometry, told.twist, told.cliff, told.battery
+    return BodyState(
+        header(now, frame_id),
+        where.x,
+        where.y,
+        where.theta,
+        moves.linear,
+        moves.angular,
+        math.nan if told.turning is None else told.turning,
+        told.bumper_left,
+        told.bumper_right,
+        cliff.left,
+        cliff.front_left,
+        cliff.front_right,
+        cliff.right,
+        told.dropped_left,
+        told.dropped_right,
+        code_of_beams(told.beams),
+        battery.level,
+        battery.capacity,
+        battery.is_docked,
+        told.grains,
+        told.in_bin / bin_capacity,
+        told.brush_current,
+    )
 
 
 def scan_message(

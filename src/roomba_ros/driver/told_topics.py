@@ -9,7 +9,7 @@ from typing import Any, Final
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
-from roomba_robot.msg import Bumper, Cliff, DockStatus, HazardDetectionVector, WheelDrop
+from roomba_robot.msg import BodyState, Bumper, Cliff, DockStatus, HazardDetectionVector, WheelDrop
 from sensor_msgs.msg import BatteryState, LaserScan
 from std_msgs.msg import UInt16
 from tf2_msgs.msg import TFMessage
@@ -19,8 +19,7 @@ from roomba.mission.docking.beams import StationBeams
 from roomba.robot.readings import Readings
 from roomba_ros.convert.common import odometry_message, transform_message
 from roomba_ros.convert.diagnostics import line_message
-from roomba_ros.convert.mission import code_of_beams
-from roomba_ros.convert.readings import Sides
+from roomba_ros.convert.readings import Sides, code_of_beams
 from roomba_ros.convert.sensors import (
     bumper_message,
     cliff_message,
@@ -28,6 +27,7 @@ from roomba_ros.convert.sensors import (
     hazards_message,
     scan_message,
     told_battery_message,
+    told_body_message,
     told_hazards_of,
     wheel_drop_message,
 )
@@ -51,21 +51,22 @@ class _ToldTopic:
 
     def tell(self, now: float, tick: int, told: Readings) -> None:
         """Publish if it is time to."""
-        state = self.changes(told)
-        if tick % self.period and state == self.last:
+        if self.publisher.get_num_connections() == 0:
             return
-        self.last = state
-        if self.publisher.get_num_connections() > 0:
+        state = self.changes(told)
+        if tick % self.period == 0 or state != self.last:
+            self.last = state
             self.publisher.publish(self.message(now, told))
 
 
 class ToldTopics:
     """Tells what the body of a robot that people own tells.
 
-    Publishes: ``odom`` and ``/tf`` (odom -> base_link), 20 Hz; ``scan``, as it comes; and at each
-    change, but also 5 times a second, ``bumper``, ``cliff``, ``wheel_drop`` and ``ir_omni``
-    (UInt16, the station's beams as Create 2 codes them), or once a second ``hazard_detection``,
-    ``battery_state`` and ``dock_status``. ``/diagnostics`` (how its line is), 1 Hz.
+    Publishes: ``body`` (all that is told but the scan), ``odom`` and ``/tf`` (odom -> base_link),
+    20 Hz while heard; ``scan``, as it comes; and at each change, but also 5 times a second,
+    ``bumper``, ``cliff``, ``wheel_drop`` and ``ir_omni`` (UInt16, the station's beams as Create 2
+    codes them), or once a second ``hazard_detection``, ``battery_state`` and ``dock_status``.
+    ``/diagnostics`` (how its line is), 1 Hz.
     """
 
     def __init__(self, config: RobotConfig, robot: str) -> None:
@@ -74,6 +75,7 @@ class ToldTopics:
         self._odom, self._base = frame_id("odom"), frame_id("base_link")
         self._laser = frame_id("laser")
         self._ticks = 0
+        self._whole = rospy.Publisher("body", BodyState, queue_size=1, tcp_nodelay=True)
         self._odometry = rospy.Publisher("odom", Odometry, queue_size=1, tcp_nodelay=True)
         self._transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
         self._scan = rospy.Publisher("scan", LaserScan, queue_size=1, tcp_nodelay=True)
@@ -134,8 +136,13 @@ class ToldTopics:
     def tell(self, now: float, told: Readings) -> None:
         """Publish what is due; ``told`` was so at ``now``, s of the ROS clock."""
         pose, twist = told.odometry, told.twist
-        self._odometry.publish(odometry_message(now, pose, twist, self._odom, self._base))
-        self._transforms.publish([transform_message(now, pose, self._odom, self._base)])
+        if self._whole.get_num_connections() > 0:
+            capacity = self._config.brush.bin_capacity
+            self._whole.publish(told_body_message(now, told, capacity, self._odom))
+        if self._odometry.get_num_connections() > 0:
+            self._odometry.publish(odometry_message(now, pose, twist, self._odom, self._base))
+        if self._transforms.get_num_connections() > 0:
+            self._transforms.publish([transform_message(now, pose, self._odom, self._base)])
         for topic in self._topics:
             topic.tell(now, self._ticks, told)
         self._ticks += 1

@@ -30,13 +30,15 @@ from roomba_ros.runtime.subscriptions import subscribe
 from roomba_ros.senses.body_topics import BodyTopics
 
 _HEARD: Final = ("odom", "imu", "scan", "wheel_drop", "bumper", "cliff")
+_KEPT: Final = ("odom",)
+"""By the report its position node subscribes to it."""
 
 
 class LocalizationTopics:
     """Keeps the robot's place, and lets :class:`PlaceTopics` tell it.
 
-    Subscribes: ``map``, ``initialpose``, and of :class:`BodyTopics` ``odom``, ``imu``, ``scan``,
-    ``wheel_drop``, ``bumper``, ``cliff``.
+    Subscribes: ``map``, ``initialpose``, and of :class:`BodyTopics` ``odom`` always, and ``imu``,
+    ``scan``, ``wheel_drop``, ``bumper``, ``cliff``.
     Publishes: what :class:`PlaceTopics` and :class:`CalibrationTopics` tell.
     Services: ``global_localization`` (Empty: forget the place, look for it in the whole map).
     """
@@ -44,7 +46,7 @@ class LocalizationTopics:
     def __init__(self, config: RobotConfig, nodes: NodesConfig) -> None:
         """Connect nothing yet."""
         self._config, self._placing = config, nodes.placing
-        self._body = BodyTopics(config, *_HEARD)
+        self._body = BodyTopics(config, *_HEARD, kept=_KEPT)
         self._localizer: Localizer | None = None
         self._keeper: PlaceKeeper | None = None
         self._newest: Readings | None = None
@@ -153,9 +155,9 @@ class LocalizationTopics:
         for index, readings in enumerate(told):
             self._follow(keeper, localizer, readings)
             if index == 0:
-                self._heard_from = localizer.estimate.pose
+                self._heard_from = localizer.pose
         if not told:
-            self._heard_from = localizer.estimate.pose
+            self._heard_from = localizer.pose
         self._hear_people(localizer)
         localizer.pass_time(now)
         knower = mapper or localizer
@@ -172,7 +174,7 @@ class LocalizationTopics:
     def place(self) -> Pose:
         """Where the robot is by what was told and its wheels, map frame: before there is a map."""
         assert self._localizer is not None
-        return self._localizer.estimate.pose
+        return self._localizer.pose
 
     @property
     def place_heard_from(self) -> Pose:

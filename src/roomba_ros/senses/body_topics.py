@@ -1,10 +1,10 @@
-"""The topics of the robot's body: what its sensors tell, as readings."""
+"""What the robot's body tells, as readings."""
 
 from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from functools import partial
 from typing import Any, Final
@@ -25,12 +25,13 @@ from roomba.perception.calibration.lidar import CorrectedLidar
 from roomba.robot.readings import Readings, ScanReading
 from roomba_ros.convert.calibration import correction_of
 from roomba_ros.convert.localization import SAME_TIME
-from roomba_ros.convert.mission import battery_of, beams_of
+from roomba_ros.convert.mission import battery_of
 from roomba_ros.convert.mounts import Mounts, transforms_of
 from roomba_ros.convert.readings import (
     GyroReading,
     OdometryReading,
     Sides,
+    beams_of,
     bumper_of,
     cliff_of,
     emptying_of,
@@ -44,32 +45,42 @@ from roomba_ros.convert.values import data_of, number_of
 from roomba_ros.runtime.node import frame_id
 from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender
 from roomba_ros.runtime.subscriptions import subscribe
+from roomba_ros.senses.body_source import IN_BODY, BodySource
 from roomba_ros.senses.waiting_scans import WaitingScans
 
 _KEPT: Final = 40
-"""Messages of odometry, and of the gyro, that wait for the next tick: two seconds of them."""
+"""Messages of the body, of odometry and of the gyro that wait for the next tick: two seconds."""
 _QUEUE: Final = 10
 _OF_ANY: Final = frozenset(("scan",))
 """Topics on which several nodes may tell: a robot may have two lidars, each with its frame."""
 
 
 class BodyTopics:
-    """Makes readings of what the body tells: one for each message of odometry.
+    """Makes readings of what the body tells: one for each message of it, or of odometry.
 
     Each has the newest of all other sensors; a scan comes with the first odometry of its time or
     later. There is one body: of two nodes that tell its state, the first counts until it is silent.
 
-    Subscribes: those of ``topics``, out of ``odom``, ``imu``, ``bumper``, ``cliff``,
-    ``wheel_drop``, ``battery_state``, ``dock_status``, ``ir_omni``, ``dirt_detect``, ``bin_level``,
-    ``brush_current``, ``emptying_station`` and ``scan``, with ``/tf_static`` (where the lidar
-    is mounted) and ``lidar_correction`` (by what that is moved, as the node that finds the robot's
-    place measured it).
+    Subscribes: ``body``, and without that those of ``topics`` out of ``odom``, ``imu``, ``bumper``,
+    ``cliff``, ``wheel_drop``, ``battery_state``, ``dock_status``, ``ir_omni``, ``dirt_detect``,
+    ``bin_level`` and ``brush_current``; those out of ``emptying_station`` and ``scan``, with
+    ``/tf_static`` (where the lidar is mounted) and ``lidar_correction`` (by what that is moved, as
+    the node that finds the robot's place measured it).
     """
 
-    def __init__(self, config: RobotConfig, *topics: str) -> None:
-        """Connect nothing yet."""
-        self._config, self._topics = config, topics
+    def __init__(self, config: RobotConfig, *topics: str, kept: Collection[str] = ()) -> None:
+        """Connect nothing yet; ``kept`` single topics are subscribed to beside ``body``, too."""
+        self._config, self._topics, self._kept = config, topics, kept
         self._lock = threading.Lock()
+        self._senders = OneSender(SELDOM_SILENT_AFTER)
+        self._source = BodySource(
+            self._on_body,
+            self._subscribe_singles,
+            self._senders,
+            config.brush.bin_capacity,
+            _QUEUE,
+        )
+        self._bodies: deque[Readings] = deque(maxlen=_KEPT)
         self._odometry: deque[OdometryReading] = deque(maxlen=_KEPT)
         self._gyro: deque[GyroReading] = deque(maxlen=_KEPT)
         self._scans = WaitingScans()
@@ -82,11 +93,31 @@ class BodyTopics:
         """Connect."""
         mounts = Mounts()
         decoder = ScanDecoder.on_robot(mounts, frame_id("base_link"))
+        if "scan" in self._topics:
+            subscribe("/tf_static", TFMessage, transforms_of, mounts.add, queue_size=_QUEUE)
+            self._subscribe("scan", LaserScan, decoder.decode, self._scans.put)
+        if "emptying_station" in self._topics:
+            self._subscribe(
+                "emptying_station",
+                EmptyingStation,
+                emptying_of,
+                lambda told: self._note(emptying=told),
+            )
+        if "lidar_correction" in self._topics:
+            self._subscribe("lidar_correction", Pose2D, correction_of, self._on_correction)
+        self._subscribe_to(self._kept)
+        self._source.start()
+
+    def _subscribe_singles(self) -> list[rospy.Subscriber]:
+        """Subscribe to what ``body`` tells as well."""
+        return self._subscribe_to([name for name in self._topics if name not in self._kept])
+
+    def _subscribe_to(self, topics: Collection[str]) -> list[rospy.Subscriber]:
+        """Subscribe to single topics, out of those of ``body``."""
         battery = partial(battery_of, voltage=self._config.battery.nominal_voltage)
         known: dict[str, tuple[type, Callable[[Any], Any], Callable[[Any], object]]] = {
             "odom": (Odometry, odometry_of, self._on_odometry),
             "imu": (Imu, turning_of, self._on_gyro),
-            "scan": (LaserScan, decoder.decode, self._scans.put),
             "bumper": (Bumper, bumper_of, self._on_bumper),
             "cliff": (Cliff, cliff_of, lambda cliff: self._note(cliff=cliff)),
             "wheel_drop": (WheelDrop, wheel_drop_of, self._on_wheel_drop),
@@ -96,22 +127,31 @@ class BodyTopics:
             "dirt_detect": (UInt16, data_of, lambda count: self._note(grains=float(count))),
             "bin_level": (Float32, number_of, self._on_bin),
             "brush_current": (Float32, number_of, lambda told: self._note(brush_current=told)),
-            "emptying_station": (
-                EmptyingStation,
-                emptying_of,
-                lambda told: self._note(emptying=told),
-            ),
-            "lidar_correction": (Pose2D, correction_of, self._on_correction),
         }
-        if "scan" in self._topics:
-            subscribe("/tf_static", TFMessage, transforms_of, mounts.add, queue_size=_QUEUE)
-        for topic in self._topics:
-            kind, convert, take = known[topic]
-            hear = partial(self._hear, topic, take)
-            senders = None if topic in _OF_ANY else OneSender(SELDOM_SILENT_AFTER)
-            subscribe(
-                topic, kind, convert, hear, queue_size=_QUEUE, tcp_nodelay=True, senders=senders
-            )
+        return [self._subscribe(name, *known[name]) for name in topics if name in known]
+
+    def _subscribe(
+        self,
+        topic: str,
+        kind: type,
+        convert: Callable[[Any], Any],
+        take: Callable[[Any], object],
+    ) -> rospy.Subscriber:
+        return subscribe(
+            topic,
+            kind,
+            convert,
+            partial(self._hear, topic, take),
+            queue_size=_QUEUE,
+            tcp_nodelay=True,
+            senders=self._senders_of(topic),
+        )
+
+    def _senders_of(self, topic: str) -> OneSender | None:
+        """Return which node may tell on a topic; None: any."""
+        if topic in _OF_ANY:
+            return None
+        return self._senders if topic == "odom" else OneSender(SELDOM_SILENT_AFTER)
 
     def missing(self, *topics: str) -> tuple[str, ...]:
         """Return those of the topics of which no message was heard yet."""
@@ -119,22 +159,44 @@ class BodyTopics:
 
     def take(self) -> list[Readings]:
         """Return the readings since the last call, in the order of time."""
+        self._source.follow()
+        told = self._whole() if self._source.is_whole else self._joined()
+        if told:
+            told[-1] = self._with_scan(told[-1])
+        return told
+
+    def _whole(self) -> list[Readings]:
+        """Return what came by messages that tell all of the body."""
+        with self._lock:
+            told = list(self._bodies)
+            self._bodies.clear()
+            self._odometry.clear()
+            emptying = self._others.get("emptying")
+        if emptying is not None:
+            told = [replace(each, emptying=emptying) for each in told]
+        return told
+
+    def _joined(self) -> list[Readings]:
+        """Return what came by single topics: odometry, each with the newest of the others."""
         with self._lock:
             told, gyro = list(self._odometry), list(self._gyro)
             others = {**self._others, "battery": self._battery}
             self._odometry.clear()
-        newest = told[-1] if told else None
         return [
             Readings(
                 time=each.stamp,
                 odometry=each.pose,
                 twist=each.twist,
                 turning=_turning_at(each.stamp, gyro),
-                scan=self._scan_by(each.stamp) if each is newest else None,
                 **others,
             )
             for each in told
         ]
+
+    def _with_scan(self, newest: Readings) -> Readings:
+        """Return readings with the scan that came with them, if one is new."""
+        scan = self._scan_by(newest.time)
+        return newest if scan is None else replace(newest, scan=scan)
 
     def _scan_by(self, stamp: float) -> ScanReading | None:
         """Return the newest scan of which all beams were measured by a time, s, if one is new.
@@ -161,6 +223,11 @@ class BodyTopics:
     def _note(self, **values: Any) -> None:
         with self._lock:
             self._others.update(values)
+
+    def _on_body(self, told: Readings) -> None:
+        with self._lock:
+            self._bodies.append(told if told.time else replace(told, time=rospy.get_time()))
+        self._heard |= IN_BODY
 
     def _on_odometry(self, told: OdometryReading) -> None:
         with self._lock:

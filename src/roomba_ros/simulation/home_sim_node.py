@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from functools import partial
+from itertools import groupby
 from pathlib import Path
 
 import rospy
@@ -71,10 +72,10 @@ class HomeSimNode:
     """Steps the world and publishes what the robot's drive and sensors say.
 
     Publishes: ``/clock`` (20 Hz), ``map`` (latched), ``station_pose`` (PoseStamped, latched: where
-    the docked robot stands on that map, its nose to the station), ``odom`` (20 Hz, by the wheel
-    encoders), ``/tf`` (while heard: odom -> base_link, and of that the wheels), ``/tf_static``
-    (where the sensors are on the body), and what :class:`SensorTopics`, :class:`StationLink`,
-    :class:`CameraTopics` and :class:`TruthTopics` tell.
+    the docked robot stands on that map, its nose to the station), ``odom`` (20 Hz while heard, by
+    the wheel encoders), ``/tf`` (while heard: odom -> base_link, and of that the wheels),
+    ``/tf_static`` (where the sensors are on the body), and what :class:`SensorTopics`,
+    :class:`StationLink`, :class:`CameraTopics` and :class:`TruthTopics` tell.
     Subscribes: what :class:`DriveLink` hears (``cmd_vel_out``, ``emergency_stop``), and
     :class:`StationLink` (``emptying_wanted``); ``pose``
     (PoseStamped) and the ``progress`` (Time) of :data:`progress.NODES`: a robot that is late, on a
@@ -153,9 +154,7 @@ class HomeSimNode:
         with self._lock:
             self._simulator.max_speed = max_speed
             self._station.step(self._timing.tick)
-            step = self._timing.world_step
-            for _ in range(self._timing.steps_per_tick):
-                self._simulator.advance(self._drive.step(step), step, 1)
+            self._advance()
             observation = self._simulator.observe()
             self._clock += self._nanoseconds
             now = self._told = self._now()
@@ -163,13 +162,16 @@ class HomeSimNode:
         self._ticks += 1
         self._publish(now, observation)
 
+    def _advance(self) -> None:
+        """Let a tick pass; a command may become too old on its way."""
+        step = self._timing.world_step
+        twists = [self._drive.step(step) for _ in range(self._timing.steps_per_tick)]
+        for twist, steps in groupby(twists):
+            self._simulator.advance(twist, step, len(list(steps)))
+
     def _publish(self, now: float, observation: Observation) -> None:
-        odometry = observation.odometry
-        self._odometry.publish(
-            odometry_message(
-                now, odometry, observation.odometry_twist, self._odom_frame, self._base_frame
-            )
-        )
+        if self._odometry.get_num_connections() > 0:
+            self._tell_odometry(now, observation)
         if self._transforms.get_num_connections() > 0:
             self._tell_transforms(now, observation)
         self._sensors.tell(now, self._ticks, observation)
@@ -178,6 +180,12 @@ class HomeSimNode:
         if self._owns_clock:
             # Last: a node that ticks by it mostly has what was sensed. Topics have no order.
             self._clock_publisher.publish(rospy.Time(nsecs=self._clock))
+
+    def _tell_odometry(self, now: float, observation: Observation) -> None:
+        place, twist = observation.odometry, observation.odometry_twist
+        self._odometry.publish(
+            odometry_message(now, place, twist, self._odom_frame, self._base_frame)
+        )
 
     def _tell_transforms(self, now: float, observation: Observation) -> None:
         place = observation.odometry
@@ -234,7 +242,7 @@ class HomeSimNode:
         self._camera = CameraTopics(
             self._simulator, self._config.camera, self._nodes.periods.pictures, self._lock
         )
-        self._truth = TruthTopics(self._simulator)
+        self._truth = TruthTopics(self._simulator, self._nodes.periods)
         self._services = SimServices(self._simulator, self._lock)
         self._drive.start()
         self._station.start()

@@ -8,7 +8,7 @@ from typing import Any
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
-from roomba_robot.msg import Bumper, Cliff, DockStatus, HazardDetectionVector, WheelDrop
+from roomba_robot.msg import BodyState, Bumper, Cliff, DockStatus, HazardDetectionVector, WheelDrop
 from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
 from std_msgs.msg import Float32, UInt16
 
@@ -18,6 +18,7 @@ from roomba.world.health import health_of
 from roomba.world.simulator import Observation, Simulator
 from roomba_ros.convert.sensors import (
     battery_message,
+    body_message,
     bumper_message,
     cliff_message,
     diagnostics_message,
@@ -47,18 +48,19 @@ class _Topic:
 
     def tell(self, now: float, tick: int, seen: Observation) -> None:
         """Publish if it is time to."""
-        state = self.changes(seen) if self.changes else None
-        if tick % self.period and state == self.told:
+        if self.publisher.get_num_connections() == 0:
             return
-        self.told = state
-        if self.publisher.get_num_connections() > 0:
+        state = self.changes(seen) if self.changes else None
+        if tick % self.period == 0 or state != self.told:
+            self.told = state
             self.publisher.publish(self.message(now, seen))
 
 
 class SensorTopics:
     """Tells what the sensors sense.
 
-    Publishes: ``scan`` as often as the lidar has one; ``dirt_raw`` (Float32, g under the body) and
+    Publishes: ``scan`` as often as the lidar has one; ``body`` (all that the others tell to a
+    robot's brain, and odometry), 20 Hz; ``dirt_raw`` (Float32, g under the body) and
     ``brush_current`` (Float32, A), 10 Hz; ``imu``, ``joint_states`` and ``dirt_detect`` (UInt16,
     grains per second), 20 Hz; ``bin_level`` (Float32, 0..1), 1 Hz and when it is emptied; and at
     each change, but also 5 times a second, ``bumper``, ``cliff``, ``wheel_drop`` and ``ir_omni``
@@ -72,10 +74,17 @@ class SensorTopics:
         self._config, self._simulator = config, simulator
         self._scans = 0
         base, laser, gyro = frame_id("base_link"), frame_id("laser"), frame_id("imu_link")
+        odom = frame_id("odom")
         body, capacity, truth = config.body, config.brush.bin_capacity, config.simulation
         self._scan = rospy.Publisher("scan", LaserScan, queue_size=1, tcp_nodelay=True)
         self._laser = laser
         self._topics = [
+            _topic(
+                "body",
+                BodyState,
+                1,
+                lambda now, seen: body_message(now, seen, code_of(seen.infrared), capacity, odom),
+            ),
             _topic(
                 "bumper",
                 Bumper,

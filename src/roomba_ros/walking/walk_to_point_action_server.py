@@ -71,9 +71,9 @@ class WalkToPointActionServer:
     RViz's 2D Nav Goal and other programs know; there the robot also turns to the heading that was
     asked for.
 
-    Publishes: ``change_position`` (RobotPosition) and ``change_speed`` (Float32, m/s) at 20 Hz
-    while it walks, ``change_heading`` (Float32, rad, 20 Hz while it turns at the end), ``plan``
-    (Path, latched), ``walk_to_point/{feedback,result,status}``,
+    Publishes: ``change_position`` (RobotPosition, 20 Hz) and ``change_speed`` (Float32, m/s, at a
+    change and 5 Hz) while it walks, ``change_heading`` (Float32, rad, 20 Hz while it turns at the
+    end), ``plan`` (Path, latched), ``walk_to_point/{feedback,result,status}``,
     ``move_base/{goal,feedback,result,status}``.
     Subscribes: ``map``, ``walk_to_point/{goal,cancel}``, ``move_base/{goal,cancel}``,
     ``move_base_simple/goal`` (PoseStamped: becomes a goal of ``move_base``), and what
@@ -103,6 +103,7 @@ class WalkToPointActionServer:
         self._goals: deque[WalkGoal] = deque()
         self._cancels: deque[GoalIdentity] = deque()
         self._job: _Job | None = None
+        self._cruise_speed, self._speed_ticks = math.nan, 0
         self._change_position = rospy.Publisher(
             "change_position", RobotPosition, queue_size=1, tcp_nodelay=True
         )
@@ -218,6 +219,7 @@ class WalkToPointActionServer:
         duration = expected_duration(walk.path, self._parameters.values.robot_max_speed)
         goal.accept(f"{walk.path.length:.2f} m to walk")
         self._job = _Job(goal, walk, goal.feedback_period(duration), now)
+        self._cruise_speed = math.nan
         self._show_plan(now, walk)
 
     def _obey_cancels(self) -> None:
@@ -241,7 +243,7 @@ class WalkToPointActionServer:
         if job.walk.path is not path:
             rospy.loginfo("a new way: %.2f m to walk", job.walk.path.length)
             self._show_plan(senses.now, job.walk)
-        self._change_speed.publish(step.cruise_speed)
+        self._tell_cruise_speed(step.cruise_speed)
         # While its place is not known the setpoint moves nothing, but tells that the walk goes on.
         self._change_position.publish(RobotPosition(*step.setpoint))
         if step.state is WalkState.ASTRAY:
@@ -259,6 +261,13 @@ class WalkToPointActionServer:
         else:
             rospy.logwarn("walk given up: %s", step.reason)
             job.goal.given_up(time_spent, step.reason)
+
+    def _tell_cruise_speed(self, speed: float) -> None:
+        """Tell the cruise speed at a change, and now and then: its hearers go by the last one."""
+        self._speed_ticks += 1
+        if speed != self._cruise_speed or self._speed_ticks >= self._nodes.periods.cruise_speed:
+            self._cruise_speed, self._speed_ticks = speed, 0
+            self._change_speed.publish(speed)
 
     def _turn(self, job: _Job, senses: Senses, turned_by: float) -> None:
         """Turn on the spot to the heading that the goal wants."""

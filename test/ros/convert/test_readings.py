@@ -2,23 +2,39 @@
 
 import math
 from collections.abc import Callable
-from typing import Any
+from dataclasses import asdict, replace
+from functools import partial
+from typing import Any, Final
 
 import pytest
 from fixtures.nodes.malformed import filled
+from fixtures.robots.missions import HOME
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from hypothesis import given
 from hypothesis import strategies as st
 from nav_msgs.msg import Odometry
-from roomba_robot.msg import Bumper, Cliff, Localization, RobotPosition, VacuumState, WheelDrop
+from roomba_robot.msg import (
+    BodyState,
+    Bumper,
+    Cliff,
+    Localization,
+    RobotPosition,
+    VacuumState,
+    WheelDrop,
+)
 from rospy import Time
 from std_msgs.msg import Float32, String
 from std_msgs.msg import Time as TimeMessage
 
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
+from roomba.headless.body import readings_of
+from roomba.mission.docking.beams import StationBeams
+from roomba.mission.inputs.senses import Battery
 from roomba.perception.localization.estimate import Knowledge
-from roomba.robot.readings import CliffReading
+from roomba.robot.readings import CliffReading, Readings
+from roomba.world.engine.state.arrays import code_of
+from roomba.world.simulator import Simulator
 from roomba_ros.convert.client import BATTERY_NOT_HEARD, doubt_of, vacuum_of
 from roomba_ros.convert.common import (
     path_of,
@@ -37,6 +53,7 @@ from roomba_ros.convert.readings import (
     OdometryReading,
     Sides,
     StampedPose,
+    body_of,
     bumper_of,
     cliff_of,
     emptying_of,
@@ -46,9 +63,13 @@ from roomba_ros.convert.readings import (
     turning_of,
     wheel_drop_of,
 )
+from roomba_ros.convert.sensors import body_message, told_body_message
 from roomba_ros.convert.values import data_of, duty_of, number_of, speed_of, time_of
 
+BIN: Final = 300.0
+"""g; what a full bin holds."""
 CONVERTED: list[tuple[str, Callable[[Any], object]]] = [
+    ("roomba_robot/BodyState", partial(body_of, bin_capacity=BIN)),
     ("geometry_msgs/Twist", twist_of),
     ("geometry_msgs/PoseStamped", pose_of),
     ("geometry_msgs/PoseStamped", pose_in_map),
@@ -219,3 +240,55 @@ def test_sides_are_told_apart() -> None:
 def test_a_battery_that_was_not_heard_is_no_number_for_clients() -> None:
     assert math.isnan(vacuum_of(VacuumState(battery=BATTERY_NOT_HEARD)).battery)
     assert vacuum_of(VacuumState(battery=0.5)).battery == 0.5
+
+
+TOLD = Readings(
+    12.5,
+    Pose(1.0, -2.0, 0.5),
+    Twist(0.2, -0.3),
+    -0.25,
+    bumper_left=True,
+    cliff=CliffReading(front_left=True, right=True),
+    dropped_right=True,
+    beams=StationBeams(halo=True, red=True),
+    battery=Battery(0.75, 26.0, is_docked=True),
+    grains=40.0,
+    in_bin=0.25 * BIN,
+    brush_current=0.5,
+)
+OTHER_SIDES = replace(
+    TOLD,
+    bumper_left=False,
+    bumper_right=True,
+    cliff=CliffReading(left=True, front_right=True),
+    dropped_left=True,
+    dropped_right=False,
+    beams=StationBeams(green=True),
+)
+
+
+@pytest.mark.parametrize("told", [TOLD, OTHER_SIDES, replace(TOLD, turning=None)])
+def test_what_a_body_tells_in_one_message_is_read_as_it_was_told(told: Readings) -> None:
+    message = told_body_message(told.time, told, BIN, "odom")
+    assert message.header.frame_id == "odom"
+    assert asdict(body_of(message, BIN)) == asdict(told)
+
+
+def test_what_a_simulated_body_tells_in_one_message_is_what_its_sensors_say() -> None:
+    simulator = Simulator(HOME, seed=1)
+    for _ in range(20):
+        simulator.step(Twist(-0.2, 0.3), 0.05)
+    seen = simulator.observe()
+    told = body_of(body_message(1.0, seen, code_of(seen.infrared), BIN, "odom"), BIN)
+    expected = replace(readings_of(seen, None), time=1.0, in_bin=told.in_bin)
+    assert asdict(told) == asdict(expected)
+    assert told.in_bin == pytest.approx(seen.in_bin)
+
+
+def test_a_charge_that_is_none_and_a_bin_without_a_number_are_refused() -> None:
+    with pytest.raises(MessageError, match=r"a charge from 0 to 1, got 1\.5"):
+        body_of(BodyState(battery=1.5), BIN)
+    with pytest.raises(MessageError, match="a turning speed, or NaN, got inf"):
+        body_of(BodyState(turning=math.inf), BIN)
+    with pytest.raises(MessageError, match="a body's readings of finite numbers"):
+        body_of(BodyState(bin_level=math.nan), BIN)

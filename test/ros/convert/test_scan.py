@@ -160,3 +160,7 @@ def test_a_frame_of_another_tree_is_not_on_the_robot() -> None:
     mounts.add([transform_of(mount_message("/base_link", "/laser", (0.2, 0.1, 0.3)))])
     assert mounts.mount("base_link", "laser") == Mount(Pose(0.2, 0.1, 0.0))
     assert mounts.mount("base_link", "camera") is None
+    mounts.add([transform_of(mount_message("base_link", "camera", (0.1, 0.0, 0.2)))])
+    assert mounts.mount("base_link", "camera") == Mount(Pose(0.1, 0.0, 0.0))
+    mounts.add([transform_of(mount_message("base_link", "camera", (0.3, 0.0, 0.2)))])
+    assert mounts.mount("base_link", "camera") == Mount(Pose(0.3, 0.0, 0.0))

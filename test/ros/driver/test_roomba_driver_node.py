@@ -15,11 +15,12 @@ from fixtures.processes.programs import Program
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from roomba_robot.msg import Bumper, Cliff, DockStatus, HazardDetectionVector, WheelDrop
+from roomba_robot.msg import BodyState, Bumper, Cliff, DockStatus, HazardDetectionVector, WheelDrop
 from sensor_msgs.msg import BatteryState, LaserScan
 from std_msgs.msg import String, UInt16
 
 from roomba.drivers.line import SerialLine
+from roomba_ros.convert.readings import body_of
 
 NODE = "/roomba_driver_node"
 AHEAD = Twist()
@@ -79,6 +80,9 @@ def test_it_tells_what_the_simulated_body_tells_and_drives(graph: RosGraph, tmp_
     assert probe.next("/odom", Odometry).header.stamp.to_sec() - scan.header.stamp.to_sec() > 0.0
     assert sum(map(math.isfinite, scan.ranges)) > 100
     assert not probe.next("/bumper", Bumper).is_left_pressed
+    body = body_of(probe.next("/body", BodyState), 1.0)
+    assert (body.battery.is_docked, body.bumps, body.turning) == (True, False, None)
+    assert body.battery.level == pytest.approx(battery.percentage, abs=0.02)
     assert not probe.next("/cliff", Cliff).is_cliff_left
     assert not probe.next("/wheel_drop", WheelDrop).is_left_dropped
     assert probe.next("/hazard_detection", HazardDetectionVector).detections == []

@@ -35,7 +35,6 @@ from roomba.time_spent import TimeSpent
 from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 from roomba_ros.convert.mission import (
     battery_of,
-    beams_of,
     coverage_message,
     dirt_message,
     outlines_of,
@@ -47,6 +46,7 @@ from roomba_ros.convert.mission import (
     zones_markers,
     zones_message,
 )
+from roomba_ros.convert.readings import beams_of
 from roomba_ros.mission.home import GROWING, KnownHome
 from roomba_ros.senses.heard_place import moved
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 
 import pytest
 from fixtures.nodes.lockstep import Lockstep
 from nav_msgs.msg import Odometry
-from roomba_robot.msg import Bumper, Cliff, DockStatus, EmptyingStation, WheelDrop
+from roomba_robot.msg import BodyState, Bumper, Cliff, DockStatus, EmptyingStation, WheelDrop
 from rospy import Time
 from sensor_msgs.msg import BatteryState, Imu, LaserScan
 from std_msgs.msg import Float32, UInt16
@@ -66,6 +67,47 @@ def test_each_odometry_is_a_reading_with_the_gyro_of_its_time(ros: Lockstep) -> 
     assert [each.turning for each in readings] == [0.2, 0.3, None]
     assert readings[0].twist == Twist(0.2, 0.1)
     assert heard.take() == []
+
+
+def whole(stamp: float, **told: float) -> BodyState:
+    message = BodyState(battery=0.5, battery_capacity=26.0, turning=math.nan, **told)
+    message.header.stamp = Time.from_sec(stamp)
+    return message
+
+
+def test_each_message_that_tells_all_is_a_reading_and_single_topics_count_no_more(
+    ros: Lockstep,
+) -> None:
+    heard = body("odom", "imu", "bumper", "scan", "emptying_station")
+    ros.publish("/bumper", Bumper(is_left_pressed=True))
+    ros.publish("/emptying_station", EmptyingStation(is_at_work=True, bag=0.25))
+    ros.publish("/odom", moved(10.0, x=9.0))
+    ros.publish("/scan", scanned(10.0))
+    for stamp in (10.0, 10.05):
+        ros.publish("/body", whole(stamp, x=stamp, linear=0.2))
+    first, last = heard.take()
+    assert [first.time, last.time] == [10.0, 10.05]
+    assert [first.odometry, last.odometry] == [Pose(10.0), Pose(10.05)]
+    assert last.twist == Twist(0.2)
+    assert (first.scan, first.bumps, first.turning) == (None, False, None)
+    assert last.scan is not None
+    assert last.emptying == EmptyingTold(is_at_work=True, bag=0.25)
+    assert heard.missing("odom", "imu", "bumper", "scan") == ()
+    assert heard.take() == []
+    ros.publish("/odom", moved(10.1))
+    assert heard.take() == []
+    ros.publish("/body", whole(0.0))
+    assert heard.take()[0].time == ros.now
+
+
+def test_single_topics_count_again_when_no_message_tells_all(ros: Lockstep) -> None:
+    heard = body("odom")
+    ros.publish("/body", whole(10.0), "/body")
+    heard.take()
+    ros.leave("/body")
+    assert heard.take() == []
+    ros.publish("/odom", moved(10.05), "/body")
+    assert [each.time for each in heard.take()] == [10.05]
 
 
 def test_odometry_without_a_stamp_is_of_now(ros: Lockstep) -> None:

@@ -16,6 +16,7 @@ from fixtures.probe import Probe
 from fixtures.waiting import wait_until
 from PIL import Image as Picture
 from roomba_robot.msg import (
+    BodyState,
     Bumper,
     Cliff,
     DockStatus,
@@ -36,9 +37,12 @@ from tf2_msgs.msg import TFMessage
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
-from roomba.geometry import Pose
+from roomba.geometry import Pose, Twist
+from roomba.mission.docking.beams import StationBeams
+from roomba.mission.inputs.senses import Battery
 from roomba.world.layers.layer import load_home
 from roomba.world.lidar import Lidar
+from roomba_ros.convert.readings import body_of
 from roomba_ros.runtime.parameters import package_folder
 
 DESCRIPTION = (package_folder() / "srv" / "InjectFault.srv").read_text(encoding="utf-8")
@@ -92,6 +96,11 @@ def test_each_sensor_tells_in_the_messages_of_its_kind(apartment: RosGraph) -> N
     assert probe.next("/ir_omni", UInt16).data == 160 + 8 + 4 + 1
     assert probe.next("/bin_level", Float32).data == 0.0
     assert probe.next("/brush_current", Float32).data == 0.0
+    told = body_of(probe.next("/body", BodyState), 1.0)
+    assert told.battery == Battery(1.0, 26.0, is_docked=True)
+    assert told.beams == StationBeams(halo=True, green=True, red=True)
+    assert told.twist == Twist()
+    assert probe.newest["/body"].header.frame_id == "odom"
 
     before = probe.next("/joint_states", JointState)
     assert before.name == ["wheel_left_joint", "wheel_right_joint"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left, bisect_right
 
 import numpy as np
 
@@ -10,6 +11,8 @@ from roomba.configuration.loops import WalkConfig
 from roomba.geometry import Pose
 from roomba.planning.path.planner import Path
 
+_SAME = 1e-9
+"""m; a corner that is so little behind the robot is where it is."""
 _SEARCH_AHEAD = 0.6
 """m; window of the path, from the robot's last place on, in which its place is searched."""
 
@@ -22,8 +25,8 @@ class PathFollower:
         self._path = path
         self._config = config
         self._along = 0.0
-        self._corners = path.stations[1:-1]
-        self._angles = np.abs(path.corner_angles[1:-1])
+        self._corners: list[float] = path.stations[1:-1].tolist()
+        self._angles: list[float] = np.abs(path.corner_angles[1:-1]).tolist()
 
     @property
     def along(self) -> float:
@@ -48,21 +51,23 @@ class PathFollower:
     def _carrot(self, pose: Pose) -> float:
         """Return how far along the path the setpoint is: ahead, but not beyond a sharp corner."""
         carrot = min(self._along + self._config.lookahead, self._path.length)
-        for station, angle in zip(self._corners, self._angles, strict=True):
-            if station > carrot:
-                break
-            if angle > self._config.sharp_corner and station > self._along - 1e-9:
-                corner = self._path.point_at(float(station))
-                if pose.distance_to(*corner) > self._config.corner_reached:
-                    return float(station)
+        first = bisect_right(self._corners, self._along - _SAME)
+        for corner in range(first, bisect_right(self._corners, carrot)):
+            station = self._corners[corner]
+            if self._angles[corner] > self._config.sharp_corner:
+                off = pose.distance_to(*self._path.point_at(station))
+                if off > self._config.corner_reached:
+                    return station
         return carrot
 
     def _corner_speed(self, max_speed: float) -> float:
         """Return the fastest speed from which all corners ahead can be taken, m/s."""
-        ahead = self._corners - self._along
-        angles = self._angles[ahead >= 0.0]
-        ahead = ahead[ahead >= 0.0]
-        share = np.minimum(angles / (0.5 * math.pi), 1.0)
-        through = max_speed - (max_speed - min(self._config.corner_speed, max_speed)) * share
-        allowed = np.sqrt(through**2 + 2.0 * self._config.braking * ahead)
-        return max(self._config.slowest, float(allowed.min(initial=max_speed)))
+        slower = max_speed - min(self._config.corner_speed, max_speed)
+        twice_braking, allowed = 2.0 * self._config.braking, max_speed
+        for corner in range(bisect_left(self._corners, self._along), len(self._corners)):
+            gained = twice_braking * (self._corners[corner] - self._along)
+            if gained >= max_speed * max_speed:
+                break
+            through = max_speed - slower * min(self._angles[corner] / (0.5 * math.pi), 1.0)
+            allowed = min(allowed, math.sqrt(through * through + gained))
+        return max(self._config.slowest, allowed)

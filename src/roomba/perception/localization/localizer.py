@@ -233,6 +233,11 @@ class Localizer:
         self._search_for(reason, None)
 
     @property
+    def pose(self) -> Pose:
+        """Where the robot is taken to be, map frame."""
+        return self._tracker.pose
+
+    @property
     def estimate(self) -> Estimate:
         """What is known now."""
         tracker = self._tracker

@@ -71,18 +71,30 @@ class Mounts:
     def __init__(self) -> None:
         """Know nothing yet."""
         self._parents: dict[str, tuple[str, NDArray[np.float64]]] = {}
+        self._changes = 0
+        self._found: tuple[tuple[int, str, str], Mount | None] = ((0, "", ""), None)
 
     def add(self, transforms: Iterable[FrameTransform]) -> None:
         """Learn where frames are in others."""
         for transform in transforms:
             self._parents[transform.child] = (transform.parent, transform.matrix)
+        self._changes += 1
 
     def knows(self, frame: str) -> bool:
         """Whether it is known where a frame is."""
         return frame_name(frame) in self._parents
 
     def mount(self, base: str, frame: str) -> Mount | None:
-        """Return where ``frame`` is on the robot, whose frame is ``base``; None if not known."""
+        """Return where ``frame`` is on the robot, whose frame is ``base``; None if not known.
+
+        It is asked for each scan of a lidar, and found for the first one.
+        """
+        asked, found = (self._changes, base, frame), self._found
+        if found[0] != asked:
+            found = self._found = (asked, self._find(base, frame))
+        return found[1]
+
+    def _find(self, base: str, frame: str) -> Mount | None:
         root, place = self._from_root(frame_name(frame))
         base_root, base_place = self._from_root(frame_name(base))
         if root != base_root:

@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrap_angles
+
+
+class _Leg(NamedTuple):
+    """A straight piece: where it begins, as arc length and as a point, m, and its direction."""
+
+    start: float
+    x: float
+    y: float
+    length: float
+    ahead_x: float
+    ahead_y: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,10 +48,23 @@ class Path:
         lengths = np.hypot(self._legs[:, 0], self._legs[:, 1])
         return np.concatenate(([0.0], np.cumsum(lengths)))
 
+    @cached_property
+    def _straights(self) -> list[_Leg]:
+        """The legs as numbers: a robot on a path looks at few of them, where arrays take longer."""
+        lengths = np.diff(self.stations)
+        directions = self._legs / lengths[:, None]
+        rows = np.column_stack((self.stations[:-1], self.points[:-1], lengths, directions))
+        return [_Leg(*row) for row in rows.tolist()]
+
+    @cached_property
+    def _begins(self) -> list[float]:
+        """Where the legs begin, and where the path ends, m along it."""
+        return [float(station) for station in self.stations]
+
     @property
     def length(self) -> float:
         """Length of the whole path, m."""
-        return float(self.stations[-1])
+        return self._begins[-1]
 
     @cached_property
     def corner_angles(self) -> NDArray[np.float64]:
@@ -49,9 +76,12 @@ class Path:
 
     def point_at(self, s: float) -> tuple[float, float]:
         """Return the (x, y), m, at arc length ``s``; before the start and past the end: the end."""
-        x = np.interp(s, self.stations, self.points[:, 0])
-        y = np.interp(s, self.stations, self.points[:, 1])
-        return float(x), float(y)
+        if not 0.0 < s < self.length:
+            x, y = self.points[0 if s <= 0.0 else -1].tolist()
+            return x, y
+        leg = self._straights[bisect_right(self._begins, s) - 1]
+        along = s - leg.start
+        return leg.x + along * leg.ahead_x, leg.y + along * leg.ahead_y
 
     def remaining(self, s: float) -> float:
         """Return the length from arc length ``s`` to the end, m."""
@@ -66,16 +96,17 @@ class Path:
         if len(self.points) == 1:
             return 0.0
         first = min(max(from_s, 0.0), self.length)
-        starts, ends = self.stations[:-1], self.stations[1:]
-        looked_at = (ends >= first) & (starts <= first + window)
-        starts, lengths = starts[looked_at], (ends - starts)[looked_at]
-        directions = self._legs[looked_at] / lengths[:, None]
-        offsets = np.array([x, y]) - self.points[:-1][looked_at]
-        along = np.clip(
-            np.sum(offsets * directions, axis=1),
-            np.clip(first - starts, 0.0, lengths),
-            np.clip(first + window - starts, 0.0, lengths),
-        )
-        away = offsets - along[:, None] * directions
-        nearest = int(np.argmin(np.hypot(away[:, 0], away[:, 1])))
-        return float(starts[nearest] + along[nearest])
+        last = first + window
+        begins, ends_at = self._begins, len(self.points) - 1
+        nearest, found = math.inf, first
+        for leg in self._straights[
+            bisect_left(begins, first, 1) - 1 : bisect_right(begins, last, 0, ends_at)
+        ]:
+            off_x, off_y = x - leg.x, y - leg.y
+            along = off_x * leg.ahead_x + off_y * leg.ahead_y
+            along = max(along, min(max(first - leg.start, 0.0), leg.length))
+            along = min(along, min(max(last - leg.start, 0.0), leg.length))
+            away = math.hypot(off_x - along * leg.ahead_x, off_y - along * leg.ahead_y)
+            if away < nearest:
+                nearest, found = away, leg.start + along
+        return found

@@ -1,0 +1,92 @@
+"""Where a node hears of the robot's body: from one message for each tick, or from single topics."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Final
+
+import rospy
+from roomba_robot.msg import BodyState
+
+from roomba.robot.readings import Readings
+from roomba_ros.convert.readings import body_of
+from roomba_ros.runtime.senders import OneSender
+from roomba_ros.runtime.subscriptions import subscribe
+
+IN_BODY: Final = frozenset(
+    (
+        "odom",
+        "imu",
+        "bumper",
+        "cliff",
+        "wheel_drop",
+        "battery_state",
+        "dock_status",
+        "ir_omni",
+        "dirt_detect",
+        "bin_level",
+        "brush_current",
+    )
+)
+"""The single topics of which ``body`` tells all that is in them for a robot's brain."""
+
+
+class BodySource:
+    """Hears ``body``, and while no node tells that, the single topics.
+
+    A message wakes a process, which takes longer than what it is woken for: the body of this
+    package tells all in one message. Bodies of others, and bags, have the single topics alone.
+
+    Subscribes: ``body`` (BodyState), or what ``single`` does.
+    """
+
+    def __init__(
+        self,
+        take: Callable[[Readings], object],
+        single: Callable[[], Iterable[rospy.Subscriber]],
+        senders: OneSender,
+        bin_capacity: float,
+        queue_size: int,
+    ) -> None:
+        """Connect nothing yet.
+
+        ``take`` is given the readings of each message; ``single`` subscribes to the single topics.
+        ``senders`` lets one node tell of the body, and is to be that of the single ``odom`` too: no
+        other node can take the place of a body that has the single topics alone. The bin holds
+        ``bin_capacity``, g; of the messages that wait the newest ``queue_size`` are kept.
+        """
+        self._take, self._single, self._senders = take, single, senders
+        self._convert = partial(body_of, bin_capacity=bin_capacity)
+        self._queue_size = queue_size
+        self._singles: tuple[rospy.Subscriber, ...] = ()
+        self.is_whole = False
+        """Whether ``body`` is told."""
+
+    def start(self) -> None:
+        """Connect."""
+        self._body = subscribe(
+            "body",
+            BodyState,
+            self._convert,
+            self._on_body,
+            queue_size=self._queue_size,
+            tcp_nodelay=True,
+            senders=self._senders,
+        )
+        self._singles = tuple(self._single())
+
+    def follow(self) -> None:
+        """Leave the single topics when the body tells all in one, or take to them again."""
+        if self.is_whole and self._body.get_num_connections() == 0:
+            self.is_whole = False
+        if self.is_whole and self._singles:
+            for subscriber in self._singles:
+                subscriber.unregister()
+            self._singles = ()
+        elif not self.is_whole and not self._singles:
+            self._singles = tuple(self._single())
+
+    def _on_body(self, told: Readings) -> None:
+        self.is_whole = True
+        self._take(told)
