@@ -8,6 +8,7 @@ Folders stay small enough to be looked over.
 from __future__ import annotations
 
 import ast
+import re
 from functools import cache
 from pathlib import Path
 
@@ -403,3 +404,10 @@ def test_folders_can_be_looked_over() -> None:
         and sum(path.name != "__init__.py" for path in folder.glob("*.py")) > MOST_FILES
     }
     assert large == set(LARGE_FOLDERS)
+
+
+def test_no_comment_is_a_banner() -> None:
+    """What parts a file has, its names say; what needs parting is two files."""
+    banner = re.compile(r"^\s*#\s*([-=*#])\1{4}", re.MULTILINE)
+    found = [path for top in (SOURCE, TEST) for path in top.rglob("*.py")]
+    assert [path for path in found if banner.search(path.read_text(encoding="utf-8"))] == []

@@ -74,8 +74,6 @@ class BeamApproach:
         entered = self._entered or readings.odometry
         return readings.odometry.distance_to(entered.x, entered.y)
 
-    # ---------------------------------------------------------------- where the station is
-
     def _cross(self, readings: Readings) -> Twist:
         config = self._config
         is_gone = readings.time - self._seen_at > config.beams_gone
@@ -118,8 +116,6 @@ class BeamApproach:
                 self._told, self._learned = along, 0.0
                 break
         self._middles.append(pose)
-
-    # ---------------------------------------------------------------- at the station
 
     def _face(self, readings: Readings) -> Twist:
         wrong = wrap_angle(self._heading - readings.odometry.theta)

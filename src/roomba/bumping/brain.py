@@ -86,8 +86,6 @@ class BumpingBrain:
         self._homing_since: float | None = None
         self._left: tuple[Pose, float] | None = None
 
-    # ---------------------------------------------------------------- what it is told to do
-
     def clean(self) -> None:
         """Sweep, from here or out of the station."""
         self.floor.forget()
@@ -141,8 +139,6 @@ class BumpingBrain:
     def limit_speed(self, speed: float) -> None:
         """Set the fastest that it drives, m/s."""
         self._drive.set_max_speed(speed)
-
-    # ---------------------------------------------------------------- ticks
 
     def tick(self, readings: Readings) -> Command:
         """Take what the sensors tell, and return what is wanted, as far as that is safe."""
@@ -236,8 +232,6 @@ class BumpingBrain:
             self._enter(BumpingState.SWEEPING)
             return STANDSTILL
         return Twist(0.0, math.copysign(self._config.turning_speed, wrong))
-
-    # ---------------------------------------------------------------- home
 
     def _go_home(self, readings: Readings) -> Twist:
         """Go to where odometry says that the station is; look for its beams around there."""

@@ -100,8 +100,6 @@ class BumpAndGo:
         is_seen = readings.time - self._lost <= self._config.wall_gap
         return self.move is BumpMove.WALL and is_seen and not readings.bumps
 
-    # ---------------------------------------------------------------- after a touch
-
     def _touch(self, readings: Readings) -> None:
         """Remember it, and back off."""
         pose, config = readings.odometry, self._config
@@ -176,8 +174,6 @@ class BumpAndGo:
         """Whether the wall on its right was nearest a moment ago: it stands along it."""
         self._nearest, self._near = max(self._nearest, readings.wall), readings.wall
         return self._nearest > 0.0 and readings.wall < self._nearest - self._config.wall_passed
-
-    # ---------------------------------------------------------------- sweeping
 
     def _go_around(self, readings: Readings, dt: float) -> Twist:
         config = self._config

@@ -54,9 +54,6 @@ class Parser(argparse.ArgumentParser):
         return told
 
 
-# ---------------------------------------------------------------- values
-
-
 def whole(least: int, most: int) -> Callable[[str], int]:
     """Return the type of an option that is a whole number from ``least`` to ``most``."""
 
@@ -98,9 +95,6 @@ def number(is_right: Callable[[float], bool], expected: str) -> Callable[[str], 
 
 
 finite = number(math.isfinite, "finite numbers (m, rad)")
-
-
-# ---------------------------------------------------------------- files
 
 
 def file_of(name: str | None) -> Path | None:

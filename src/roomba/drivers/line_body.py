@@ -56,8 +56,6 @@ class LineBody:
         self._thread = threading.Thread(target=self._serve, name="robot's line", daemon=True)
         self._due = 0.0
 
-    # ---------------------------------------------------------------- life
-
     def start(self, first_scan: float = _FIRST_SCAN, *, has_lidar: bool = True) -> None:
         """Take the robot over, and return when its lidar told a scan, if it has one.
 
@@ -94,8 +92,6 @@ class LineBody:
         self._driver.end()
         self._line.close()
 
-    # ---------------------------------------------------------------- the brain's side
-
     @property
     def trouble(self) -> str:
         """Why the robot cannot be reached, and what helps; empty while it can."""
@@ -124,8 +120,6 @@ class LineBody:
     def locate(self) -> None:
         """Beep."""
         self._driver.locate()
-
-    # ---------------------------------------------------------------- the line's thread
 
     def _serve(self) -> None:
         while not self._is_over.is_set():

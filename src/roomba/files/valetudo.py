@@ -66,9 +66,6 @@ class ValetudoHome:
     way: Points = ()
 
 
-# ---------------------------------------------------------------- reading
-
-
 class _Part(BaseModel):
     model_config = ConfigDict(extra="ignore", frozen=True, strict=True)
 
@@ -268,9 +265,6 @@ def _point(points: list[float], rows: int, cell: float) -> tuple[float, float]:
 
 def _wrapped(angle: float) -> float:
     return math.remainder(angle, 2.0 * math.pi)
-
-
-# ---------------------------------------------------------------- writing
 
 
 def compose(home: ValetudoHome) -> dict[str, Any]:

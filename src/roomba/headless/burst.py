@@ -111,8 +111,6 @@ class Burst:
             return False
         return self._brain.keeper.place.is_calm
 
-    # ---------------------------------------------------------------- taking over
-
     def _begin(self, steady: Steady) -> None:
         """Copy the state of the classes into the burst."""
         brain, row = self._brain, self._burst[0]
@@ -193,8 +191,6 @@ class Burst:
             mission.carpet.rows,
             *_watched(mission.cleaning),
         )
-
-    # ---------------------------------------------------------------- handing back
 
     def _end(self, places: Floats) -> Pose:
         """Hand the state back to the classes; ticks began at ``places``, float64 [n, 2], m.

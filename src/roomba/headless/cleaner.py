@@ -111,8 +111,6 @@ class HeadlessMission(Embodied):
         self.truth = CoverageMap(fine, np.ones(fine.shape, np.bool_), self.context.tool_width)
         self._burst = Burst(self.body, self.brain, self.truth, longest_burst)
 
-    # ---------------------------------------------------------------- errands
-
     def clean(self, request: CleanRequest | None = None) -> CleanRecord:
         """Clean to the end; raises CleanRefusedError."""
         self.mission.clean(request or CleanRequest(), self.senses())
@@ -187,8 +185,6 @@ class HeadlessMission(Embodied):
             steps,
         )
 
-    # ---------------------------------------------------------------- time
-
     def advance(self) -> None:
         """Let time pass: many ticks at once while it is known what they do, else one."""
         rows = self._burst.run()
@@ -228,8 +224,6 @@ class HeadlessMission(Embodied):
         if self.seen.time - self._full_since >= self._empties_bin_after:
             self.emptied.append(self.simulator.empty_bin())
             self.look()
-
-    # ---------------------------------------------------------------- what others may look at
 
     @property
     def seen(self) -> Observation:

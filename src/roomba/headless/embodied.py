@@ -55,8 +55,6 @@ class Embodied:
             "with room before it, and see whether its lidar turns"
         )
 
-    # ---------------------------------------------------------------- time
-
     def advance(self) -> None:
         """Let a tick pass; while its body cannot be reached, the brain waits."""
         if self._reaches_body():
@@ -95,8 +93,6 @@ class Embodied:
     def readings(self) -> Readings:
         """Return what the body tells now."""
         return self.body.read()
-
-    # ---------------------------------------------------------------- what others may look at
 
     @property
     def now(self) -> Readings:

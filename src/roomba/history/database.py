@@ -200,8 +200,6 @@ class History:
             )
         return unpacked(row[0])[1]
 
-    # ---------------------------------------------------------------- the file
-
     @contextlib.contextmanager
     def _opened(self) -> Iterator[sqlite3.Connection]:
         """Open the database as the newest version; one that is damaged is set aside first."""

@@ -55,8 +55,6 @@ class RecordedRobot:
         self._since = time.monotonic()
         self._coverage = _Coverage(recording, self._home.tool)
 
-    # ---------------------------------------------------------------- the time line
-
     def timeline(self) -> TimelineView:
         """Return where the recording is."""
         with self._lock:
@@ -98,8 +96,6 @@ class RecordedRobot:
             if self._at >= self._recording.duration:
                 self._at, self._is_playing = self._recording.duration, False
         self._since = now
-
-    # ---------------------------------------------------------------- what a page reads
 
     def limits(self) -> view.PageLimits:
         """Return what may be asked for: to drive nowhere."""
@@ -183,8 +179,6 @@ class RecordedRobot:
             figures.missed,
             figures.times,
         )
-
-    # ---------------------------------------------------------------- commands
 
     def _refuse(self, *_: Any) -> None:
         home = self._figures.source.home

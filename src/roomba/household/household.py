@@ -88,8 +88,6 @@ class LiveHousehold:
         """Look at the robot once."""
         self._trying(self._look)
 
-    # ---------------------------------------------------------------- what an owner sees
-
     def upkeep(self) -> UpkeepView:
         """Return how the parts are, and the totals of the last look, at once."""
         nearly = self._bag >= self._emptying.nearly_full
@@ -144,8 +142,6 @@ class LiveHousehold:
         if self.plans().household.is_person_home == is_home:
             return
         self._change(lambda all_: all_.model_copy(update={"is_person_home": is_home}))
-
-    # ---------------------------------------------------------------- inside
 
     def _live(self) -> None:
         while not self._ends.wait(self._period):

@@ -71,8 +71,6 @@ class PlanKeeper:
         household = self._household
         return quiet_until(household.quiet, household.clock, self._now()) is not None
 
-    # ---------------------------------------------------------------- looks
-
     def look(self, view: RobotView | None) -> None:
         """Take a step; ``view`` is None while the robot does not answer. Raises OSError."""
         with self._lock:
@@ -173,8 +171,6 @@ class PlanKeeper:
                     return self._needs(plan.name, plan.order, self._now())
         return ()
 
-    # ---------------------------------------------------------------- changes
-
     def change(self, change: Change) -> None:
         """Change the plans; raises RequestRefusedError for what makes no sense, OSError."""
         with self._lock:
@@ -208,8 +204,6 @@ class PlanKeeper:
         for plan in changed.plans:
             if plan.name in old and plan != old[plan.name]:
                 self._memory = self._memory.forgetting(plan.name)
-
-    # ---------------------------------------------------------------- what is told and kept
 
     def _keep_memory(self, *, is_changed: bool = False) -> None:
         """Write and show the memory if it tells anything new; raises OSError."""

@@ -99,8 +99,6 @@ class Mission:
             max_speed=robot.body.max_speed if max_speed is None else max_speed,
         )
 
-    # ---------------------------------------------------------------- commands
-
     def clean(self, request: CleanRequest, senses: Senses) -> None:
         """Begin a clean; raises CleanRefusedError or CommandRefusedError with the reason."""
         self._commands.clean(request, senses)
@@ -179,8 +177,6 @@ class Mission:
         transitions.state = state_after(found.state, is_docked=is_docked)
         if self.state.phase is Phase.DOCKED:
             transitions.end_job_at_station(senses)
-
-    # ---------------------------------------------------------------- what others may look at
 
     @property
     def state(self) -> MissionState:
@@ -289,8 +285,6 @@ class Mission:
             driving = max(driving, self.cleaning.ledger.left / self.context.tool_width)
         speed = min(self._config.driving.speed, self.max_speed)
         return driving / (self._config.driving.mean_speed * speed)
-
-    # ---------------------------------------------------------------- ticks
 
     def tick(self, senses: Senses) -> MissionStep:
         """Return what is wanted now."""

@@ -127,8 +127,6 @@ class Scheduler:
         known = {name: at for name, at in nexts.items() if at is not None}
         return memory.model_copy(update={"next_at": {**memory.next_at, **known}})
 
-    # ---------------------------------------------------------------- the parts of a step
-
     def _note_due(self, memory: Memory, now: dt.datetime) -> Memory:
         """Let the newest time of each plan wait that has come; older ones it replaces."""
         for plan in self._plans(memory.next_at):
@@ -272,8 +270,6 @@ class Scheduler:
                 told = waits.model_copy(update={"reason": reason})
                 memory = memory.with_waiting(name, told)
         return memory, None
-
-    # ---------------------------------------------------------------- words and times
 
     @property
     def _zone(self) -> zoneinfo.ZoneInfo:

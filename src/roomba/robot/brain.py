@@ -100,8 +100,6 @@ class Brain:
         )
         return self.localizer
 
-    # ---------------------------------------------------------------- ticks
-
     def tick(self, readings: Readings) -> Command:
         """Take what the body tells, and return what is wanted of it."""
         self.sense(readings)
@@ -224,8 +222,6 @@ class Brain:
         self._drive.command(now, twist)
         return self._drive.tick(now)[0]
 
-    # ---------------------------------------------------------------- what others may look at
-
     @property
     def mission(self) -> Mission:
         """What the robot is at; raises RoombaError while there is no map yet."""
@@ -289,8 +285,6 @@ class Brain:
         """
         self._drive.set_hazards(Hazards())
         self._readings = readings
-
-    # ---------------------------------------------------------------- parts
 
     def beams_of(self, lidar: LidarModel) -> LidarBeams:
         """Return a lidar as kernels know it."""

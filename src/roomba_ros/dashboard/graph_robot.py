@@ -126,8 +126,6 @@ class GraphRobot(GraphMaps):
             self._drive.unregister()
             self._drive = None
 
-    # ---------------------------------------------------------------- what a page reads
-
     def limits(self) -> view.PageLimits:
         """Return what may be asked for."""
         body = self._config.body
@@ -174,8 +172,6 @@ class GraphRobot(GraphMaps):
     def picture(self, degrees: float) -> NDArray[np.uint8]:
         """Return the newest picture of the angle nearest to one, uint8 [height, width, 3] RGB."""
         return self._camera.picture(degrees)
-
-    # ---------------------------------------------------------------- commands
 
     def clean(self, order: view.CleanOrder) -> None:
         """Begin a clean."""
@@ -275,8 +271,6 @@ class GraphRobot(GraphMaps):
         key = rospy.search_param("robot_max_speed") or "/robot_max_speed"
         rospy.set_param(key, speed)
 
-    # ---------------------------------------------------------------- rooms and zones
-
     def put_zone(self, zone: view.ZoneView) -> None:
         """Add a zone, or replace the one of the same name."""
         view.require_another_zone(zone.name, [other.name for other in self.home().zones])
@@ -305,8 +299,6 @@ class GraphRobot(GraphMaps):
     def undo_rooms(self) -> None:
         """Take back the newest edit of the rooms."""
         self._call("rooms/undo")
-
-    # ---------------------------------------------------------------- to play with
 
     def spill_dirt(self, x: float, y: float) -> None:
         """Spill a heap of dirt; a simulated home only."""
@@ -348,8 +340,6 @@ class GraphRobot(GraphMaps):
         if not is_offered("sim/inject_fault"):
             return ()
         return tuple(act.value for act in view.PlayAct)
-
-    # ---------------------------------------------------------------- inside
 
     def _call(self, name: str, *arguments: Any) -> None:
         answer = call_service(self._services[name], *arguments)

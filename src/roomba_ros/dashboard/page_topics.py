@@ -196,8 +196,6 @@ class PageTopics:
             return _NO_POINTS
         return scan.lidar.view(scan.ranges).ends_at(pose)
 
-    # ---------------------------------------------------------------- callbacks
-
     def _set(self, name: str, value: object) -> None:
         setattr(self, name, value)
 

@@ -108,8 +108,6 @@ class MapTopics:
                 self._changes.look(now, estimate, is_docked=self._is_docked)
             own.say(now, is_growing=maker.is_growing)
 
-    # ---------------------------------------------------------------- beginning
-
     def _begin(self, now: float) -> None:
         """Take up what was begun, load what is wished, know this floor again, or begin anew."""
         if self._search is None and self._take_up():
@@ -162,8 +160,6 @@ class MapTopics:
         else:
             return
         self._search = None
-
-    # ---------------------------------------------------------------- growing
 
     def _grow(self, now: float) -> None:
         own, maker = self._own, self._maker

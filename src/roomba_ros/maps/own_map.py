@@ -126,8 +126,6 @@ class OwnMap:
         except (http.client.HTTPException, xmlrpc.client.Error) as error:
             rospy.logwarn("the master does not keep the map's name: %s", error)
 
-    # ---------------------------------------------------------------- telling
-
     def tell_whole(self, occupancy: OccupancyMap) -> None:
         """Tell a map that is whole."""
         now = rospy.get_time()
@@ -171,8 +169,6 @@ class OwnMap:
         self.tell_whole(stored.occupancy)
         self.tell_station(stored.station)
         self.remember()
-
-    # ---------------------------------------------------------------- hearing
 
     def _on_zones(self, zones: Zones) -> None:
         with self.lock:

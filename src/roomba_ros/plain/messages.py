@@ -59,9 +59,6 @@ def require_generated(kind: str, folder: str) -> None:
         raise MessageError(f"expected a type of {folder} that is installed, got {kind[:80]!r}")
 
 
-# ---------------------------------------------------------------- to plain values
-
-
 def plain_of(message: Any) -> dict[str, Any]:
     """Return a message's fields as values for JSON; raises MessageError for a huge array."""
     kind: Any = type(message)
@@ -116,9 +113,6 @@ def _bounded(values: Any) -> Any:
             f"got {len(values)}; read this topic by ROS itself"
         )
     return values
-
-
-# ---------------------------------------------------------------- from plain values
 
 
 def message_from(kind: type, plain: Any, now: genpy.Time) -> Any:

@@ -84,8 +84,6 @@ class Program:
             "set_level": self._set_level,
         }
 
-    # ---------------------------------------------------------------- both ways
-
     async def tell(self) -> None:
         """Send what it hears, each topic's newest when the last was taken, for ever."""
         while True:
@@ -137,8 +135,6 @@ class Program:
         if _LEVELS.index(level) <= _LEVELS.index(self._level):
             await self._socket.send_text(status_text(level, reason, identity))
 
-    # ---------------------------------------------------------------- who it is
-
     async def _authenticate(self, operation: dict[str, Any]) -> None:
         if not self._guard.is_token(_text(operation, "mac"), time.monotonic()):
             raise RequestRefusedError("expected the token of the printed address as mac")
@@ -153,8 +149,6 @@ class Program:
     def _require_token(self) -> None:
         if not self._may_change:
             raise RequestRefusedError(_NEEDS_TOKEN)
-
-    # ---------------------------------------------------------------- hearing
 
     async def _subscribe(self, operation: dict[str, Any]) -> None:
         name, wish = _text(operation, "topic"), _wish_of(operation)
@@ -203,8 +197,6 @@ class Program:
             del self._outbox.topics[name]
             self._shared.topics.leave(self._names.pop(name), listening.offer)
 
-    # ---------------------------------------------------------------- publishing
-
     async def _advertise(self, operation: dict[str, Any]) -> None:
         self._require_token()
         name = _resolved(_text(operation, "topic"))
@@ -232,8 +224,6 @@ class Program:
         if name in self._advertised:
             self._advertised.discard(name)
             self._shared.publishers.unadvertise(name)
-
-    # ---------------------------------------------------------------- services
 
     async def _call_service(self, operation: dict[str, Any]) -> None:
         """Begin a call; others go on meanwhile."""

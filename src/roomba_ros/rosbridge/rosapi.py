@@ -62,9 +62,6 @@ def _full(service: str) -> str:
     return f"/{service.lstrip('/')}"
 
 
-# ---------------------------------------------------------------- topics
-
-
 def _topics() -> Plain:
     found = sorted(topic_types().items())
     return {"topics": [name for name, _ in found], "types": [kind for _, kind in found]}
@@ -106,9 +103,6 @@ def _action_servers() -> Plain:
     return {"action_servers": sorted(name.removesuffix(_ACTION) for name in of_goals)}
 
 
-# ---------------------------------------------------------------- services
-
-
 def _services() -> Plain:
     return {"services": sorted(system_state()[2])}
 
@@ -132,9 +126,6 @@ def _request_details(kind: str) -> Plain:
 
 def _response_details(kind: str) -> Plain:
     return {"typedefs": details.details_of(service_class(kind)._response_class)}
-
-
-# ---------------------------------------------------------------- nodes, parameters, time
 
 
 def _nodes() -> Plain:

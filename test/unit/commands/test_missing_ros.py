@@ -154,9 +154,6 @@ def test_the_library_needs_no_ros_anywhere(tmp_path: Path) -> None:
     assert log.read_text(encoding="utf-8") == "the library's environment\n"
 
 
-# ---------------------------------------------------------------- the container
-
-
 def containerfile() -> str:
     return (ROOT / "Containerfile").read_text(encoding="utf-8")
 

@@ -131,9 +131,6 @@ def wrong_sides(occupancy: OccupancyMap, frame: GridFrame, solid: Mask, seen: Ma
     return sides.middles[away > NEAR + 1e-9]
 
 
-# ---------------------------------------------------------------- walls that are mapped twice
-
-
 def _doubled(occupancy: OccupancyMap, sides: WallSides, ground: TrueSurfaces) -> tuple[Mask, Mask]:
     """Return the cells of walls that are mapped twice, and of shorter stretches that are."""
     twice = _has_second(occupancy, sides)
@@ -188,9 +185,6 @@ def _has_second(occupancy: OccupancyMap, sides: WallSides) -> Mask:
     return found
 
 
-# ---------------------------------------------------------------- floor
-
-
 def _floors(
     occupancy: OccupancyMap, frame: GridFrame, solid: Mask, seen: Mask
 ) -> tuple[float, float, float]:
@@ -241,9 +235,6 @@ def _cells(middles: Floats, occupancy: OccupancyMap, axis: int) -> NDArray[np.in
     cells = np.floor((middles - origin) / frame.resolution + 1e-9).astype(np.int64) + 1
     within: NDArray[np.int64] = np.clip(cells, 0, count + 1)
     return within
-
-
-# ---------------------------------------------------------------- shift and rotation
 
 
 def _fit(sides: WallSides, ground: TrueSurfaces) -> tuple[tuple[float, float], float]:

@@ -49,9 +49,6 @@ def _run(words: list[str], open_bag: BagOpener | None) -> int:
     return _run_one(options, open_bag, words)
 
 
-# ---------------------------------------------------------------- one run
-
-
 def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) -> int:
     # Imported here: it takes a second, and a mistyped option should be reported at once.
     with quiet_loading(), nothing_thrown_away():
@@ -114,9 +111,6 @@ def _tell_run(options: SimOptions, run: Run) -> None:
     tell_tables([table_of(run.figures)], options.json, quiet=options.quiet)
     if options.json is not None:
         write_json(options.json, run_as_json(run))
-
-
-# ---------------------------------------------------------------- many runs
 
 
 def _run_homes(options: SimOptions, homes: int) -> int:
@@ -206,6 +200,3 @@ def _again(trial: Trial) -> str:
     if request.edges is not usual.request.edges:
         words += ["--edges", request.edges.value]
     return " ".join(words)
-
-
-# ---------------------------------------------------------------- telling

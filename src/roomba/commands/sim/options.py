@@ -176,9 +176,6 @@ def _add_circumstances(parser: argparse.ArgumentParser) -> None:
     )
 
 
-# ---------------------------------------------------------------- values
-
-
 _share = number(lambda value: 0.0 <= value <= 1.0, "a share from 0 to 1")
 _amount = number(lambda value: 0.0 < value < math.inf, "more than 0 g")
 _time = number(lambda value: 0.0 <= value <= _LONGEST_WAIT, f"a time from 0 to {_LONGEST_WAIT:g} s")
@@ -192,9 +189,6 @@ def _rectangle(option: str, corners: list[float]) -> tuple[float, float, float, 
             f"{' '.join(f'{value:g}' for value in corners)}; put the smaller numbers first"
         )
     return left, bottom, right, top
-
-
-# ---------------------------------------------------------------- what belongs together
 
 
 def _check_homes(given: argparse.Namespace) -> None:

@@ -91,8 +91,6 @@ class Create2Body:
         self._given: ScanReading | None = None
         self.trouble = "not asked yet"
 
-    # ---------------------------------------------------------------- the brain's side
-
     def read(self) -> Readings:
         """Return what the robot told last; a scan once."""
         scan = self.newest_scan()
@@ -135,8 +133,6 @@ class Create2Body:
         """Play a few notes."""
         with self._lock:
             self._is_to_sing = True
-
-    # ---------------------------------------------------------------- the line's side
 
     def begin(self) -> None:
         """Open the line and take the robot over, which stands then; raises LineError."""
@@ -235,8 +231,6 @@ class Create2Body:
                 self._state = state_of(self._told)
                 if Packet.LEFT_ENCODER in told:
                     self._odometry.take(now, told[Packet.LEFT_ENCODER], told[Packet.RIGHT_ENCODER])
-
-    # ---------------------------------------------------------------- what is sent
 
     def _send(self, line: Line, now: float) -> None:
         with self._lock:

@@ -108,8 +108,6 @@ class NeatoBody:
             _Due("GetCharger", 0.25, self._take_charge),
         ]
 
-    # ---------------------------------------------------------------- the brain's side
-
     def read(self) -> Readings:
         """Return what the robot told last; a scan once."""
         with self._lock:
@@ -155,8 +153,6 @@ class NeatoBody:
         """Let the robot beep as soon as the line is free."""
         with self._lock:
             self._beeps = True
-
-    # ---------------------------------------------------------------- the line's side
 
     def begin(self) -> None:
         """Take the robot over and let its lidar turn; raises LineError."""
@@ -278,8 +274,6 @@ class NeatoBody:
         for command in on if is_cleaning and fan > 0 else _AT_REST:
             self._line.ask(command, _ANSWER)
         self._power_told = power
-
-    # ---------------------------------------------------------------- what came
 
     def _heard_at(self) -> float:
         """When the newest answer began to come: what it tells was so then, s."""

@@ -109,8 +109,6 @@ class Create2Robot:
         self._brush = self._vacuum = 0.0
         self.simulator.set_power(brush=0.0, fan=0.0)
 
-    # ---------------------------------------------------------------- time
-
     def advance(self) -> None:
         """Let one step of the world pass."""
         before = self.seen
@@ -153,8 +151,6 @@ class Create2Robot:
         is_moving = twist.linear != 0.0 or twist.angular != 0.0
         at_cliff = seen.cliff.any and is_moving and not backs_off
         return seen.wheels.dropped or seen.battery.is_docked or at_cliff
-
-    # ---------------------------------------------------------------- what it is told
 
     def do(self, told: Instruction) -> bytes:
         """Do what it is told, if its mode allows; return the answer."""
@@ -228,8 +224,6 @@ class Create2Robot:
     def _toggle_stream(self, data: bytes) -> bytes:
         self.is_streaming = bool(data[0]) and bool(self.streamed)
         return b""
-
-    # ---------------------------------------------------------------- what it tells
 
     def frame(self) -> bytes:
         """Return the next frame of its stream."""

@@ -109,8 +109,6 @@ class NeatoRobot:
             said = str(error)
         return f"{line}{_NEWLINE}{said}{_NEWLINE if said else ''}\x1a"
 
-    # ---------------------------------------------------------------- questions
-
     def _help(self, words: Words) -> str:
         return _lines("Help Strlen = 1024", *(grammar.name for grammar in GRAMMARS))
 
@@ -162,8 +160,6 @@ class NeatoRobot:
 
     def _error(self, words: Words) -> str:
         return _lines("Error", "200 -  (UI_ALERT_INVALID)", "Alert", "200 -  (UI_ALERT_INVALID)")
-
-    # ---------------------------------------------------------------- commands
 
     def _test_mode(self, words: Words) -> str:
         self.is_testing = "On" in words.flags

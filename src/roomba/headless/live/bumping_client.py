@@ -67,8 +67,6 @@ class BumpingClient:
         """Why the robot's time does not pass any more; empty while it does."""
         return self._live.ending
 
-    # ---------------------------------------------------------------- what a page reads
-
     def limits(self) -> view.PageLimits:
         """Return what may be asked for."""
         return self._limits
@@ -91,8 +89,6 @@ class BumpingClient:
         """Return a layer as it is now."""
         with self._lock:
             return self._layers.layer(self._robot.brain.floor, name)
-
-    # ---------------------------------------------------------------- commands
 
     def clean(self, order: view.CleanOrder) -> None:
         """Begin to sweep; it ends when the battery is low, or when it is told to go home."""
@@ -160,8 +156,6 @@ class BumpingClient:
         self._top_speed = speed
         self._obey(lambda robot: robot.brain.limit_speed(speed))
 
-    # ---------------------------------------------------------------- what wants a map
-
     def change_rooms(self, rooms: tuple[str, ...], each: tuple[RoomWay, ...] = ()) -> None:
         """Refuse it: there are no rooms."""
         raise RequestRefusedError(_NO_MAP)
@@ -205,8 +199,6 @@ class BumpingClient:
     def undo_rooms(self) -> None:
         """Refuse it."""
         raise RequestRefusedError(_NO_MAP)
-
-    # ---------------------------------------------------------------- in the robot's thread
 
     def _obey(self, command: Callable[[BumpingRobot], None]) -> None:
         def obey(robot: BumpingRobot) -> None:

@@ -67,8 +67,6 @@ class LiveClient:
         """Let its time stop."""
         self._live.stop()
 
-    # ---------------------------------------------------------------- what other clients need
-
     @property
     def plan(self) -> FloorPlan:
         """The rooms and zones that the robot goes by."""
@@ -119,8 +117,6 @@ class LiveClient:
         """Return how long the robot's ticks took to compute."""
         return self._live.tick_times()
 
-    # ---------------------------------------------------------------- what a page reads
-
     def limits(self) -> view.PageLimits:
         """Return what may be asked for."""
         return self._limits
@@ -151,8 +147,6 @@ class LiveClient:
         if camera is None:
             raise RequestRefusedError("this robot has no camera")
         return camera.picture(self._live.carry_out, degrees)
-
-    # ---------------------------------------------------------------- commands
 
     def clean(self, order: view.CleanOrder) -> None:
         """Begin a clean."""
@@ -260,8 +254,6 @@ class LiveClient:
             )
         self.obey(lambda robot: robot.brain.limit_speed(speed))
 
-    # ---------------------------------------------------------------- rooms and zones
-
     def put_zone(self, zone: view.ZoneView) -> None:
         """Add a zone, or replace the one of the same name."""
         self._edit(lambda plan: plan.with_zone(zone))
@@ -300,8 +292,6 @@ class LiveClient:
         seen = self._snapshots
         self.obey(lambda robot: seen.use(robot, change(seen.plan)))
 
-    # ---------------------------------------------------------------- to play with
-
     def spill_dirt(self, x: float, y: float) -> None:
         """Spill a heap of dirt."""
         self._play(lambda simulator: simulator.spill(x, y, *SPILL))
@@ -332,8 +322,6 @@ class LiveClient:
 
     def _play(self, act: Callable[[Simulator], None]) -> None:
         self.obey(lambda _: self._live_home.play(act))
-
-    # ---------------------------------------------------------------- in the robot's thread
 
     def _command(self, event: Event, reason: str = "") -> None:
         self.obey(lambda robot: robot.mission.command(event, robot.senses(), reason))

@@ -55,8 +55,6 @@ class LiveErrand(ABC, Generic[_News, _Report]):
         self._report: _Report | None = None
         self._began = self._due = 0.0
 
-    # ---------------------------------------------------------------- for who waits
-
     def next_feedback(self, timeout: float) -> _News | None:
         """Wait up to ``timeout`` s of wall time for news, else None; None at once at its end."""
         with self._told:
@@ -76,8 +74,6 @@ class LiveErrand(ABC, Generic[_News, _Report]):
     def cancel(self) -> None:
         """Let the robot stop and stay."""
         self._obey(lambda robot: None if self.has_ended else self._cancel(robot))
-
-    # ---------------------------------------------------------------- in the robot's thread
 
     @property
     def has_ended(self) -> bool:

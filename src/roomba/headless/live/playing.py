@@ -42,8 +42,6 @@ class Playing:
         """The home, if the robot goes by its map."""
         return self._home if self._robot.brain.mapper is None else None
 
-    # ---------------------------------------------------------------- acts, in the robot's thread
-
     def play(self, act: Callable[[Simulator], None]) -> None:
         """Let a hand reach into the world."""
         robot = self._robot
@@ -54,8 +52,6 @@ class Playing:
         """Empty the dust bin."""
         self._robot.simulator.empty_bin()
         self._robot.look()
-
-    # ---------------------------------------------------------------- the truth
 
     def truth(self) -> TruthView:
         """Return what is really so."""

@@ -124,8 +124,6 @@ class LiveRobot(Generic[_Robot]):
     def _reason(self) -> str:
         return "" if self._failure is None else f": {self._failure}"
 
-    # ---------------------------------------------------------------- the robot's thread
-
     def _live(self) -> None:
         try:
             due = time.monotonic()

@@ -139,8 +139,6 @@ class LiveRobotClient:
             raise RobotUnavailableError("there are no rooms yet: explore the home first")
         return names
 
-    # ---------------------------------------------------------------- in the robot's thread
-
     def _begin(self, errand: _Begun) -> _Begun:
         def begin(robot: Embodied) -> None:
             if errand.begin(robot):

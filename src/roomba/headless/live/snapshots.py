@@ -50,8 +50,6 @@ class Snapshots:
         self._visits = Visits(robot.mission.context.occupancy.frame, robot.robot.brush.width)
         self._shape = 0
 
-    # ---------------------------------------------------------------- snapshots
-
     def robot(self) -> RobotView:
         """Return the newest state; raises RobotUnavailableError before the first one."""
         if self._view is None:
@@ -77,8 +75,6 @@ class Snapshots:
     def dirt(self, robot: Embodied) -> GridLayer:
         """Return where dirt was found."""
         return dirt_layer(robot.dirt, self._shape)
-
-    # ---------------------------------------------------------------- in the robot's thread
 
     def observe(self, robot: Embodied) -> None:
         """Take snapshots after a frame."""

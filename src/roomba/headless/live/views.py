@@ -120,9 +120,6 @@ def _path(robot: Embodied) -> NDArray[np.float32]:
     return driver.tracker.rest[:MOST_PATH].astype(np.float32)
 
 
-# ---------------------------------------------------------------- layers
-
-
 def dirt_cells(dirt: DirtMap) -> NDArray[np.uint8]:
     """Return how dirty the floor was found: 0 not known, 1 clean to 255 the dirtiest."""
     density = dirt.known()
@@ -143,9 +140,6 @@ def map_cells(plan: Home | None, occupancy: OccupancyMap) -> NDArray[np.uint8]:
     if plan is not None and plan.turned is None and occupancy.frame == plan.frame:
         cells[(cells == 2) & ~plan.walls] = 3
     return cells
-
-
-# ---------------------------------------------------------------- the home
 
 
 def home_view(
@@ -203,9 +197,6 @@ def _outlines(home: Home, *, is_overhead: bool) -> Iterator[tuple[Point, ...]]:
 def _carpets(home: Home) -> Iterator[tuple[Point, ...]]:
     for carpet in home.carpets:
         yield tuple((x, y) for x, y in outline(carpet.area).exterior.coords[:-1])
-
-
-# ---------------------------------------------------------------- results
 
 
 def clean_report(result: CleanResult) -> CleanReport:

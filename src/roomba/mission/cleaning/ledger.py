@@ -162,8 +162,6 @@ class CoverageLedger:
         self.coverage.cells[floor] &= np.uint8(_ALL ^ SWEPT)
         self.coverage.count_again()
 
-    # ---------------------------------------------------------------- other contexts
-
     def use_context(self, context: PlanningContext, dirt: DirtMap) -> None:
         """Go on with other zones or rooms, or with more of the map; what is swept stays so."""
         self._dirt = dirt
@@ -198,8 +196,6 @@ class CoverageLedger:
         cells &= np.uint8(_ALL ^ WANTED)
         cells[wanted] |= np.uint8(WANTED)
         self.coverage.count_again()
-
-    # ---------------------------------------------------------------- remembering
 
     def values(self) -> Values:
         """Return all that must be remembered to go on, as plain values."""
@@ -258,8 +254,6 @@ class CoverageLedger:
         if not Pose(frame.origin_x, frame.origin_y).is_finite:
             raise CheckpointError("expected finite numbers")
         return frame, _pose(values["station"])
-
-    # ---------------------------------------------------------------- parts
 
     def _asked(self, context: PlanningContext) -> list[Stage]:
         coverable = context.coverable()

@@ -106,8 +106,6 @@ class Broker:
         with self._lock:
             self._to_send = dict.fromkeys(self._wanted)
 
-    # ---------------------------------------------------------------- the connection's thread
-
     def _live(self) -> None:
         """Connect, and connect again, until the end."""
         pause, most = _RECONNECT

@@ -86,8 +86,6 @@ class Webhook:
             return
         self.dropped += 1
 
-    # ---------------------------------------------------------------- the thread of the webhook
-
     def _live(self) -> None:
         while not self._ends.is_set():
             try:

@@ -95,9 +95,6 @@ def placed(rows: Floats, axes: Pose) -> Floats:
     return moved
 
 
-# ---------------------------------------------------------------- grids
-
-
 def _grids(home: Home, frame: GridFrame, angle: float) -> dict[str, Any]:
     """Return map, solid and walls of an exact home over ``frame``; what is exact alone is None."""
     own, found = home.frame, home.free_walls
@@ -170,9 +167,6 @@ def _values_at(
         np.clip(row + 1, 0, own.rows + 1), np.clip(column + 1, 0, own.columns + 1)
     ]
     return found
-
-
-# ---------------------------------------------------------------- what is told by outlines
 
 
 def _room(room: Room, axes: Pose) -> Room:

@@ -114,9 +114,6 @@ def at_start() -> list[object]:
     return ["--start", START.x, START.y, START.theta]
 
 
-# ---------------------------------------------------------------- whole drives
-
-
 def test_a_drive_is_followed_from_a_given_start(localize: Localize, tmp_path: Path) -> None:
     bag = write_bag(tmp_path / "made.bag", said(drive(SECONDS), "/pose"))
     plot, output, way = tmp_path / "a.png", tmp_path / "out.bag", tmp_path / "way.txt"
@@ -252,9 +249,6 @@ def test_a_lidar_of_few_beams(localize: Localize, tmp_path: Path) -> None:
     assert done.figures["shares"]["known"] > 0.95
 
 
-# ---------------------------------------------------------------- on the way
-
-
 def test_it_says_where_and_why_a_robot_was_lost(localize: Localize, tmp_path: Path) -> None:
     """After 5 s it is slid by half of its circle, without lifting its wheels."""
     random = np.random.default_rng(2)
@@ -288,9 +282,6 @@ def test_wheels_that_hang_make_it_search(localize: Localize, tmp_path: Path) -> 
     assert loss["elapsed"] == pytest.approx(6.1, abs=0.2)
     assert loss["seconds"] > 1.8
     assert "wheels" in loss["reason"]
-
-
-# ---------------------------------------------------------------- what is refused
 
 
 @pytest.mark.parametrize(

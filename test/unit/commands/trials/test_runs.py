@@ -129,9 +129,6 @@ def test_a_look_after_every_other_tick_changes_nothing_but_little(run: Run) -> N
     assert often.figures.distance_m == pytest.approx(run.figures.distance_m, rel=0.1)
 
 
-# ---------------------------------------------------------------- scenes
-
-
 def test_what_is_solid_in_truth_is_not_coverable(room: Path) -> None:
     bare = TrialSetup(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi)))
     things = TrialSetup(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), things=1, seed=1))
@@ -205,9 +202,6 @@ def test_sensors_and_configuration_are_obeyed(room: Path, tmp_path: Path) -> Non
     setup = TrialSetup(trial)
     assert setup.config.simulation.sensors == "ideal"
     assert setup.robot.context.tool_width == 0.18
-
-
-# ---------------------------------------------------------------- the command itself
 
 
 def test_the_command_prints_a_table_and_writes_files(

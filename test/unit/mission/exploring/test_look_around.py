@@ -216,9 +216,6 @@ def test_boxed_in_it_stands() -> None:
         assert look_around.tick(0.1 * step, Pose(), around, False) == Twist()
 
 
-# ------------------------------------------------------------------------------ searching
-
-
 def searching(robot: Located, search: SearchDrive) -> Twist | None:
     return search.tick(robot.world.time, robot.localizer, robot.world.observe().bumper.pressed)
 

@@ -38,9 +38,6 @@ ROOM = room_home(6.0, 5.0)
 SOFA: Block = (2.0, 2.0, 4.0, 2.9)
 
 
-# ------------------------------------------------------------------ a whole flat, simulated
-
-
 @cache
 def flat() -> Home:
     return load_home("flat", HOMES)
@@ -210,9 +207,6 @@ def test_a_sofa_that_was_moved_is_a_change_when_it_is_far_enough() -> None:
     assert cleaned(changed_flat(moved[0], sofa)).changes() == ()
     kinds = {change.kind for change in cleaned(changed_flat(moved[1], sofa)).changes()}
     assert kinds == {ChangeKind.APPEARED, ChangeKind.VANISHED}
-
-
-# ------------------------------------------------------------------ a room, scan by scan
 
 
 class Walker:

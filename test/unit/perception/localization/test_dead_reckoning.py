@@ -159,9 +159,6 @@ def test_no_bias_is_learned_from_a_robot_that_a_person_turns_fast() -> None:
     assert wrap_angle(reckoned.pose.theta - before) == pytest.approx(0.0, abs=0.02)
 
 
-# ------------------------------------------------------------------------------- stamps
-
-
 def driven(stamps: list[float]) -> DeadReckoning:
     """Drive 1 m/s ahead, told at these times."""
     reckoned = reckoning()
@@ -254,9 +251,6 @@ def test_between_two_headings_the_short_way_counts() -> None:
     at = reckoned.at(1.75)
     assert at is not None
     assert at.theta == pytest.approx(-3.0 - 0.25 * (2.0 * math.pi - 6.0))
-
-
-# ------------------------------------------------------------------------- how sure it is
 
 
 def test_variances_grow_with_the_way_and_are_taken_once() -> None:

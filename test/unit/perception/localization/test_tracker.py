@@ -180,9 +180,6 @@ def test_few_beams_err_together_and_tell_less_than_their_number() -> None:
     assert np.diag(learned(4)) == pytest.approx(2.0 * np.diag(learned(2)), rel=0.05)
 
 
-# ------------------------------------------------------------------------------ doubts
-
-
 def see_at(tracker: Tracker, ranges: Ranges, times: int) -> list[bool]:
     view = LIDAR.view(ranges)
     doubts = []
@@ -246,9 +243,6 @@ def test_a_trusted_fit_is_usual_from_then_on() -> None:
     tracker.trust(Fit(0.42, 0.58, 0.0, -9.0))
     assert tracker.fit == Fit(0.42, 0.58, 0.0, -9.0)
     assert not any(see_at(tracker, ranges, 10))
-
-
-# ------------------------------------------------------------------------------ motion
 
 
 @given(

@@ -58,9 +58,6 @@ def is_covered(layer: ThingLayer, x: float, y: float, slack: float = 0.0) -> boo
     return any(math.hypot(x - a, y - b) <= r + slack for a, b, r in layer.obstacles())
 
 
-# ------------------------------------------------------------------------------- seeing
-
-
 def test_three_scans_show_a_thing_and_two_do_not() -> None:
     disc = (3.0, 2.6, 0.15)
     assert seen(ROOM, disc, scans=2).obstacles() == []
@@ -166,9 +163,6 @@ def test_what_is_far_away_is_looked_at_when_it_is_nearer() -> None:
     assert seen(ROOM, disc, pose=Pose(2.6, 2.5, 0.0)).obstacles() != []
 
 
-# --------------------------------------------------------------------------- forgetting
-
-
 @pytest.mark.parametrize("scans", [1, 2, 4])
 def test_who_walked_by_is_forgotten_within_a_second_of_being_seen_through(scans: int) -> None:
     layer = seen(ROOM, (3.0, 2.6, 0.15), scans=40)
@@ -220,9 +214,6 @@ def test_it_can_be_told_to_forget() -> None:
     assert layer.version == version + 2
     layer.see(with_discs(Eye(ROOM).scan(HERE), HERE, (3.0, 2.6, 0.15)), BEAMS, HERE)
     assert len(layer.cells(1)) > 0
-
-
-# ---------------------------------------------------------------------------- reference
 
 
 class Plain:
@@ -428,9 +419,6 @@ def test_no_scan_at_all_breaks_it() -> None:
     listed = layer.arrays.listed[:count]
     assert len(np.unique(listed)) == count == np.count_nonzero(layer.arrays.evidence)
     assert (layer.arrays.evidence[listed] > 0).all()
-
-
-# ------------------------------------------------------------------------------- in the way
 
 
 def blocked_by_sampling(

@@ -179,9 +179,6 @@ def test_every_body_has_an_example_that_is_obeyed(page: TestClient, robot: AbleR
     assert "event: trouble" in stream["text/event-stream"]["example"]
 
 
-# ---------------------------------------------------------------- WebSockets
-
-
 def sockets(page: TestClient) -> list[str]:
     app: Any = page.app
     found = [route.path for route in all_routes(app.routes) if isinstance(route, APIWebSocketRoute)]

@@ -56,9 +56,6 @@ Floats = NDArray[np.float64]
 LOCALIZATION, GYRO = CONFIG.localization, CONFIG.gyro
 
 
-# ---------------------------------------------------------------------------- reckoning
-
-
 @dataclass
 class Plain:
     """Dead reckoning as it is written in books: poses and matrices."""
@@ -182,9 +179,6 @@ def test_the_worst_deviation_is_the_estimate_s(a: float, b: float, c: float) -> 
 
 def test_who_is_unsure_without_a_number_is_unsure_without_end() -> None:
     assert deviation(np.full((3, 3), np.nan)) == math.inf
-
-
-# ---------------------------------------------------------------------- the steady state
 
 
 class Kernels:
@@ -339,9 +333,6 @@ def test_after_kernels_a_scan_that_comes_late_counts_as_after_the_classes() -> N
     one, other = robot.localizer.estimate.pose, twin.estimate.pose
     assert one.distance_to(other.x, other.y) < 1e-9
     assert one.theta == pytest.approx(other.theta, abs=1e-9)
-
-
-# ------------------------------------------------------------------------------- calm
 
 
 def test_a_blind_lidar_is_not_calm_and_a_silent_one_not_for_long() -> None:

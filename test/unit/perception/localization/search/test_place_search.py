@@ -111,9 +111,6 @@ def test_a_search_in_many_pieces_finds_the_same(monkeypatch: pytest.MonkeyPatch)
     assert advances > 10
 
 
-# ------------------------------------------------------------------------------ scores
-
-
 def scores(
     spots: list[tuple[float, float]], theta: float, ends: NDArray[np.float64]
 ) -> list[float]:

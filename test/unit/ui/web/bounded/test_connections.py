@@ -96,9 +96,6 @@ def is_closed(open_one: socket.socket) -> bool:
     return True
 
 
-# ---------------------------------------------------------------- viewers
-
-
 def test_a_message_is_made_text_once_for_all_viewers(
     server: PageServer, robot: WrittenRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -178,9 +175,6 @@ def test_pings_and_parts_without_end_are_ended(server: PageServer, frame: bytes)
                 flood.sendall(100 * frame)
         wait_until(lambda: server.connections == 0, DEADLINE, "it is closed")
     assert answers(server)
-
-
-# ---------------------------------------------------------------- silence
 
 
 @pytest.fixture
@@ -267,8 +261,6 @@ def test_where_asking_is_forbidden_it_makes_do(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(resource, "setrlimit", refuse)
     assert most_connections() == 724
 
-
-# ---------------------------------------------------------------- garbage
 
 FRAMES: tuple[str | bytes, ...] = (
     *("", "garbage", "[" * 5000, "9" * 5000, '{"type": 3}', "null", b"\x00\xff" * 50),
