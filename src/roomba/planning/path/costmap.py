@@ -169,6 +169,19 @@ def clear_of(
 
 
 @entry
+def room_beside(
+    circles: NDArray[np.float64], start_x: float, start_y: float, end_x: float, end_y: float
+) -> float:
+    """Return the distance between a segment and circles, float64 [n, 3], below 0 inside of one."""
+    room = math.inf
+    for n in range(len(circles)):
+        x, y, radius = circles[n, 0], circles[n, 1], circles[n, 2]
+        away = _point_to_segment(x, y, start_x, start_y, end_x, end_y)
+        room = min(room, away - radius)
+    return room
+
+
+@entry
 def _point_to_segment(
     x: float, y: float, start_x: float, start_y: float, end_x: float, end_y: float
 ) -> float:

@@ -141,7 +141,7 @@ class PathPlanner:
         if bends is None:
             raise self._refusal(room, start_joints, goal, NoPathReason.GOAL_UNREACHABLE)
         way = _without_repeats(np.vstack((start, self._to_metres(bends), goal)))
-        return _path(self._string.pulled(way, room.comfortable))
+        return _path(self._string.pulled(way, room.tight.obstacles))
 
     def reachable(self, start: Point, obstacles: Iterable[RoundObstacle] = ()) -> Mask:
         """Return the cells whose centres can be reached from ``start``, bool [rows, columns].

@@ -1,24 +1,28 @@
 """String pulling: ways over the cells that fit, made the shortest for the disc between the walls.
 
-A way over cells bends at their centres, up to half a cell farther from corners than it must be.
+A way over cells bends at their centres, up to about a cell farther from corners than it must be.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.planning.path.costmap import FitMap
+from roomba.planning.path.costmap import FitMap, RoundObstacle, room_beside
 from roomba.planning.path.string_kernels import FULL, QUARTER, Pegs, String, mark_corners, pull
 
 _ANGLES = np.arange(4 * QUARTER) * (math.pi / (2 * QUARTER))
 _ARC = np.column_stack((np.cos(_ANGLES), np.sin(_ANGLES)))
 _TOUCH = 1e-9
 """m; a way that keeps just the room may be pulled."""
+_BESIDE_THINGS = math.sqrt(0.5)
+"""Cells, half a diagonal; so much more is kept from things: what is known of one is what was seen
+of it, and a way over cells keeps as much in the mean."""
 _FIRST_CAPACITY = 256
 
 
@@ -50,21 +54,23 @@ class StringPulling:
         mark_corners(self._walls.solid, corners)
         return corners
 
-    def pulled(self, points: NDArray[np.float64], fit: FitMap) -> NDArray[np.float64]:
+    def pulled(
+        self, points: NDArray[np.float64], things: Sequence[RoundObstacle] = ()
+    ) -> NDArray[np.float64]:
         """Return the shortest way that a way can be pulled to, float64 [n, 2], m, as ``points``.
 
-        ``fit`` is where the disc fits among the obstacles of the moment. Legs that have less than
-        :attr:`room` stay as they are.
+        ``things`` are round, and not on the map: x, y and radius, m. From them it keeps half a
+        cell's diagonal more than :attr:`room`. Legs that have less room stay as they are.
         """
         if self.room == 0.0 or len(points) < 3:
             return points
-        pinned = self._pinned(points, fit)
+        frame, cell = self._walls.map.frame, self._walls.cell
+        circles = np.array(things, np.float64).reshape(-1, 3)
+        circles[:, 2] += self.room + _BESIDE_THINGS * frame.resolution
+        pinned = self._pinned(points, circles)
         if pinned.all():
             return points
-        frame, cell = fit.map.frame, fit.cell
         origin = np.array((frame.origin_x, frame.origin_y))
-        circles = np.array(fit.obstacles, np.float64).reshape(-1, 3)
-        circles[:, 2] += self.room
         circles[:, :2] -= origin
         pegs = Pegs(self._corners, self.room / cell, circles / cell, _ARC)
         size = self._pull((points - origin) / cell, pinned, pegs)
@@ -73,12 +79,20 @@ class StringPulling:
         pulled[self._string.pinned[:size] > 0] = points[pinned]
         return pulled
 
-    def _pinned(self, points: NDArray[np.float64], fit: FitMap) -> NDArray[np.bool_]:
-        """Tell which points stay, bool [n]: both ends, and those of legs with too little room."""
+    def _pinned(
+        self, points: NDArray[np.float64], circles: NDArray[np.float64]
+    ) -> NDArray[np.bool_]:
+        """Tell which points stay, bool [n]: both ends, and those of legs with too little room.
+
+        ``circles``, float64 [n, 3], m, are what a way is to stay out of around things.
+        """
         pinned = np.zeros(len(points), np.bool_)
         pinned[[0, -1]] = True
         for leg, (start, end) in enumerate(pairwise(points.tolist())):
-            if fit.room_along(start, end) < self.room - _TOUCH:
+            if (
+                self._walls.room_along(start, end) < self.room - _TOUCH
+                or room_beside(circles, *start, *end) < -_TOUCH
+            ):
                 pinned[leg : leg + 2] = True
         return pinned
 

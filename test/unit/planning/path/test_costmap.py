@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
-from roomba.planning.path.costmap import FitMap, Mask
+from roomba.planning.path.costmap import FitMap, Mask, room_beside
 
 
 def occupancy(solid: Mask, resolution: float = 0.05, origin: float = 0.0) -> OccupancyMap:
@@ -96,6 +96,20 @@ def test_obstacles_are_added_to_the_walls_and_taken_away_again(
         if abs(room - 0.12) > 1e-7:
             assert fit.fits[row, column] == (walls.fits[row, column] and room > 0.12)
     assert np.array_equal(fit.with_obstacles(()).fits, walls.fits)
+
+
+@given(
+    st.lists(st.tuples(*[st.floats(-3.0, 3.0)] * 2, st.floats(0.0, 2.0)), max_size=4),
+    st.tuples(*[st.floats(-3.0, 3.0)] * 4),
+)
+@settings(max_examples=examples(100), deadline=None)
+def test_room_beside_circles_is_the_distance_of_the_way_from_the_nearest(
+    circles: list[tuple[float, float, float]], way: tuple[float, float, float, float]
+) -> None:
+    line = shapely.LineString((way[:2], way[2:]))
+    rooms = [line.distance(shapely.Point(x, y)) - radius for x, y, radius in circles]
+    room = room_beside(np.array(circles, np.float64).reshape(-1, 3), *way)
+    assert room == pytest.approx(min(rooms, default=math.inf), abs=1e-9)
 
 
 def test_a_body_exactly_as_far_as_it_must_be_fits() -> None:

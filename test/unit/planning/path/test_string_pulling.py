@@ -24,6 +24,9 @@ REACH = RADIUS + CLEARANCE
 ROOM = math.sqrt(REACH**2 - 0.025**2)
 """m; what a way between centres of cells of 5 cm keeps from a corner."""
 
+BESIDE = 0.05 * math.sqrt(0.5)
+"""m; what it keeps in addition from things that were seen."""
+
 BOXES = st.lists(
     st.tuples(
         st.floats(-0.8, 2.6), st.floats(-1.8, 1.6), st.floats(0.05, 0.8), st.floats(0.05, 0.8)
@@ -76,21 +79,21 @@ def test_a_pulled_way_is_shorter_keeps_its_room_and_passes_things_on_the_same_si
 ) -> None:
     map = room(*boxes)
     walls = fit_of(map)
-    fit = walls.with_obstacles(things)
     way = np.array(bends)
-    assume(min(rooms_along(way, fit)) >= ROOM)
+    far_off = [(x, y, radius + BESIDE) for x, y, radius in things]
+    assume(min(rooms_along(way, walls.with_obstacles(far_off))) >= ROOM)
     string = StringPulling(walls)
-    pulled = string.pulled(way, fit)
+    pulled = string.pulled(way, things)
     assert length_of(pulled) <= length_of(way) + 1e-9
     assert np.array_equal(pulled[[0, -1]], way[[0, -1]])
     line = shapely.LineString(pulled)
     assert line.distance(walls_of(map)) >= ROOM * (1.0 - CHORD) - 1e-9
     for x, y, radius in things:
-        assert line.distance(shapely.Point(x, y)) >= (ROOM + radius) * (1.0 - CHORD) - 1e-9
+        assert line.distance(shapely.Point(x, y)) >= (ROOM + BESIDE + radius) * (1.0 - CHORD) - 1e-9
     middles = np.argwhere(map.solid)[:, ::-1] * 0.05 + (-0.975, -1.975)
     passed = np.concatenate((middles, np.array(things).reshape(-1, 3)[:, :2]))
     assert (times_around(way, pulled, passed) == 0.0).all()
-    again = string.pulled(pulled, fit)
+    again = string.pulled(pulled, things)
     assert length_of(again) == pytest.approx(length_of(pulled), abs=2e-3)
 
 
@@ -102,7 +105,7 @@ def test_no_way_beside_a_pulled_one_is_shorter(boxes: list[Box], bends: list[Poi
     walls = fit_of(map)
     way = np.array(bends)
     assume(min(rooms_along(way, walls)) >= ROOM)
-    pulled = StringPulling(walls).pulled(way, walls)
+    pulled = StringPulling(walls).pulled(way)
     closed = walls_of(map).buffer(ROOM * 0.998, quad_segs=64)
     for before, bend, after in zip(pulled, pulled[1:], pulled[2:], strict=False):
         swept = shapely.Polygon((before, bend, after))
@@ -129,21 +132,25 @@ def test_around_one_corner_it_is_a_quarter_of_a_circle(turns: int, mirrored: boo
     matrix = np.array(((math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))))
     map = occupancy(np.rot90(solid, -turns))
     walls = fit_of(map)
-    pulled = StringPulling(walls).pulled(way @ matrix + (1.0, 0.0), walls)
+    pulled = StringPulling(walls).pulled(way @ matrix + (1.0, 0.0))
     exact = quarter_around(ROOM)
     assert exact * 0.9998 < length_of(pulled) < exact
     assert np.allclose(np.hypot(*(pulled[1:-1] - (1.0, 0.0)).T), ROOM)
 
 
 def test_around_a_round_thing_it_follows_its_circle() -> None:
-    walls = fit_of(room())
-    fit = walls.with_obstacles([(1.0, 0.0, 0.15)])
-    reach = ROOM + 0.15
+    reach = ROOM + BESIDE + 0.15
     way = np.array(((0.0, 0.0), (1.0, 0.7), (2.0, 0.0)))
-    pulled = StringPulling(walls).pulled(way, fit)
+    pulled = StringPulling(fit_of(room())).pulled(way, [(1.0, 0.0, 0.15)])
     tangent, angle = math.sqrt(1.0 - reach**2), math.pi - 2.0 * math.acos(reach)
     exact = 2.0 * tangent + angle * reach
     assert exact * 0.999 < length_of(pulled) < exact * 1.0005
+
+
+def test_a_way_closer_to_a_thing_than_to_be_pulled_around_it_stays() -> None:
+    way = np.array(((0.0, 0.0), (1.0, ROOM + 0.16), (2.0, 0.0)))
+    pulled = StringPulling(fit_of(room())).pulled(way, [(1.0, 0.0, 0.15)])
+    assert np.array_equal(pulled, way)
 
 
 def test_legs_with_too_little_room_stay_as_they_are() -> None:
@@ -153,7 +160,7 @@ def test_legs_with_too_little_room_stay_as_they_are() -> None:
     way = np.array(
         ((-0.6, -1.0), (-0.6, 0.9), (0.1, 0.2), (0.4, 0.2), (1.6, 0.2), (2.0, 0.3), (2.6, 1.3))
     )
-    pulled = StringPulling(walls).pulled(way, walls)
+    pulled = StringPulling(walls).pulled(way)
     among = {tuple(point) for point in pulled.tolist()}
     assert {(0.4, 0.2), (1.6, 0.2)} <= among
     assert not {(-0.6, 0.9), (0.1, 0.2), (2.0, 0.3)} & among
@@ -163,7 +170,7 @@ def test_legs_with_too_little_room_stay_as_they_are() -> None:
 def test_without_a_bend_nothing_is_pulled() -> None:
     walls = fit_of(room())
     way = np.array(((0.0, 0.0), (1.0, 0.5)))
-    assert StringPulling(walls).pulled(way, walls) is way
+    assert StringPulling(walls).pulled(way) is way
 
 
 def test_a_disc_smaller_than_a_cell_is_not_pulled() -> None:
@@ -171,7 +178,7 @@ def test_a_disc_smaller_than_a_cell_is_not_pulled() -> None:
     string = StringPulling(walls)
     way = np.array(((0.0, 0.0), (1.0, 0.5), (2.0, 0.0)))
     assert string.room == 0.0
-    assert string.pulled(way, walls) is way
+    assert string.pulled(way) is way
 
 
 def test_a_way_with_more_bends_than_there_was_room_for() -> None:
@@ -190,7 +197,7 @@ def test_a_way_with_more_bends_than_there_was_room_for() -> None:
     way = np.array([(-0.65, 0.0), *bends, (2.45, 0.0)])
     string = StringPulling(walls)
     string._make_room(4)
-    pulled = string.pulled(way, walls)
+    pulled = string.pulled(way)
     assert len(pulled) > 60
     assert length_of(pulled) < length_of(way)
     assert min(rooms_along(pulled, walls)) >= ROOM * (1.0 - CHORD) - 1e-9

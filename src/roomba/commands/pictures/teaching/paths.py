@@ -48,7 +48,7 @@ def picture_of_paths(home: Home) -> Figure:
     fit = FitMap.build(home.map, config.body.radius, config.walk.clearance)
     string = StringPulling(fit)
     over_cells = path_over_cells(fit, _FROM, _TO)
-    pulled = string.pulled(over_cells, fit)
+    pulled = string.pulled(over_cells)
     figure = empty_figure(1150, 580)
     whole, near = figure.subplots(1, 2)
     show_floor_plan(whole, home, area_of(home))
