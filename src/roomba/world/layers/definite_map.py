@@ -1,8 +1,8 @@
 """What the map of a file says of a floor, for certain: each cell is floor or keeps the body out.
 
-Maps of map_server tell how likely a cell is occupied, leave specks unknown that no beam went
-through, and may end in the middle of free floor. A world has none of this, and the robot in it is
-given the very map of which its world is made.
+Maps of map_server tell how likely a cell is occupied, or how much of it is, leave specks unknown
+that no beam went through, and may end in the middle of free floor. A world has none of this, and
+the robot in it is given the very map of which its world is made.
 """
 
 from __future__ import annotations
@@ -19,13 +19,15 @@ SPECK: Final = 0.01
 """m²; no larger unknown spot with free floor all around it is floor as well."""
 FENCE: Final = 0.1
 """m; thickness of a wall where a map ends: what a lidar sees a little too far lies in it."""
-_SIDES: Final = np.array([[False, True, False], [True, True, True], [False, True, False]])
-"""A cell and those over its sides."""
+_HARDLY: Final = 10
+"""%; what is less likely solid, or less of it, is as good as not known."""
+_AROUND: Final = np.ones((3, 3), np.bool_)
+"""A cell and those over its sides and corners."""
 
 
 def definite_map(map: OccupancyMap) -> OccupancyMap:
     """Return a map of free, occupied and unknown cells whose floor has an end on every side."""
-    return _without_specks(_fenced(_decided(map)))
+    return _decided(_without_specks(_fenced(map)))
 
 
 def _decided(map: OccupancyMap) -> OccupancyMap:
@@ -53,10 +55,16 @@ def _fenced(map: OccupancyMap) -> OccupancyMap:
 
 
 def _without_specks(map: OccupancyMap) -> OccupancyMap:
-    """Return a map in which small unknown spots in the midst of floor are floor."""
-    spots = numbered_regions(map.values == UNKNOWN)
+    """Return a map in which small unknown spots in the midst of floor are floor.
+
+    A cell of which something is solid, or may be, is not.
+    """
+    if not (map.values == FREE).any():
+        return map
+    is_open = (map.values != FREE) & (map.values < _HARDLY)
+    spots = numbered_regions(is_open)
     areas = np.bincount(spots.ravel()) * map.frame.resolution**2
     is_speck = areas <= SPECK + 1e-9
-    is_speck[spots[dilated(map.values == OCCUPIED, _SIDES)]] = False
+    is_speck[spots[dilated(map.values >= _HARDLY, _AROUND)]] = False
     is_speck[0] = False
     return OccupancyMap(map.frame, np.where(is_speck[spots], np.int8(FREE), map.values))

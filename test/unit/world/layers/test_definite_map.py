@@ -95,6 +95,24 @@ def test_shares_are_settled_by_the_half() -> None:
     assert np.array_equal(settled, values)
 
 
+@pytest.mark.parametrize(
+    "thing",
+    [[[45]], [[40, 40, 40]], [[70, 0, 0], [0, 45, 0], [0, 0, 70]]],
+    ids=["a leg", "a board", "a slanted wall"],
+)
+def test_what_fills_less_than_half_of_a_cell_does_not_vanish(thing: list[list[int]]) -> None:
+    values = room()
+    rows, columns = np.shape(thing)
+    values[20 : 20 + rows, 20 : 20 + columns] = thing
+    settled = definite_map(map_of(values)).values[20 : 20 + rows, 20 : 20 + columns]
+    assert np.array_equal(settled == FREE, np.array(thing) == FREE)
+
+
+def test_a_map_of_which_nothing_is_known_has_no_floor() -> None:
+    unknown = np.full((2, 2), UNKNOWN, np.int8)
+    assert np.array_equal(definite_map(map_of(unknown)).values, unknown)
+
+
 @pytest.mark.parametrize("cell", [0.05, 0.03, 0.01, 0.2])
 def test_floor_at_the_end_of_a_map_gets_a_wall_beyond_it(cell: float) -> None:
     values = np.full((9, 7), OCCUPIED, np.int8)
@@ -138,7 +156,10 @@ def test_small_unknown_spots_are_floor_where_only_floor_is_beside_them(inside: V
     wanted = values.copy()
     for spot in spots(values == UNKNOWN):
         beside = {
-            int(values[row + up, column + aside]) for row, column in spot for up, aside in SIDES
+            int(values[row + up, column + aside])
+            for row, column in spot
+            for up in (-1, 0, 1)
+            for aside in (-1, 0, 1)
         }
         if len(spot) * CELL**2 <= SPECK + 1e-9 and OCCUPIED not in beside:
             wanted[tuple(np.transpose(spot))] = FREE
