@@ -15,7 +15,7 @@ from roomba.compilation import inner_part
 _PER_QUARTER: Final = 2.0 / math.pi
 _QUARTER: Final = 1.57079632673412561417
 _QUARTER_REST: Final = 6.07710050650619224932e-11
-"""A right angle, rad, in two parts: a few times the first one is exact."""
+"""A right angle, rad, in two parts: whole multiples of the first one up to 2^20 are exact."""
 _SINE: Final = (
     -1.66666666666666324348e-01,
     8.33333333332248946124e-03,
@@ -53,7 +53,7 @@ _ATAN_MOST: Final = 0.66
 
 @inner_part
 def sine_cosine(angle: float) -> tuple[float, float]:
-    """Return both of an angle, rad, of a few thousand turns at most."""
+    """Return both of an angle, rad, of 1000 turns at most."""
     quarters = np.int32(angle * _PER_QUARTER + (0.5 if angle >= 0.0 else -0.5))
     turned = float(quarters)
     rest = angle - turned * _QUARTER - turned * _QUARTER_REST
@@ -73,7 +73,7 @@ def sine_cosine(angle: float) -> tuple[float, float]:
 
 @inner_part
 def direction_of(y: float, x: float) -> float:
-    """Return the angle of a direction, rad, as ``math.atan2`` does; of no direction it is 0."""
+    """Return the angle of a direction, rad, 0 of none: ``math.atan2`` but for the sign of zero."""
     aside, ahead = abs(y), abs(x)
     is_steep = aside > ahead
     longer = aside if is_steep else ahead

@@ -32,7 +32,7 @@ class Workers(ProcessPoolExecutor):
         *args: _Arguments.args,
         **kwargs: _Arguments.kwargs,
     ) -> Future[_Result]:
-        """Order some work; processes are started by this."""
+        """Order some work, from the main thread; processes are started by this."""
         with undisturbed():
             return super().submit(fn, *args, **kwargs)
 

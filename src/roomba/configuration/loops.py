@@ -49,6 +49,8 @@ class WalkConfig(Frozen):
     """m/s; slower than this the robot stands."""
     sharp_corner: Acute = 0.3
     """rad; at a sharper corner the setpoint waits for the robot; softer ones are cut."""
+    corner_cut: Positive = 0.005
+    """m; by so much the straight way to the setpoint leaves the path at most."""
     corner_reached: Positive = 0.04
     """m; the setpoint goes on when the robot is as near to a sharp corner."""
     braking: Positive = 0.4

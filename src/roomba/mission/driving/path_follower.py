@@ -13,6 +13,8 @@ from roomba.planning.path.planner import Path
 
 _SAME = 1e-9
 """m; a corner that is so little behind the robot is where it is."""
+_HALVINGS = 7
+"""Of the way to a setpoint that is brought nearer: to 2 mm."""
 _SEARCH_AHEAD = 0.6
 """m; window of the path, from the robot's last place on, in which its place is searched."""
 
@@ -25,6 +27,7 @@ class PathFollower:
         self._path = path
         self._config = config
         self._along = 0.0
+        self._points: list[list[float]] = path.points.tolist()
         self._corners: list[float] = path.stations[1:-1].tolist()
         self._angles: list[float] = np.abs(path.corner_angles[1:-1]).tolist()
 
@@ -49,8 +52,14 @@ class PathFollower:
         return setpoint, min(max_speed, self._corner_speed(max_speed))
 
     def _carrot(self, pose: Pose) -> float:
-        """Return how far along the path the setpoint is: ahead, but not beyond a sharp corner."""
-        carrot = min(self._along + self._config.lookahead, self._path.length)
+        """Return how far along the path the setpoint is.
+
+        It is ahead, but not beyond a sharp corner, and where the straight way to it keeps to the
+        path.
+        """
+        carrot = self._with_straight_way(
+            min(self._along + self._config.lookahead, self._path.length)
+        )
         first = bisect_right(self._corners, self._along - _SAME)
         for corner in range(first, bisect_right(self._corners, carrot)):
             station = self._corners[corner]
@@ -59,6 +68,38 @@ class PathFollower:
                 if off > self._config.corner_reached:
                     return station
         return carrot
+
+    def _with_straight_way(self, farthest: float) -> float:
+        """Return how far along the setpoint may be at most, so that no bend is cut by too much."""
+        # A setpoint that is nearer than this is as good as reached, and the robot stands.
+        nearer = min(self._along + 2.0 * self._config.corner_reached, farthest)
+        if self._cut_by(farthest) <= self._config.corner_cut:
+            return farthest
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (nearer + farthest)
+            if self._cut_by(middle) <= self._config.corner_cut:
+                nearer = middle
+            else:
+                farthest = middle
+        return nearer
+
+    def _cut_by(self, until: float) -> float:
+        """Return by how much, m, the straight way from where it is to there leaves the path."""
+        first, last = (
+            bisect_right(self._corners, self._along),
+            bisect_left(self._corners, until),
+        )
+        if first >= last:
+            return 0.0
+        x, y = self._path.point_at(self._along)
+        to_x, to_y = self._path.point_at(until)
+        length = math.hypot(to_x - x, to_y - y)
+        if length < _SAME:
+            return math.inf
+        return max(
+            abs((to_x - x) * (at_y - y) - (to_y - y) * (at_x - x)) / length
+            for at_x, at_y in self._points[first + 1 : last + 1]
+        )
 
     def _corner_speed(self, max_speed: float) -> float:
         """Return the fastest speed from which all corners ahead can be taken, m/s."""

@@ -28,7 +28,7 @@ QUARTER: Final = 16
 FULL: Final = -1
 """Asks for a larger String."""
 _EPSILON: Final = 1e-9
-"""cells; what is nearer to a line lies on it."""
+"""Square cells: twice the area of a triangle that is none."""
 _MOST_SWEEPS: Final = 40
 """Over the whole way; five do for nearly all."""
 
@@ -176,6 +176,11 @@ def _cross(x: float, y: float, to_x: float, to_y: float) -> float:
     return x * to_y - y * to_x
 
 
+@inner_part
+def _dot(x: float, y: float, to_x: float, to_y: float) -> float:
+    return x * to_x + y * to_y
+
+
 @part
 def _hold_corners(held: Floats, bend: _Bend, pegs: Pegs) -> int:
     """Note the points of corners' arcs that hold a bend; return how many, or FULL."""
@@ -285,21 +290,44 @@ def _span(bend: _Bend, low: float, high: float) -> tuple[float, float]:
 
 @part
 def _wrap(string: String, held: int, bend: _Bend) -> int:
-    """Find the hull of what holds a bend, from neighbour to neighbour (Jarvis march)."""
-    x, y = bend.from_x, bend.from_y
-    size = 0
-    while True:
-        next_x, next_y, is_held = bend.to_x, bend.to_y, False
-        for n in range(held):
-            other_x, other_y = string.held[n, 0], string.held[n, 1]
-            turn = bend.turn * _cross(next_x - x, next_y - y, other_x - x, other_y - y)
-            is_farther = math.hypot(other_x - x, other_y - y) > math.hypot(next_x - x, next_y - y)
-            if turn < -_EPSILON or (is_held and turn <= _EPSILON and is_farther):
-                next_x, next_y, is_held = other_x, other_y, True
-        if not is_held:
-            return size
-        if size == len(string.hull):
-            return FULL
-        string.hull[size, 0], string.hull[size, 1] = next_x, next_y
-        x, y = next_x, next_y
-        size += 1
+    """Find the hull of what holds a bend, from neighbour to neighbour (Graham scan)."""
+    _sort_around(string.held, held, bend)
+    hull, size = string.hull, 0
+    for n in range(held + 1):
+        x, y = bend.to_x, bend.to_y
+        if n < held:
+            x, y = string.held[n, 0], string.held[n, 1]
+        while size > 0:
+            before_x, before_y = bend.from_x, bend.from_y
+            if size > 1:
+                before_x, before_y = hull[size - 2, 0], hull[size - 2, 1]
+            at_x, at_y = hull[size - 1, 0], hull[size - 1, 1]
+            turn = bend.turn * _cross(at_x - before_x, at_y - before_y, x - at_x, y - at_y)
+            if turn > _EPSILON:
+                break
+            size -= 1
+        if n < held:
+            hull[size, 0], hull[size, 1] = x, y
+            size += 1
+    return size
+
+
+@part
+def _sort_around(held: Floats, size: int, bend: _Bend) -> None:
+    """Sort points by their direction from a bend's first neighbour, from that of the bend on.
+
+    Of those in one direction the nearest comes first.
+    """
+    for last in range(1, size):
+        x, y = held[last, 0], held[last, 1]
+        at = last
+        while at > 0:
+            other_x, other_y = held[at - 1, 0], held[at - 1, 1]
+            to_x, to_y = x - bend.from_x, y - bend.from_y
+            turn = bend.turn * _cross(other_x - bend.from_x, other_y - bend.from_y, to_x, to_y)
+            is_farther = _dot(to_x, to_y, x - other_x, y - other_y) >= 0.0
+            if turn > 0.0 or (turn == 0.0 and is_farther):
+                break
+            held[at, 0], held[at, 1] = other_x, other_y
+            at -= 1
+        held[at, 0], held[at, 1] = x, y

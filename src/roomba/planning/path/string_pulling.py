@@ -35,8 +35,9 @@ class StringPulling:
         half = 0.5 * frame.resolution
         self._walls = walls
         self.room = math.sqrt(max(walls.reach**2 - half**2, 0.0))
-        """m; what ways between centres that fit keep from walls, and pulled ones but for 0.12 %.
-        Of a disc smaller than half a cell they may keep nothing, and are not pulled."""
+        """m; what ways between centres that fit keep from walls. Pulled ones keep it, too, but for
+        0.12 % of it, or of the circle around a thing. Of a disc smaller than half a cell ways may
+        keep nothing, and are not pulled."""
         self._make_room(_FIRST_CAPACITY)
 
     def _make_room(self, capacity: int) -> None:
@@ -46,6 +47,11 @@ class StringPulling:
             np.zeros((capacity, 2)),
             np.zeros((capacity, 2)),
         )
+
+    @property
+    def capacity(self) -> int:
+        """How many points the work arrays have room for."""
+        return len(self._string.points)
 
     @cached_property
     def _corners(self) -> NDArray[np.uint8]:
@@ -100,10 +106,10 @@ class StringPulling:
         """Pull a way in the work arrays, and return how many points it has then."""
         while True:
             size = len(points)
-            if size <= len(self._string.points):
+            if size <= self.capacity:
                 self._string.points[:size] = points
                 self._string.pinned[:size] = pinned
                 size = pull(self._string, size, pegs)
                 if size != FULL:
                     return size
-            self._make_room(2 * len(self._string.points))
+            self._make_room(2 * self.capacity)

@@ -1,6 +1,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from fixtures.homes.rooms import Block, room_home
 from fixtures.thoroughness import examples
@@ -251,3 +252,16 @@ def test_a_lost_robot_gives_its_walk_up() -> None:
     step = walk.tick(lost, 0.5)
     assert step.state is WalkState.FAILED
     assert "several places fit" in step.reason
+
+
+@pytest.mark.parametrize("speed", [0.15, 0.5])
+def test_around_corners_it_keeps_most_of_its_clearance(speed: float) -> None:
+    """Slow or fast: the setpoint on a bend of many small ones is not so far ahead as to cut it."""
+    robot = HeadlessMission(room_home(blocks=[(2.0, 1.5, 2.2, 2.5)], station=Pose(0.5, 2.0)))
+    robot.brain.limit_speed(speed)
+    there = robot.walk(3.6, 2.0)
+    assert there.state is WalkState.ARRIVED
+    assert there.bumps == 0
+    x, y = there.poses[:, 1], there.poses[:, 2]
+    off = np.hypot(np.maximum(np.abs(x - 2.1) - 0.1, 0.0), np.maximum(np.abs(y - 2.0) - 0.5, 0.0))
+    assert off.min() - CONFIG.body.radius > 0.5 * CONFIG.walk.clearance

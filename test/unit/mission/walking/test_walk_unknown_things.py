@@ -87,8 +87,8 @@ def test_a_thing_that_is_taken_away_is_forgotten() -> None:
     assert there.state is WalkState.ARRIVED
     assert there.bumps == 0
     assert nearest(there, at.x, at.y) > CONFIG.body.radius + 0.2
-    # So many scans through where it stood it takes until that is sure.
-    scans = math.ceil(ThingConfig().most / ThingConfig().loss) + 1
+    # So many scans through where it stood it takes until that is sure; of some no beam goes there.
+    scans = 2 * math.ceil(ThingConfig().most / ThingConfig().loss)
     while robot.simulator.time < 15.0 + scans / robot.robot.lidar.rate:
         robot.walk(4.5, 3.0)
         robot.walk(4.5, 2.0)

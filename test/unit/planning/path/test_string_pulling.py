@@ -147,6 +147,26 @@ def test_around_a_round_thing_it_follows_its_circle() -> None:
     assert exact * 0.999 < length_of(pulled) < exact * 1.0005
 
 
+@given(
+    st.floats(-12.0, -5.0),
+    st.tuples(*[st.floats(-1.0, 1.0)] * 3),
+    st.floats(-1.2, 1.2),
+    st.floats(-1.2, 1.2),
+)
+@settings(max_examples=examples(200), deadline=None)
+def test_around_things_that_are_nearly_one_it_comes_to_an_end(
+    exponent: float, apart: tuple[float, float, float], start: float, goal: float
+) -> None:
+    """A thing that was felt twice, or felt and seen, is two things at nearly one place."""
+    x, y, larger = (10.0**exponent * each for each in apart)
+    things = [(1.0, 0.0, 0.06), (1.0 + x, y, 0.06 + abs(larger))]
+    string = StringPulling(fit_of(room()))
+    way = np.array(((0.0, start), (1.0, 0.5), (2.0, goal)))
+    pulled = string.pulled(way, things)
+    assert length_of(pulled) <= length_of(way) + 1e-9
+    assert string.capacity < 1000
+
+
 def test_a_way_closer_to_a_thing_than_to_be_pulled_around_it_stays() -> None:
     way = np.array(((0.0, 0.0), (1.0, ROOM + 0.16), (2.0, 0.0)))
     pulled = StringPulling(fit_of(room())).pulled(way, [(1.0, 0.0, 0.15)])
