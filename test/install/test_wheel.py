@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -58,6 +59,29 @@ def test_it_cleans_a_home_from_another_folder(installed: Installation) -> None:
     assert done.returncode == 0, done.stderr
     told = json.loads(done.stdout)
     assert (told["outcome"], told["docked"]) == ("COMPLETED", True)
+
+
+def test_with_the_oldest_numba_that_may_be_there_a_clean_is_the_same(
+    installed: Installation, tmp_path: Path
+) -> None:
+    """The newest one comes by itself: both ends of the range are tried."""
+    asked = """
+from importlib.metadata import requires
+print(next(each for each in requires("roomba_robot") if each.startswith("numba")))
+"""
+    oldest = re.search(r">=([\d.]+)", installed.python(asked).stdout)
+    assert oldest is not None
+    older = Installation(tmp_path)
+    pip = ["-m", "pip", "install", "--quiet", f"numba=={oldest[1]}.*"]
+    program = f"import subprocess, sys; subprocess.run([sys.executable, *{pip}], check=True)"
+    assert older.python(program).returncode == 0
+    cleans = []
+    for each in (installed, older):
+        done = each.roomba("sim", "--home", "studio", "--seed", "1", "--json", "-")
+        assert done.returncode == 0, done.stderr
+        cleans.append(json.loads(done.stdout))
+    for figure in ("outcome", "hits", "fraction", "path_ratio"):
+        assert cleans[0][figure] == pytest.approx(cleans[1][figure], rel=1e-6), figure
 
 
 def test_it_maps_a_home_and_writes_the_map(installed: Installation) -> None:
