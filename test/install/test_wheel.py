@@ -80,7 +80,8 @@ print(next(each for each in requires("roomba_robot") if each.startswith("numba")
         done = each.roomba("sim", "--home", "studio", "--seed", "1", "--json", "-")
         assert done.returncode == 0, done.stderr
         cleans.append(json.loads(done.stdout))
-    for figure in ("outcome", "hits", "fraction", "path_ratio"):
+    assert cleans[0]["outcome"] == cleans[1]["outcome"] == "COMPLETED"
+    for figure in ("hits", "fraction", "path_ratio"):
         assert cleans[0][figure] == pytest.approx(cleans[1][figure], rel=1e-6), figure
 
 
