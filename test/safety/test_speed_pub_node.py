@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -158,74 +159,54 @@ def test_a_hazard_is_obeyed_at_once_and_its_end_at_the_next_tick(
     assert rig.ticked() == [AHEAD]
 
 
-@pytest.mark.parametrize(
-    ("hazard", "driven"),
-    [
-        ("is_left_pressed", Twist(-0.1, 0.0)),
-        ("is_right_pressed", Twist(-0.1, 0.0)),
-        ("is_cliff_left", Twist(-0.1, 0.0)),
-        ("is_cliff_front_left", Twist(-0.1, 0.0)),
-        ("is_cliff_front_right", Twist(-0.1, 0.0)),
-        ("is_cliff_right", Twist(-0.1, 0.0)),
-        ("is_left_dropped", STANDSTILL),
-        ("is_right_dropped", STANDSTILL),
-    ],
-)
-def test_a_hazard_that_the_body_tells_in_one_message_is_obeyed_at_once(
-    rig: Rig, hazard: str, driven: Twist
-) -> None:
+@pytest.mark.parametrize("battery", [0.5, 1.01, math.nan])
+def test_what_the_body_tells_in_one_message_silences_no_hazard(rig: Rig, battery: float) -> None:
     rig.start()
-    assert rig.told("body", BodyState()) == []
-    assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
-    assert rig.told("body", BodyState(**{hazard: True})) == [driven]
-    assert rig.told("body", BodyState(**{hazard: True})) == []
-    assert rig.ticked() == [driven]
-    assert rig.told("body", BodyState()) == []
-    assert rig.ticked() == [AHEAD]
+    rig.told("body", BodyState(battery=0.5), "/body")
+    rig.told("cmd_vel", twist_message(AHEAD))
+    rig.ticked()
+    rig.told("body", BodyState(is_left_pressed=True, battery=battery), "/body")
+    assert rig.told("bumper", Bumper(is_left_pressed=True), "/body") == [Twist(-0.1, 0.0)]
 
 
-def test_a_command_in_the_same_tick_does_not_use_up_the_bodys_turn(rig: Rig) -> None:
+def test_no_tick_changes_a_connection(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
     rig.start()
-    assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
-    assert rig.told("body", BodyState(is_left_pressed=True)) == [Twist(-0.1, 0.0)]
-    assert rig.told("body", BodyState(is_left_dropped=True)) == []
+    rig.told("body", BodyState(battery=0.5), "/body")
+    monkeypatch.setattr(rospy, "Subscriber", _waits_for_the_master)
+    rig.ticked()
+    rig.graph.leave("body")
     assert rig.ticked() == [STANDSTILL]
 
 
-def test_the_single_topics_count_while_no_message_tells_all_of_the_body(rig: Rig) -> None:
-    rig.start()
-    rig.told("cmd_vel", twist_message(AHEAD))
-    rig.told("body", BodyState(linear=-0.25), "/body")
-    assert rig.ticked() == [AHEAD]
-    assert rig.speeds == [0.25]
-    assert rig.told("bumper", Bumper(is_left_pressed=True), "/body") == []
-    rig.told("odom", odometry(0.4), "/body")
-    rig.ticked()
-    rig.ticked()
-    assert rig.speeds == [0.25, 0.25]
-    rig.graph.leave("body")
-    rig.told("cmd_vel", twist_message(AHEAD))
-    rig.ticked()
-    assert rig.told("bumper", Bumper(is_left_pressed=True), "/body") == [Twist(-0.1, 0.0)]
-    rig.told("odom", odometry(0.4), "/body")
-    rig.ticked()
-    assert rig.speeds == pytest.approx([0.25, 0.25, 0.4])
-
-
-def test_another_node_does_not_take_the_place_of_the_body(
+def test_nothing_comes_between_what_was_decided_and_what_the_drive_is_told(
     rig: Rig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    now = [100.0]
-    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    locks: list[Any] = []
+    new_lock = threading.Lock
+
+    def kept() -> Any:
+        locks.append(new_lock())
+        return locks[-1]
+
+    monkeypatch.setattr(threading, "Lock", kept)
     rig.start()
-    rig.told("odom", odometry(0.2), "/body")
-    rig.told("body", BodyState(is_left_dropped=True, linear=0.5), "/other")
-    assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
+    held: list[bool] = []
+    publish = type(rospy.Publisher("cmd_vel_out", TwistMessage)).publish
+
+    def watched(publisher: Any, *told: Any, **fields: Any) -> None:
+        if publisher.name == "/cmd_vel_out":
+            held.append(any(lock.locked() for lock in locks))
+        publish(publisher, *told, **fields)
+
+    monkeypatch.setattr(type(rospy.Publisher("cmd_vel_out", TwistMessage)), "publish", watched)
+    rig.told("cmd_vel", twist_message(AHEAD))
+    rig.told("bumper", Bumper(is_left_pressed=True))
     rig.ticked()
-    assert rig.told("bumper", Bumper(is_left_pressed=True), "/body") == [Twist(-0.1, 0.0)]
-    assert rig.speeds == pytest.approx([0.2])
-    now[0] += 1.1
-    assert rig.told("body", BodyState(is_left_dropped=True), "/other") == [STANDSTILL]
+    assert held == [True] * 3
+
+
+def _waits_for_the_master(*_: Any, **__: Any) -> None:
+    pytest.fail("a tick subscribed: without a master it waits without end")
 
 
 def test_hazards_and_a_wanted_speed_do_not_use_up_each_others_turn(rig: Rig) -> None:
@@ -478,7 +459,6 @@ def test_the_newest_message_alone_waits_and_commands_go_out_without_delay(
         "emergency_stop": {"kind": String, "queue_size": 1, "latch": True},
     }
     at_once = {
-        "body": BodyState,
         "bumper": Bumper,
         "cliff": Cliff,
         "wheel_drop": WheelDrop,

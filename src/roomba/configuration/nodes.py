@@ -86,7 +86,7 @@ class PeriodsConfig(Frozen):
     """s of wall time between two tellings of where a simulated robot really is,"""
     true_dirt_wall: Positive = 0.5
     """and of the dirt that really lies in its home."""
-    cruise_speed: AtLeastOne = 4
+    cruise_speed_ticks: AtLeastOne = 4
     """Ticks between two cruise speeds of a walk that did not change."""
 
 

@@ -55,67 +55,32 @@ _UNKNOWN = -1.0
 """In the first element of a covariance: there is no such measurement."""
 
 
-def body_message(
-    now: float, seen: Observation, beams: int, bin_capacity: float, frame_id: str
-) -> BodyState:
-    """Return all that a simulated body tells but its scan.
-
-    ``beams`` is the code of what it sees of the station; the bin holds ``bin_capacity``, g.
-    """
-    where, moves, wheels = seen.odometry, seen.odometry_twist, seen.wheels
-    bumper, cliff, battery = seen.bumper, seen.cliff, seen.battery
-    return BodyState(
-        header(now, frame_id),
-        where.x,
-        where.y,
-        where.theta,
-        moves.linear,
-        moves.angular,
-        seen.angular_velocity,
-        bumper.left,
-        bumper.right,
-        cliff.left,
-        cliff.front_left,
-        cliff.front_right,
-        cliff.right,
-        wheels.dropped_left,
-        wheels.dropped_right,
-        beams,
-        battery.level,
-        battery.capacity,
-        battery.is_docked,
-        seen.grains,
-        seen.in_bin / bin_capacity,
-        seen.brush_current,
-    )
-
-
-def told_body_message(now: float, told: Readings, bin_capacity: float, frame_id: str) -> BodyState:
-    """Return all that a robot tells but its scan; ``bin_capacity`` is in g."""
+def body_message(now: float, told: Readings, bin_capacity: float, frame_id: str) -> BodyState:
+    """Return all that a body tells but its scan; the bin holds ``bin_capacity``, g."""
     where, moves, cliff, battery = told.odometry, told.twist, told.cliff, told.battery
     return BodyState(
-        header(now, frame_id),
-        where.x,
-        where.y,
-        where.theta,
-        moves.linear,
-        moves.angular,
-        math.nan if told.turning is None else told.turning,
-        told.bumper_left,
-        told.bumper_right,
-        cliff.left,
-        cliff.front_left,
-        cliff.front_right,
-        cliff.right,
-        told.dropped_left,
-        told.dropped_right,
-        code_of_beams(told.beams),
-        battery.level,
-        battery.capacity,
-        battery.is_docked,
-        told.grains,
-        told.in_bin / bin_capacity,
-        told.brush_current,
+        header=header(now, frame_id),
+        x=where.x,
+        y=where.y,
+        theta=where.theta,
+        linear=moves.linear,
+        angular=moves.angular,
+        turning=math.nan if told.turning is None else told.turning,
+        is_left_pressed=told.bumper_left,
+        is_right_pressed=told.bumper_right,
+        is_cliff_left=cliff.left,
+        is_cliff_front_left=cliff.front_left,
+        is_cliff_front_right=cliff.front_right,
+        is_cliff_right=cliff.right,
+        is_left_dropped=told.dropped_left,
+        is_right_dropped=told.dropped_right,
+        ir_omni=code_of_beams(told.beams),
+        battery=battery.level,
+        battery_capacity=battery.capacity,
+        is_docked=battery.is_docked,
+        dirt_detect=told.grains,
+        bin_level=told.in_bin / bin_capacity,
+        brush_current=told.brush_current,
     )
 
 

@@ -21,13 +21,13 @@ from roomba_ros.convert.common import odometry_message, transform_message
 from roomba_ros.convert.diagnostics import line_message
 from roomba_ros.convert.readings import Sides, code_of_beams
 from roomba_ros.convert.sensors import (
+    body_message,
     bumper_message,
     cliff_message,
     dock_message,
     hazards_message,
     scan_message,
     told_battery_message,
-    told_body_message,
     told_hazards_of,
     wheel_drop_message,
 )
@@ -138,7 +138,7 @@ class ToldTopics:
         pose, twist = told.odometry, told.twist
         if self._whole.get_num_connections() > 0:
             capacity = self._config.brush.bin_capacity
-            self._whole.publish(told_body_message(now, told, capacity, self._odom))
+            self._whole.publish(body_message(now, told, capacity, self._odom))
         if self._odometry.get_num_connections() > 0:
             self._odometry.publish(odometry_message(now, pose, twist, self._odom, self._base))
         if self._transforms.get_num_connections() > 0:

@@ -30,8 +30,8 @@ from roomba_ros.runtime.subscriptions import subscribe
 from roomba_ros.senses.body_topics import BodyTopics
 
 _HEARD: Final = ("odom", "imu", "scan", "wheel_drop", "bumper", "cliff")
-_KEPT: Final = ("odom",)
-"""By the report its position node subscribes to it."""
+_ALWAYS: Final = ("odom",)
+"""The assignment asks that ``position_pub_node`` subscribes to it."""
 
 
 class LocalizationTopics:
@@ -46,7 +46,7 @@ class LocalizationTopics:
     def __init__(self, config: RobotConfig, nodes: NodesConfig) -> None:
         """Connect nothing yet."""
         self._config, self._placing = config, nodes.placing
-        self._body = BodyTopics(config, *_HEARD, kept=_KEPT)
+        self._body = BodyTopics(config, *_HEARD, always=_ALWAYS)
         self._localizer: Localizer | None = None
         self._keeper: PlaceKeeper | None = None
         self._newest: Readings | None = None

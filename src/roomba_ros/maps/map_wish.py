@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import Final
 
 GIVEN: Final = "given"
+"""A map that others tell."""
 NONE: Final = "none"
+"""A new one of its own."""
 OWN: Final = "own"
-"""A map that others tell; a new one of its own; the own one of this floor."""
+"""The own one of this floor."""
 FOLDER: Final = "maps"
 """Where saved maps are, unless another folder is given."""
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Final
@@ -11,7 +13,7 @@ from roomba_robot.msg import BodyState
 
 from roomba.robot.readings import Readings
 from roomba_ros.convert.readings import body_of
-from roomba_ros.runtime.senders import OneSender
+from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender
 from roomba_ros.runtime.subscriptions import subscribe
 
 IN_BODY: Final = frozenset(
@@ -38,7 +40,8 @@ class BodySource:
     A message wakes a process, which takes longer than what it is woken for: the body of this
     package tells all in one message. Bodies of others, and bags, have the single topics alone.
 
-    Subscribes: ``body`` (BodyState), or what ``single`` does.
+    Subscribes: ``body`` (BodyState), or what ``single`` does. This waits for the master: it is for
+    nodes without whose commands the drive stops, and not for the speed node.
     """
 
     def __init__(
@@ -60,8 +63,11 @@ class BodySource:
         self._convert = partial(body_of, bin_capacity=bin_capacity)
         self._queue_size = queue_size
         self._singles: tuple[rospy.Subscriber, ...] = ()
+        self._body: rospy.Subscriber | None = None
+        self._heard = -math.inf
+        """s of wall time of the newest message that could be used."""
         self.is_whole = False
-        """Whether ``body`` is told."""
+        """Whether ``body`` was told when :meth:`follow` was called last."""
 
     def start(self) -> None:
         """Connect."""
@@ -77,9 +83,11 @@ class BodySource:
         self._singles = tuple(self._single())
 
     def follow(self) -> None:
-        """Leave the single topics when the body tells all in one, or take to them again."""
-        if self.is_whole and self._body.get_num_connections() == 0:
-            self.is_whole = False
+        """Leave the single topics when the body tells all in one, or take to them again.
+
+        The latter when no node tells ``body``, or none tells it so that it can be used.
+        """
+        self.is_whole = self._is_told()
         if self.is_whole and self._singles:
             for subscriber in self._singles:
                 subscriber.unregister()
@@ -87,6 +95,11 @@ class BodySource:
         elif not self.is_whole and not self._singles:
             self._singles = tuple(self._single())
 
+    def _is_told(self) -> bool:
+        if self._body is None or self._body.get_num_connections() == 0:
+            return False
+        return time.monotonic() - self._heard <= SELDOM_SILENT_AFTER
+
     def _on_body(self, told: Readings) -> None:
-        self.is_whole = True
         self._take(told)
+        self._heard = time.monotonic()

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections import deque
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import replace
 from functools import partial
 from typing import Any, Final
@@ -50,9 +51,21 @@ from roomba_ros.senses.waiting_scans import WaitingScans
 
 _KEPT: Final = 40
 """Messages of the body, of odometry and of the gyro that wait for the next tick: two seconds."""
+_LONGEST_WAIT: Final = 2.0
+"""s that a reading waits at most: one that is older than another by more is of a clock set back."""
 _QUEUE: Final = 10
 _OF_ANY: Final = frozenset(("scan",))
 """Topics on which several nodes may tell: a robot may have two lidars, each with its frame."""
+_FIELDS: Final = {
+    "bumper": ("bumper_left", "bumper_right"),
+    "cliff": ("cliff",),
+    "wheel_drop": ("dropped_left", "dropped_right"),
+    "ir_omni": ("beams",),
+    "dirt_detect": ("grains",),
+    "bin_level": ("in_bin",),
+    "brush_current": ("brush_current",),
+}
+"""What of the readings single topics tell."""
 
 
 class BodyTopics:
@@ -68,9 +81,9 @@ class BodyTopics:
     the node that finds the robot's place measured it).
     """
 
-    def __init__(self, config: RobotConfig, *topics: str, kept: Collection[str] = ()) -> None:
-        """Connect nothing yet; ``kept`` single topics are subscribed to beside ``body``, too."""
-        self._config, self._topics, self._kept = config, topics, kept
+    def __init__(self, config: RobotConfig, *topics: str, always: Collection[str] = ()) -> None:
+        """Connect nothing yet; ``always`` single topics are subscribed to beside ``body``, too."""
+        self._config, self._topics, self._always = config, topics, always
         self._lock = threading.Lock()
         self._senders = OneSender(SELDOM_SILENT_AFTER)
         self._source = BodySource(
@@ -83,6 +96,7 @@ class BodyTopics:
         self._bodies: deque[Readings] = deque(maxlen=_KEPT)
         self._odometry: deque[OdometryReading] = deque(maxlen=_KEPT)
         self._gyro: deque[GyroReading] = deque(maxlen=_KEPT)
+        self._newest = -math.inf
         self._scans = WaitingScans()
         self._battery = Battery()
         self._others: dict[str, Any] = {}
@@ -105,12 +119,12 @@ class BodyTopics:
             )
         if "lidar_correction" in self._topics:
             self._subscribe("lidar_correction", Pose2D, correction_of, self._on_correction)
-        self._subscribe_to(self._kept)
+        self._subscribe_to(self._always)
         self._source.start()
 
     def _subscribe_singles(self) -> list[rospy.Subscriber]:
         """Subscribe to what ``body`` tells as well."""
-        return self._subscribe_to([name for name in self._topics if name not in self._kept])
+        return self._subscribe_to([name for name in self._topics if name not in self._always])
 
     def _subscribe_to(self, topics: Collection[str]) -> list[rospy.Subscriber]:
         """Subscribe to single topics, out of those of ``body``."""
@@ -159,39 +173,35 @@ class BodyTopics:
 
     def take(self) -> list[Readings]:
         """Return the readings since the last call, in the order of time."""
+        was_whole = self._source.is_whole
         self._source.follow()
-        told = self._whole() if self._source.is_whole else self._joined()
+        told = self._new(self._told(with_single=not (was_whole and self._source.is_whole)))
         if told:
             told[-1] = self._with_scan(told[-1])
         return told
 
-    def _whole(self) -> list[Readings]:
-        """Return what came by messages that tell all of the body."""
+    def _told(self, *, with_single: bool) -> list[Readings]:
+        """Return what was told since the last call; of one time what tells all comes last."""
         with self._lock:
-            told = list(self._bodies)
+            whole, odometry, gyro = list(self._bodies), list(self._odometry), list(self._gyro)
+            others = {**self._others, "battery": self._battery}
             self._bodies.clear()
             self._odometry.clear()
-            emptying = self._others.get("emptying")
-        if emptying is not None:
-            told = [replace(each, emptying=emptying) for each in told]
-        return told
+        if "emptying" in others:
+            whole = [replace(each, emptying=others["emptying"]) for each in whole]
+        if not with_single:
+            return whole
+        return [*_joined(odometry, gyro, others), *whole]
 
-    def _joined(self) -> list[Readings]:
-        """Return what came by single topics: odometry, each with the newest of the others."""
-        with self._lock:
-            told, gyro = list(self._odometry), list(self._gyro)
-            others = {**self._others, "battery": self._battery}
-            self._odometry.clear()
-        return [
-            Readings(
-                time=each.stamp,
-                odometry=each.pose,
-                twist=each.twist,
-                turning=_turning_at(each.stamp, gyro),
-                **others,
-            )
-            for each in told
-        ]
+    def _new(self, told: Iterable[Readings]) -> list[Readings]:
+        """Return one reading of each time that was not given yet, in the order of time."""
+        of_time = {each.time: each for each in told if self._is_new(each.time)}
+        if of_time:
+            self._newest = max(of_time)
+        return [of_time[stamp] for stamp in sorted(of_time)]
+
+    def _is_new(self, stamp: float) -> bool:
+        return not 0.0 <= self._newest - stamp <= _LONGEST_WAIT
 
     def _with_scan(self, newest: Readings) -> Readings:
         """Return readings with the scan that came with them, if one is new."""
@@ -227,6 +237,9 @@ class BodyTopics:
     def _on_body(self, told: Readings) -> None:
         with self._lock:
             self._bodies.append(told if told.time else replace(told, time=rospy.get_time()))
+            self._battery = told.battery
+            for topic in _FIELDS.keys() & self._topics:
+                self._others.update((name, getattr(told, name)) for name in _FIELDS[topic])
         self._heard |= IN_BODY
 
     def _on_odometry(self, told: OdometryReading) -> None:
@@ -259,6 +272,22 @@ class BodyTopics:
 
     def _on_bin(self, level: float) -> None:
         self._note(in_bin=level * self._config.brush.bin_capacity)
+
+
+def _joined(
+    odometry: Iterable[OdometryReading], gyro: list[GyroReading], others: dict[str, Any]
+) -> list[Readings]:
+    """Return what came by single topics: odometry, each with the newest of the others."""
+    return [
+        Readings(
+            time=each.stamp,
+            odometry=each.pose,
+            twist=each.twist,
+            turning=_turning_at(each.stamp, gyro),
+            **others,
+        )
+        for each in odometry
+    ]
 
 
 def _turning_at(stamp: float, gyro: list[GyroReading]) -> float | None:

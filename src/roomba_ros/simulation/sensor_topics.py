@@ -13,6 +13,7 @@ from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
 from std_msgs.msg import Float32, UInt16
 
 from roomba.configuration.simulation import SimulatedRobotConfig
+from roomba.headless.body import readings_of
 from roomba.world.engine.state.arrays import code_of
 from roomba.world.health import health_of
 from roomba.world.simulator import Observation, Simulator
@@ -83,7 +84,7 @@ class SensorTopics:
                 "body",
                 BodyState,
                 1,
-                lambda now, seen: body_message(now, seen, code_of(seen.infrared), capacity, odom),
+                lambda now, seen: body_message(now, readings_of(seen, None), capacity, odom),
             ),
             _topic(
                 "bumper",

@@ -19,7 +19,7 @@ from std_msgs.msg import Float32, String
 
 from roomba import geometry
 from roomba.control.speed_loop import Hazards, Hold, Source, SpeedLoop
-from roomba.robot.readings import CliffReading, Readings
+from roomba.robot.readings import CliffReading
 from roomba_ros.convert.common import twist_message, twist_of
 from roomba_ros.convert.readings import (
     OdometryReading,
@@ -38,13 +38,11 @@ from roomba_ros.runtime.parameters import (
 )
 from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender
 from roomba_ros.runtime.subscriptions import subscribe
-from roomba_ros.senses.body_source import BodySource
 
 EMERGENCY_PARAMETER: Final = "emergency_stop"
 """Why the drive is held; kept by the master, so that a node that was killed holds it again."""
 _NO_REASON: Final = "no reason was given"
 _LONGEST_REASON: Final = 200
-_SAFE: Final = Hazards()
 
 
 class SpeedPubNode:
@@ -54,10 +52,10 @@ class SpeedPubNode:
     between two of these at once for the first message of each topic), ``emergency_stop`` (String,
     latched: why the drive is held, empty when it is not).
     Subscribes: ``change_speed`` (Float32, cruise speed wanted, m/s), ``cmd_vel`` (Twist), and
-    ``cmd_vel_mission`` (Twist), which counts while no fresh ``cmd_vel`` does; ``body`` (BodyState),
-    and without that ``odom`` (Odometry), ``bumper`` (Bumper), ``cliff`` (Cliff) and ``wheel_drop``
-    (WheelDrop): a hazard is obeyed at once; of two nodes that tell the same of the body, the first
-    counts until it is silent.
+    ``cmd_vel_mission`` (Twist), which counts while no fresh ``cmd_vel`` does; ``odom`` (Odometry),
+    ``bumper`` (Bumper), ``cliff`` (Cliff), ``wheel_drop`` (WheelDrop): a hazard is obeyed at once;
+    of two nodes that tell the same of the body, the first counts until it is silent. It does not
+    hear ``body``: no number of that can get a hazard refused, and no tick changes a connection.
     Services: ``emergency_stop`` (EmergencyStop): the drive is held until it is released.
     Parameters: ``robot_max_speed``; a bad value is refused and set back. ``emergency_stop``: kept.
     """
@@ -72,10 +70,11 @@ class SpeedPubNode:
         config, self._told_every = read_robot_config(), read_nodes_config().periods.speed
         body, self.period = config.body, config.timing.tick
         self._loop = SpeedLoop(body, self._parameters.values.robot_max_speed)
-        self._hazards = _SAFE
+        self._hazards = Hazards()
         self._speed: float | None = None
         self._speed_told = -math.inf
         self._hold = Hold.NO_COMMAND
+        self._hold_logged = Hold.NO_COMMAND
         self._passed_on: set[str] = set()
         self._told_drive: geometry.Twist | None = None
         self._speed_publisher = rospy.Publisher("speed", Float32, queue_size=1)
@@ -83,15 +82,14 @@ class SpeedPubNode:
         self._emergency = rospy.Publisher("emergency_stop", String, queue_size=1, latch=True)
         self._engage_again()
         rospy.Service("emergency_stop", EmergencyStop, self._on_emergency_stop)
-        self._senders = OneSender()
-        self._body = BodySource(
-            self._on_body,
-            self._subscribe_singles,
-            self._senders,
-            config.brush.bin_capacity,
-            queue_size=1,
-        )
-        self._body.start()
+        for name, kind, convert in (
+            ("bumper", Bumper, bumper_of),
+            ("cliff", Cliff, cliff_of),
+            ("wheel_drop", WheelDrop, wheel_drop_of),
+        ):
+            felt, one = partial(self._on_hazard, name), OneSender(SELDOM_SILENT_AFTER)
+            subscribe(name, kind, convert, felt, tcp_nodelay=True, senders=one)
+        subscribe("odom", Odometry, odometry_of, self._on_odometry, senders=OneSender())
         subscribe("change_speed", Float32, speed_of, self._on_change_speed)
         for source in Source:
             take = partial(self._on_command, source)
@@ -100,10 +98,9 @@ class SpeedPubNode:
     def tick(self, now: float) -> None:
         """Obey changed limits, tell the drive and tell the speed."""
         max_speed = self._parameters.refresh().robot_max_speed
-        self._body.follow()
         with self._lock:
             self._loop.set_max_speed(max_speed)
-        self._passed_on.clear()
+            self._passed_on.clear()
         self._tell_drive(now)
         self._tell_speed(now)
 
@@ -117,24 +114,35 @@ class SpeedPubNode:
         What comes more often waits for the tick: a flood of messages makes no flood for the drive.
         So does what changes nothing: the drive was told the same a moment ago.
         """
-        if topic not in self._passed_on:
+        with self._lock:
+            if topic in self._passed_on:
+                return
             before, twist = self._told_drive, self._decide(now)
             if twist != before:
                 self._passed_on.add(topic)
                 self._drive.publish(twist_message(twist))
+        self._log_hold()
 
     def _tell_drive(self, now: float) -> None:
-        self._drive.publish(twist_message(self._decide(now)))
+        with self._lock:
+            self._drive.publish(twist_message(self._decide(now)))
+        self._log_hold()
 
     def _decide(self, now: float) -> geometry.Twist:
-        """Return what the drive is to do; log why it is held, when that is new."""
+        """Return what the drive is told next.
+
+        The lock is to be held until the drive was told: no older twist comes after a newer one.
+        """
+        self._told_drive, self._hold = self._loop.tick(now)
+        return self._told_drive
+
+    def _log_hold(self) -> None:
+        """Log why the drive is held, when that is new; without the lock: a log may wait."""
         with self._lock:
-            twist, hold = self._loop.tick(now)
-            changed, self._hold = hold is not self._hold, hold
-            self._told_drive = twist
-        if changed and hold not in (Hold.NONE, Hold.NO_COMMAND):
+            hold, is_new = self._hold, self._hold is not self._hold_logged
+            self._hold_logged = hold
+        if is_new and hold not in (Hold.NONE, Hold.NO_COMMAND):
             rospy.loginfo("the drive is held: %s", hold.value)
-        return twist
 
     def _tell_speed(self, now: float) -> None:
         is_due = not 0.0 <= now - self._speed_told < self._told_every - 0.5 * self.period
@@ -179,35 +187,6 @@ class SpeedPubNode:
         with self._lock:
             self._loop.set_cruise_speed(speed)
         self._pass_on(rospy.get_time(), "change_speed")
-
-    def _subscribe_singles(self) -> list[rospy.Subscriber]:
-        """Subscribe to what ``body`` tells as well."""
-        hazards = [
-            subscribe(
-                name,
-                kind,
-                convert,
-                partial(self._on_hazard, name),
-                tcp_nodelay=True,
-                senders=OneSender(SELDOM_SILENT_AFTER),
-            )
-            for name, kind, convert in (
-                ("bumper", Bumper, bumper_of),
-                ("cliff", Cliff, cliff_of),
-                ("wheel_drop", WheelDrop, wheel_drop_of),
-            )
-        ]
-        speed = subscribe("odom", Odometry, odometry_of, self._on_odometry, senders=self._senders)
-        return [*hazards, speed]
-
-    def _on_body(self, told: Readings) -> None:
-        self._speed = abs(told.twist.linear)
-        hazards = told.hazards
-        with self._lock:
-            self._hazards = hazards
-            self._loop.set_hazards(hazards)
-        if hazards != _SAFE:
-            self._pass_on(rospy.get_time(), "body")
 
     def _on_hazard(self, hazard: str, felt: Sides | CliffReading) -> None:
         with self._lock:

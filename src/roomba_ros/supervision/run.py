@@ -39,7 +39,9 @@ _CALLER: Final = "/roomba_run"
 _HOME: Final = "/home_sim_node/home"
 """The end of the parameter's name."""
 _MAP: Final = "/position_pub_node/map"
-"""The end of the parameter's name, beside which that of the maps' folder stands."""
+"""The end of the parameter's name."""
+_MAPS_FOLDER: Final = "/position_pub_node/maps_folder"
+"""The end of the parameter's name."""
 _WORDS: Final = "ROOMBA_LAUNCHING"
 """The environment variable with what ``./roomba`` wants to be said when nothing is refused."""
 _MASTER_WITHIN: Final = 20.0
@@ -108,7 +110,8 @@ def _require_map(launch: Launch) -> None:
     """Raise MapStoreError when no map of that name is saved: the robot would make a new one."""
     for name, value in launch.parameters.items():
         if name.endswith(_MAP):
-            given = str(launch.parameters.get(f"{name}s_folder", ""))
+            folder = name.removesuffix(_MAP) + _MAPS_FOLDER
+            given = str(launch.parameters.get(folder, ""))
             require_map(str(value), folder_for(given, FOLDER))
 
 

@@ -265,7 +265,8 @@ class WalkToPointActionServer:
     def _tell_cruise_speed(self, speed: float) -> None:
         """Tell the cruise speed at a change, and now and then: its hearers go by the last one."""
         self._speed_ticks += 1
-        if speed != self._cruise_speed or self._speed_ticks >= self._nodes.periods.cruise_speed:
+        is_due = self._speed_ticks >= self._nodes.periods.cruise_speed_ticks
+        if speed != self._cruise_speed or is_due:
             self._cruise_speed, self._speed_ticks = speed, 0
             self._change_speed.publish(speed)
 

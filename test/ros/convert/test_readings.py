@@ -33,7 +33,6 @@ from roomba.mission.docking.beams import StationBeams
 from roomba.mission.inputs.senses import Battery
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.readings import CliffReading, Readings
-from roomba.world.engine.state.arrays import code_of
 from roomba.world.simulator import Simulator
 from roomba_ros.convert.client import BATTERY_NOT_HEARD, doubt_of, vacuum_of
 from roomba_ros.convert.common import (
@@ -63,7 +62,7 @@ from roomba_ros.convert.readings import (
     turning_of,
     wheel_drop_of,
 )
-from roomba_ros.convert.sensors import body_message, told_body_message
+from roomba_ros.convert.sensors import body_message
 from roomba_ros.convert.values import data_of, duty_of, number_of, speed_of, time_of
 
 BIN: Final = 300.0
@@ -269,7 +268,7 @@ OTHER_SIDES = replace(
 
 @pytest.mark.parametrize("told", [TOLD, OTHER_SIDES, replace(TOLD, turning=None)])
 def test_what_a_body_tells_in_one_message_is_read_as_it_was_told(told: Readings) -> None:
-    message = told_body_message(told.time, told, BIN, "odom")
+    message = body_message(told.time, told, BIN, "odom")
     assert message.header.frame_id == "odom"
     assert asdict(body_of(message, BIN)) == asdict(told)
 
@@ -279,7 +278,7 @@ def test_what_a_simulated_body_tells_in_one_message_is_what_its_sensors_say() ->
     for _ in range(20):
         simulator.step(Twist(-0.2, 0.3), 0.05)
     seen = simulator.observe()
-    told = body_of(body_message(1.0, seen, code_of(seen.infrared), BIN, "odom"), BIN)
+    told = body_of(body_message(1.0, readings_of(seen, None), BIN, "odom"), BIN)
     expected = replace(readings_of(seen, None), time=1.0, in_bin=told.in_bin)
     assert asdict(told) == asdict(expected)
     assert told.in_bin == pytest.approx(seen.in_bin)

@@ -57,6 +57,7 @@ def test_single_topics_are_left_when_the_first_whole_message_came(heard: Heard) 
     heard.source.follow()
     assert not heard.source.is_whole
     assert heard.tell_both() == (1, 1)
+    heard.source.follow()
     assert heard.source.is_whole
     for _ in range(2):
         heard.source.follow()
@@ -73,6 +74,27 @@ def test_single_topics_are_heard_again_when_no_node_tells_the_whole_any_more(hea
         heard.source.follow()
     assert not heard.source.is_whole
     assert heard.tell_both() == (2, 2)
+    heard.source.follow()
+    assert heard.source.is_whole
+    assert heard.tell_both() == (3, 2)
+
+
+@pytest.mark.parametrize("battery", [None, 1.01])
+def test_single_topics_are_heard_again_when_no_whole_message_can_be_used(
+    heard: Heard, monkeypatch: pytest.MonkeyPatch, battery: float | None
+) -> None:
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    heard.tell_both()
+    for seconds, is_whole in ((2.9, True), (0.2, False)):
+        now[0] += seconds
+        if battery is not None:
+            heard.ros.publish("body", BodyState(battery=battery), "/body")
+        heard.source.follow()
+        assert heard.source.is_whole is is_whole
+    assert heard.tell_both() == (2, 2)
+    heard.source.follow()
+    assert heard.source.is_whole
 
 
 def test_a_node_that_does_not_tell_the_body_does_not_take_its_place(
@@ -88,4 +110,5 @@ def test_a_node_that_does_not_tell_the_body_does_not_take_its_place(
     assert (heard.source.is_whole, heard.whole) == (False, [])
     now[0] += 1.1
     heard.tell_both("/other")
+    heard.source.follow()
     assert heard.source.is_whole

@@ -17,7 +17,7 @@ from std_msgs.msg import Float32, UInt16
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.docking.beams import StationBeams
-from roomba.mission.inputs.senses import EmptyingTold
+from roomba.mission.inputs.senses import Battery, EmptyingTold
 from roomba.robot.readings import CliffReading
 from roomba_ros.convert.common import odometry_message
 from roomba_ros.senses.body_topics import BodyTopics
@@ -108,6 +108,52 @@ def test_single_topics_count_again_when_no_message_tells_all(ros: Lockstep) -> N
     assert heard.take() == []
     ros.publish("/odom", moved(10.05), "/body")
     assert [each.time for each in heard.take()] == [10.05]
+
+
+def test_single_topics_begin_with_what_the_body_told_last(ros: Lockstep) -> None:
+    heard = body("odom", "bumper", "cliff", "battery_state", "dock_status")
+    told = whole(10.0, is_left_pressed=True, is_docked=True, is_left_dropped=True)
+    ros.publish("/body", told, "/body")
+    heard.take()
+    ros.leave("/body")
+    heard.take()
+    ros.publish("/odom", moved(10.05), "/body")
+    (reading,) = heard.take()
+    assert reading.battery == Battery(0.5, 26.0, is_docked=True)
+    assert (reading.bumper_left, reading.dropped_left) == (True, False)
+
+
+def test_what_the_body_told_before_it_left_is_given_at_once_and_not_later(ros: Lockstep) -> None:
+    heard = body("odom")
+    ros.publish("/body", whole(10.0), "/body")
+    heard.take()
+    ros.publish("/body", whole(10.05), "/body")
+    ros.leave("/body")
+    assert [each.time for each in heard.take()] == [10.05]
+    ros.publish("/odom", moved(10.1), "/body")
+    assert [each.time for each in heard.take()] == [10.1]
+    ros.publish("/body", whole(10.15), "/body")
+    assert [each.time for each in heard.take()] == [10.15]
+
+
+def test_no_time_is_given_twice_and_none_is_lost_when_the_body_comes(ros: Lockstep) -> None:
+    heard = body("odom")
+    ros.publish("/odom", moved(9.95), "/body")
+    assert [each.time for each in heard.take()] == [9.95]
+    ros.publish("/odom", moved(10.0), "/body")
+    ros.publish("/odom", moved(10.05), "/body")
+    ros.publish("/body", whole(10.05, x=2.0), "/body")
+    given = heard.take()
+    assert [(each.time, each.odometry.x) for each in given] == [(10.0, 0.0), (10.05, 2.0)]
+    ros.publish("/body", whole(10.05), "/body")
+    assert heard.take() == []
+
+
+def test_a_clock_that_is_set_back_is_followed(ros: Lockstep) -> None:
+    heard = body("odom")
+    for stamp in (10.0, 3.0, 3.05):
+        ros.publish("/odom", moved(stamp))
+        assert [each.time for each in heard.take()] == [stamp]
 
 
 def test_odometry_without_a_stamp_is_of_now(ros: Lockstep) -> None:

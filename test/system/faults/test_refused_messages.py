@@ -26,12 +26,7 @@ FLOOD = 200
 """Messages of one topic, sent as fast as one can steer."""
 FORGED = 80
 """Commands of a program that wants to drive a robot that is held."""
-OF_OTHER_BODIES = {
-    "roomba_robot/Bumper",
-    "roomba_robot/Cliff",
-    "roomba_robot/WheelDrop",
-    "std_msgs/UInt16",
-}
+OF_OTHER_BODIES = {"std_msgs/UInt16"}
 """Kinds that nodes hear of a body that does not tell all in one message."""
 
 Counts = dict[tuple[str, str], int]

@@ -13,8 +13,8 @@ from roomba.planning.path.planner import Path
 
 _SAME = 1e-9
 """m; a corner that is so little behind the robot is where it is."""
-_HALVINGS = 7
-"""Of the way to a setpoint that is brought nearer: to 2 mm."""
+_HALVINGS = 20
+"""Of the way to a setpoint that is brought nearer: to less than a micrometre."""
 _SEARCH_AHEAD = 0.6
 """m; window of the path, from the robot's last place on, in which its place is searched."""
 
