@@ -1,0 +1,42 @@
+"""What did not change is told again now and then, and a change at once, however fast the clock."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import pytest
+from fixtures.homes.worlds import NOISY
+from fixtures.nodes.lockstep import Lockstep
+from fixtures.robots.missions import HOME
+
+from roomba.geometry import Twist
+from roomba.world.engine.state.arrays import Fault
+from roomba.world.simulator import Simulator
+from roomba_ros.simulation.sensor_topics import SensorTopics
+
+
+@pytest.mark.parametrize(("speed", "bumpers"), [(1.0, 50), (0.5, 50), (20.0, 5)])
+def test_a_bumper_is_told_5_times_a_second_but_no_oftener_than_10_times_by_the_wall(
+    monkeypatch: pytest.MonkeyPatch, speed: float, bumpers: int
+) -> None:
+    now = 1000.0
+    monkeypatch.setattr(time, "monotonic", lambda: now)
+    simulator = Simulator(HOME, NOISY, seed=1)
+    heard: list[Any] = []
+    odometry: list[Any] = []
+    with Lockstep().installed() as lockstep:
+        lockstep.hear("bumper", heard.append)
+        lockstep.hear("body", odometry.append)
+        topics = SensorTopics(NOISY, simulator, "robot")
+        for tick in range(1, 201):
+            now += 0.05 / speed
+            topics.tell(0.05 * tick, tick, simulator.observe())
+        lockstep.deliver()
+        assert len(heard) == pytest.approx(bumpers, abs=1)
+        assert len(odometry) == 200
+        simulator.inject(Fault.BUMPER_STUCK, 1.0)
+        simulator.step(Twist(), 0.05)
+        topics.tell(10.05, 201, simulator.observe())
+        lockstep.deliver()
+    assert heard[-1].is_left_pressed or heard[-1].is_right_pressed
