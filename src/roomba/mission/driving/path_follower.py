@@ -71,10 +71,10 @@ class PathFollower:
 
     def _with_straight_way(self, farthest: float) -> float:
         """Return how far along the setpoint may be at most, so that no bend is cut by too much."""
-        # A setpoint that is nearer than this is as good as reached, and the robot stands.
-        nearer = min(self._along + 2.0 * self._config.corner_reached, farthest)
         if self._cut_by(farthest) <= self._config.corner_cut:
             return farthest
+        # A setpoint that is nearer than this is as good as reached, and the robot stands.
+        nearer = min(self._along + 2.0 * self._config.corner_reached, farthest)
         for _ in range(_HALVINGS):
             middle = 0.5 * (nearer + farthest)
             if self._cut_by(middle) <= self._config.corner_cut:

@@ -101,6 +101,11 @@ class FitMap:
         labels.flags.writeable = False
         return labels
 
+    @cached_property
+    def _circles(self) -> NDArray[np.float64]:
+        """The obstacles as rows, float64 [n, 3], m."""
+        return np.array(self.obstacles, np.float64).reshape(-1, 3)
+
     def room_along(self, start: Point, end: Point) -> float:
         """Return how near anything solid is to the straight way between two points, m.
 
@@ -118,9 +123,7 @@ class FitMap:
             (to_y - frame.origin_y) / cell,
             limit / cell,
         )
-        for at_x, at_y, radius in self.obstacles:
-            room = min(room, _point_to_segment(at_x, at_y, x, y, to_x, to_y) - radius)
-        return float(room)
+        return float(min(room, room_beside(self._circles, x, y, to_x, to_y)))
 
     def fits_along(self, start: Point, end: Point) -> bool:
         """Whether the body fits everywhere on the straight way between two points; exact."""
