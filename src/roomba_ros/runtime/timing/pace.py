@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
 from roomba.configuration.nodes import PaceConfig
 
-_LOOK: Final = 0.001
-"""s of wall time between two looks whether it caught up."""
+_LOOK: Final = 0.01
+"""s of wall time between two looks whether a part is still to be waited for, which says nothing."""
 
 
 class _Heard(NamedTuple):
@@ -38,6 +39,7 @@ class Pace:
         is_there: Callable[[str], bool],
         monotonic: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
+        wait_for: Callable[[threading.Event, float], object] = threading.Event.wait,
     ) -> None:
         """Let a tick, ``tick`` s of the robot's clock, come every ``tick / speed`` s of wall time.
 
@@ -46,6 +48,7 @@ class Pace:
         """
         self._tick, self._speed, self._config = tick, speed, config
         self._monotonic, self._sleep, self._is_there = monotonic, sleep, is_there
+        self._has_news, self._wait_for = threading.Event(), wait_for
         self._due = monotonic() + tick / speed
         self._heard: dict[str, _Heard] = {}
         self._ticked = monotonic()
@@ -60,6 +63,7 @@ class Pace:
         now, before = self._monotonic(), self._heard.get(part)
         advanced = before.advanced if before is not None and before.stamp == stamp else now
         self._heard[part] = _Heard(stamp, advanced, now)
+        self._has_news.set()
 
     def wait(self, now: float, ended: Callable[[], bool]) -> None:
         """Return when the next tick is due, or at the end.
@@ -69,13 +73,20 @@ class Pace:
         wait = self._due - self._monotonic()
         if wait > 0.0:
             self._sleep(wait)
-        while self._must_hold(now) and not ended():
-            self._sleep(_LOOK)
+        self._hold(now, ended)
         if self._monotonic() - self._due > self._config.latest:
             self.is_late = True
             self._due = self._monotonic()
         self._due += self._tick / self._speed_now()
         self._ticked = self._monotonic()
+
+    def _hold(self, now: float, ended: Callable[[], bool]) -> None:
+        """Wait for the parts that are late, and no longer than until the last of them is heard."""
+        while not ended():
+            self._has_news.clear()  # before the look: what is heard after it ends the wait
+            if not self._must_hold(now):
+                return
+            self._wait_for(self._has_news, _LOOK)
 
     def _speed_now(self) -> float:
         is_missed = self._speed > 1.0 and any(map(self._is_missed, list(self._heard)))

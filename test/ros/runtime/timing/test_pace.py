@@ -1,5 +1,7 @@
 """How fast the simulation goes, by a clock of the test's own."""
 
+import threading
+
 import pytest
 
 from roomba.configuration.nodes import PaceConfig
@@ -24,7 +26,16 @@ class Wall:
             lambda part: part not in self.dead,
             lambda: self.now,
             self.sleep,
+            self.wait_for,
         )
+
+    def wait_for(self, news: threading.Event, seconds: float) -> None:
+        """Let time pass until there is news, at most so many seconds."""
+        until = self.now + seconds
+        if self.events and self.events[0][0] < until:
+            self.sleep(self.events[0][0] - self.now)
+        if not news.is_set():
+            self.sleep(until - self.now)
 
     def sleep(self, seconds: float) -> None:
         self.now += seconds
@@ -60,8 +71,29 @@ def test_a_robot_that_is_late_is_waited_for() -> None:
     wall = Wall()
     wall.pace.heard(PART, 7.6)
     assert wall.ticks(1, robot=7.65) == pytest.approx(PERIOD)
-    wall.events = [(wall.now + 0.2, 8.0)]
-    assert wall.ticks(1, robot=8.1) == pytest.approx(0.2, abs=0.002)
+    wall.events = [(wall.now + 0.2034, 8.0)]
+    # No longer than until it is heard.
+    assert wall.ticks(1, robot=8.1) == pytest.approx(0.2034, abs=1e-9)
+
+
+def test_what_is_heard_while_it_looks_ends_the_wait() -> None:
+    wall = Wall()
+    wall.pace.heard(PART, 7.6)
+    looks: list[float] = []
+
+    def is_there(part: str) -> bool:
+        # Heard just after the look at how far it is, before the wait begins.
+        if not looks:
+            wall.pace.heard(PART, 8.0)
+        looks.append(wall.now)
+        return True
+
+    wall.pace = Pace(
+        TICK, SPEED, PaceConfig(), is_there, lambda: wall.now, wall.sleep, wall.wait_for
+    )
+    wall.pace.heard(PART, 7.6)
+    assert wall.ticks(1, robot=8.1) == pytest.approx(PERIOD)
+    assert looks
 
 
 def test_one_that_says_nothing_any_more_is_not() -> None:
@@ -112,7 +144,9 @@ def test_who_does_not_come_back_for_a_minute_counts_no_more() -> None:
 
 def test_what_was_asked_for_to_be_slow_stays_so() -> None:
     wall = Wall()
-    wall.pace = Pace(TICK, 0.5, PaceConfig(), lambda part: False, lambda: wall.now, wall.sleep)
+    wall.pace = Pace(
+        TICK, 0.5, PaceConfig(), lambda part: False, lambda: wall.now, wall.sleep, wall.wait_for
+    )
     wall.pace.heard(PART, 8.1)
     assert wall.ticks(100, robot=8.1) == pytest.approx(100 * TICK / 0.5)
 
