@@ -92,6 +92,13 @@ def test_of_a_flood_the_first_change_of_each_topic_is_passed_on_between_ticks(ri
         assert rig.ticked() == [Twist(0.4, 0.0)]
 
 
+def test_a_flood_of_one_source_holds_up_no_change_of_another(rig: Rig) -> None:
+    rig.start()
+    assert rig.told("cmd_vel_mission", twist_message(AHEAD)) == [AHEAD]
+    assert rig.told("cmd_vel_mission", twist_message(Twist(0.2, 0.0))) == []
+    assert rig.told("cmd_vel", twist_message(STANDSTILL)) == [STANDSTILL]
+
+
 def test_what_changes_nothing_waits_for_the_tick_and_holds_up_no_change(rig: Rig) -> None:
     rig.start()
     assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
