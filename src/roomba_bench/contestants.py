@@ -151,7 +151,7 @@ class Program:
 
 
 class Peer(Program):
-    """A peer's script, ``peers/<module>.py``, under the peers' own Python."""
+    """A peer's script under the peers' own Python; its ``module`` is told from ``peers`` on."""
 
     def __init__(
         self,

@@ -18,8 +18,8 @@ from roomba.world.fleet import Fleet
 from roomba.world.home.home import Home
 from roomba.world.lidar import Lidar
 from roomba_bench.floors import Floor, free_poses
-from roomba_bench.peers.arena import SPEED, TURNING_SPEED
 from roomba_bench.peers.protocol import Work
+from roomba_bench.peers.simulators.arena import SPEED, TURNING_SPEED
 
 ROBOT: Final = SimulatedRobotConfig().with_lidar(EXACT_LIDAR)
 """The shipped one but for its lidar, in every table that names no other: peers have none that turns

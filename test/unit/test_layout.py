@@ -42,6 +42,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/client/token": ("unit/ui/web/test_kept_token.py", "read as it is written"),
     "roomba/ui/smart_home/switch": ("unit/ui/smart_home/test_smart_home.py", "switches it on"),
     "roomba/ui/smart_home/topics": ("unit/ui/smart_home/test_announcement.py", VALUES),
+    "roomba/ui/web/routes/wishes": ("unit/ui/web/test_app.py", VALUES),
     "roomba/ui/web/routes/examples": ("unit/ui/web/test_guarded_routes.py", VALUES),
     "roomba/ui/web/guarding": ("unit/ui/web/test_guarded_routes.py", "guards every route"),
     "roomba/ui/web/bounded/limits": ("unit/ui/web/bounded/test_connections.py", VALUES),
@@ -267,6 +268,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/world/engine/": ("unit/world/test_simulator.py", WORLD),
     "roomba/world/home/": ("unit/world/layers/test_layer.py", WORLD),
     "roomba/world/layers/": ("unit/world/layers/test_layer.py", WORLD),
+    "roomba/world/observation": ("unit/world/test_simulator.py", VALUES),
     "roomba/world/random/": ("unit/world/random/test_home.py", WORLD),
     "roomba_ros/bags/": ("ros/bags/test_sim_command.py", COMMAND),
     "roomba_ros/camera/": ("ros/camera/test_turn_camera.py", NODE),
@@ -289,7 +291,6 @@ OWN_TESTS = {"roomba": "unit", "roomba_ros": "ros", "roomba_bench": "unit/roomba
 """Of each package the folder whose tests mirror it."""
 
 LARGE_FOLDERS = {
-    "src/roomba_bench/peers": "one script a peer",
     "src/roomba/configuration": "one part of the configuration a file",
 }
 

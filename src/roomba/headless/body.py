@@ -16,7 +16,8 @@ from roomba.robot.command import Command
 from roomba.robot.readings import CliffReading, Readings, ScanReading
 from roomba.world.engine.state.arrays import Infrared
 from roomba.world.home.home import Home
-from roomba.world.simulator import Observation, Simulator
+from roomba.world.observation import Observation
+from roomba.world.simulator import Simulator
 
 
 class SimulatedBody:

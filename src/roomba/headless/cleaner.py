@@ -43,7 +43,8 @@ from roomba.planning.coverage.floor.floor import fine_frame
 from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 from roomba.robot.brain import Brain
 from roomba.world.home.home import Home
-from roomba.world.simulator import Observation, Simulator
+from roomba.world.observation import Observation
+from roomba.world.simulator import Simulator
 
 
 class HeadlessMission(Embodied):

@@ -188,7 +188,7 @@ def _tell_numbers(menu: Menu, report: CleanReport) -> None:
     if math.isfinite(report.distance):
         menu.say(f"Distance travelled: {quantity(report.distance, 'm')}")
     rate = square_metres_a_minute(report.covered, report.duration)
-    at_rate = "" if rate is None else f", {rate:.2f} m2 a minute"
+    at_rate = "" if rate is None else f", {rate:.2f} m² a minute"
     menu.say(f"Time taken: {time_text(report.duration)}{at_rate}")
     if report.times.times_least is not None:
         menu.say(f"Where it went: {_times_text(report.times)}")
@@ -207,7 +207,7 @@ def _times_text(times: TimeSpent) -> str:
 
 def _missed_text(floor: MissedFloor) -> str:
     room = f" in {floor.room}" if floor.room else ""
-    return f"{quantity(floor.area, 'm2')}{room}, at {place(floor.x, floor.y)}: {floor.reason}"
+    return f"{quantity(floor.area, 'm²')}{room}, at {place(floor.x, floor.y)}: {floor.reason}"
 
 
 def _state_line(state: VacuumSnapshot) -> str:

@@ -71,8 +71,8 @@ def follow_errand(
 
 
 def percent(share: float) -> str:
-    """Return a share, 0..1, for people; 100% is all of it, and nothing less."""
-    return f"{whole_percent(share)}%" if math.isfinite(share) else "unknown"
+    """Return a share, 0..1, for people; 100 % is all of it, and nothing less."""
+    return f"{whole_percent(share)} %" if math.isfinite(share) else "unknown"
 
 
 def time_text(seconds: float) -> str:
@@ -95,7 +95,7 @@ def area_text(covered: float, wanted: float) -> str:
     if not (math.isfinite(covered) and math.isfinite(wanted)):
         return "unknown"
     share = percent(share_of(covered, wanted))
-    return f"{covered:.1f} of {quantity(wanted, 'm2', 1)} ({share})"
+    return f"{covered:.1f} of {quantity(wanted, 'm²', 1)} ({share})"
 
 
 class CleanView(Protocol):

@@ -36,7 +36,7 @@ def explore(menu: Menu) -> None:
         nonlocal said
         if known >= said + STEP:
             said = known
-            menu.say(f"The robot knows {quantity(known, 'm2')}.")
+            menu.say(f"The robot knows {quantity(known, 'm²')}.")
 
     with menu.interrupts.held():
         report = follow_errand(
@@ -52,7 +52,7 @@ def explore(menu: Menu) -> None:
 
 def _tell_numbers(menu: Menu, report: ExploreReport) -> None:
     if math.isfinite(report.known):
-        menu.say(f"Known: {quantity(report.known, 'm2')}")
+        menu.say(f"Known: {quantity(report.known, 'm²')}")
     if math.isfinite(report.distance):
         menu.say(f"Distance travelled: {quantity(report.distance, 'm')}")
     menu.say(f"Time taken: {time_text(report.duration)}")

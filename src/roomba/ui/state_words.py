@@ -63,7 +63,7 @@ def _ended(last: dict[str, Any]) -> str:
     if _number(last["wanted"]) > 0.0:
         parts.append(area_text(_number(last["covered"]), last["wanted"]))
     if last.get("rate") is not None and _number(last["wanted"]) > 0.0:
-        parts.append(f"{last['rate']:.2f} m2 a minute")
+        parts.append(f"{last['rate']:.2f} m² a minute")
     if last["message"]:
         parts.append(last["message"])
     return ", ".join(parts)

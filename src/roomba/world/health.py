@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.body import HealthConfig
-from roomba.world.simulator import Observation
+from roomba.world.observation import Observation
 
 
 class Level(IntEnum):

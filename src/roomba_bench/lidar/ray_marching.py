@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from roomba.raster.distance import distance_to_nearest
 from roomba_bench.floors import Floor
-from roomba_bench.peers.arena import LONGEST_TURN, SHORTEST_TURN, SPEED, TURNING_SPEED
 from roomba_bench.peers.protocol import Work
+from roomba_bench.peers.simulators.arena import LONGEST_TURN, SHORTEST_TURN, SPEED, TURNING_SPEED
 
 Poses = NDArray[np.float64]
 Scans = NDArray[np.float32]

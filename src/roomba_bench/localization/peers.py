@@ -33,8 +33,8 @@ from roomba_bench.record import Better, PeerFigure, Record
 from roomba_bench.rounds import milliseconds
 
 MATCHERS = (
-    ("small_gicp", "small_gicp", "small_gicp"),
-    ("kiss-icp (no map)", "kiss_icp", "kiss-icp"),
+    ("small_gicp", "matching.small_gicp", "small_gicp"),
+    ("kiss-icp (no map)", "matching.kiss_icp", "kiss-icp"),
 )
 """Name in the table, script, and distribution."""
 _SPACING = 0.02

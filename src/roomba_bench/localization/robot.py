@@ -18,7 +18,8 @@ from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.world.home.home import Home, cells_in
 from roomba.world.layers.layer import load_home
-from roomba.world.simulator import Observation, Simulator
+from roomba.world.observation import Observation
+from roomba.world.simulator import Simulator
 from roomba_bench.floors import Floor, room_for
 from roomba_bench.ours_sim import ROBOT
 

@@ -20,8 +20,8 @@ from roomba_bench.bench import Bench
 from roomba_bench.checks import agreed
 from roomba_bench.contestants import Contestant, Local
 from roomba_bench.floors import Floor, free_poses
-from roomba_bench.peers.boxes import boxes_of
 from roomba_bench.peers.protocol import Work
+from roomba_bench.peers.simulators.boxes import boxes_of
 from roomba_bench.record import Better, Record, gain
 from roomba_bench.rounds import milliseconds
 
@@ -52,10 +52,10 @@ def measure(bench: Bench) -> list[Record]:
     }
     contestants: list[Contestant] = [
         Local("ours", lambda: _pictures(home, config, poses)),
-        bench.peer("moderngl", "moderngl", parameters),
-        bench.peer("mujoco", "mujoco_camera", parameters),
-        bench.peer("pyrender", "pyrender", parameters),
-        bench.peer("pybullet", "pybullet_camera", parameters),
+        bench.peer("moderngl", "cameras.moderngl", parameters),
+        bench.peer("mujoco", "cameras.mujoco", parameters),
+        bench.peer("pyrender", "cameras.pyrender", parameters),
+        bench.peer("pybullet", "cameras.pybullet", parameters),
     ]
     ours, *peers = bench.compete(contestants)
     time = Record(
@@ -75,7 +75,10 @@ def measure(bench: Bench) -> list[Record]:
 
 
 def home_of_boxes(home: Home) -> Floats:
-    """Return a home as boxes in flat colours, as :mod:`roomba_bench.peers.views` describes them."""
+    """Return a home as boxes in flat colours.
+
+    :mod:`roomba_bench.peers.cameras.views` describes them.
+    """
     frame = home.frame
     x_min, x_max, y_min, y_max = frame.extent
     middle = (0.5 * (x_min + x_max), 0.5 * (y_min + y_max), 0.0)

@@ -32,12 +32,12 @@ _SAME_RANGE = 0.02
 """Relative; of the mean range. Peers are given the first poses alone."""
 _BUILDINGS = (200, 400, 800, 1600)
 PEERS: tuple[tuple[str, str, dict[str, object]], ...] = (
-    ("mujoco", "mujoco", {}),
-    ("Box2D", "box2d", {}),
-    ("pymunk", "pymunk", {}),
-    ("pybullet", "pybullet", {}),
-    ("ir-sim (boxes)", "irsim", {"as_boxes": True}),
-    ("ir-sim (grid map)", "irsim", {"as_boxes": False}),
+    ("mujoco", "simulators.mujoco", {}),
+    ("Box2D", "simulators.box2d", {}),
+    ("pymunk", "simulators.pymunk", {}),
+    ("pybullet", "simulators.pybullet", {}),
+    ("ir-sim (boxes)", "simulators.irsim", {"as_boxes": True}),
+    ("ir-sim (grid map)", "simulators.irsim", {"as_boxes": False}),
 )
 """Name in the table, script, and what the script is told beside the case."""
 

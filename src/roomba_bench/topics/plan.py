@@ -49,11 +49,11 @@ def _grid_rows(bench: Bench, case: str, fits: Mask, aim: float) -> list[Record]:
     case_of_peers = {"fits": bench.save("fits", fits), "start": start, "goal": goal}
     contestants: list[Contestant] = [
         Local("ours", lambda: _grid_work(fits, start, goal)),
-        bench.peer("pyastar2d", "pyastar2d", case_of_peers),
-        bench.peer("scikit-image", "scikit_image", case_of_peers),
-        bench.peer("scipy", "scipy_graph", case_of_peers),
-        bench.peer("networkx", "networkx", case_of_peers),
-        bench.peer("scikit-fmm", "scikit_fmm", case_of_peers),
+        bench.peer("pyastar2d", "paths.pyastar2d", case_of_peers),
+        bench.peer("scikit-image", "paths.scikit_image", case_of_peers),
+        bench.peer("scipy", "paths.scipy_graph", case_of_peers),
+        bench.peer("networkx", "paths.networkx", case_of_peers),
+        bench.peer("scikit-fmm", "paths.scikit_fmm", case_of_peers),
     ]
     ours, *peers = bench.compete(contestants)
     for peer in peers:

@@ -59,7 +59,9 @@ def _round_trips(bench: Bench) -> list[Record]:
 
 def _bare_row(bench: Bench, graph: Graph, kind: str) -> Record:
     case, size = _SIZES[kind]
-    rospy, tcp = bench.compete([_bare(graph, kind), bench.peer("raw TCP", "tcp", {"bytes": size})])
+    rospy, tcp = bench.compete(
+        [_bare(graph, kind), bench.peer("raw TCP", "transport.tcp", {"bytes": size})]
+    )
     return _trip_row(f"rospy to rospy and back, {case}", rospy, (tcp.figure(milliseconds),))
 
 

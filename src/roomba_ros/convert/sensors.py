@@ -40,8 +40,8 @@ from roomba.grid import GridFrame, OccupancyMap
 from roomba.mission.inputs.senses import Battery
 from roomba.robot.readings import CliffReading, Readings
 from roomba.world.health import PartHealth
+from roomba.world.observation import Bumper, Cliff, Observation, Wheels
 from roomba.world.power import BatteryState
-from roomba.world.simulator import Bumper, Cliff, Observation, Wheels
 from roomba.world.truth import DoorNow, HomeNow
 from roomba_ros.convert.common import header, map_message
 from roomba_ros.convert.readings import Sides, code_of_beams

@@ -25,7 +25,8 @@ from roomba.geometry import Pose
 from roomba.world.home.doors import with_leaves
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
-from roomba.world.simulator import Observation, Simulator
+from roomba.world.observation import Observation
+from roomba.world.simulator import Simulator
 from roomba_ros.convert.common import (
     map_message,
     odometry_message,

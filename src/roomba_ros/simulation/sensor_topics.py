@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -18,7 +16,8 @@ from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.headless.body import readings_of
 from roomba.world.engine.state.arrays import code_of
 from roomba.world.health import health_of
-from roomba.world.simulator import Observation, Simulator
+from roomba.world.observation import Observation
+from roomba.world.simulator import Simulator
 from roomba_ros.convert.sensors import (
     battery_message,
     body_message,
@@ -34,6 +33,7 @@ from roomba_ros.convert.sensors import (
     wheel_drop_message,
 )
 from roomba_ros.runtime.node import frame_id
+from roomba_ros.runtime.timing.wall_period import WallPeriod
 
 _REPEATED_AFTER: Final = 0.1
 """s of wall time between two messages that tell the same."""
@@ -50,8 +50,8 @@ class _Topic:
     period: int
     message: Callable[[float, Observation], Any]
     changes: Callable[[Observation], object] | None = None
-    told: object = field(default=None)
-    told_at: float = -math.inf
+    told: object = None
+    repeated: WallPeriod = field(default_factory=lambda: WallPeriod(_REPEATED_AFTER))
 
     def tell(self, now: float, tick: int, seen: Observation) -> None:
         """Publish if it is time to."""
@@ -59,12 +59,13 @@ class _Topic:
             return
         state = self.changes(seen) if self.changes else None
         if state != self.told or (tick % self.period == 0 and self._is_due()):
-            self.told, self.told_at = state, time.monotonic()
+            self.told = state
+            self.repeated.begin()
             self.publisher.publish(self.message(now, seen))
 
     def _is_due(self) -> bool:
         """Whether a message is new, or the last one is not repeated too soon on a fast clock."""
-        return self.changes is None or time.monotonic() - self.told_at >= _REPEATED_AFTER
+        return self.changes is None or self.repeated.is_over()
 
 
 class SensorTopics:

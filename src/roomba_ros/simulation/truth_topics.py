@@ -2,40 +2,23 @@
 
 from __future__ import annotations
 
-import math
-import time
-
 import rospy
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid
 from roomba_robot.msg import SimHome
 
 from roomba.configuration.nodes import PeriodsConfig
-from roomba.world.simulator import Observation, Simulator
+from roomba.world.observation import Observation
+from roomba.world.simulator import Simulator
 from roomba.world.truth import HomeTruth
 from roomba_ros.convert.common import pose_message
 from roomba_ros.convert.sensors import sim_dirt_message, sim_home_message
+from roomba_ros.runtime.timing.wall_period import WallPeriod
 
 _HOME_EVERY = 4
 """Ticks between two looks at what stands about."""
 _DIRT_EVERY = 20
 """Ticks between two looks at the dirt."""
-
-
-class _WallPeriod:
-    """Says when so many s of wall time are over, again and again."""
-
-    def __init__(self, seconds: float) -> None:
-        """Be over at once, for the first time."""
-        self._seconds, self._began = seconds, -math.inf
-
-    def is_over(self) -> bool:
-        """Whether the period is over; if so the next one begins."""
-        now = time.monotonic()
-        if now - self._began < self._seconds:
-            return False
-        self._began = now
-        return True
 
 
 class TruthTopics:
@@ -49,8 +32,8 @@ class TruthTopics:
     def __init__(self, simulator: Simulator, periods: PeriodsConfig) -> None:
         """Connect all of them."""
         self._simulator, self._truth = simulator, HomeTruth(simulator.home)
-        self._pose_due = _WallPeriod(periods.true_pose_wall)
-        self._dirt_due = _WallPeriod(periods.true_dirt_wall)
+        self._pose_due = WallPeriod(periods.true_pose_wall)
+        self._dirt_due = WallPeriod(periods.true_dirt_wall)
         self._told: object = None
         self._pose = rospy.Publisher("sim/pose", PoseStamped, queue_size=1, tcp_nodelay=True)
         self._home = rospy.Publisher("sim/home", SimHome, queue_size=1, latch=True)
@@ -59,11 +42,13 @@ class TruthTopics:
     def tell(self, now: float, tick: int, seen: Observation) -> None:
         """Publish what is due at a tick; ``now`` is the time for stamps, s."""
         if self._pose.get_num_connections() > 0 and self._pose_due.is_over():
+            self._pose_due.begin()
             self._pose.publish(pose_message(now, seen.pose, "map"))
         if self._told is None or tick % _HOME_EVERY == 0:
             self._follow_home(now)
         is_looked_at = tick % _DIRT_EVERY == 0 and self._dirt.get_num_connections() > 0
         if is_looked_at and self._dirt_due.is_over():
+            self._dirt_due.begin()
             self._tell_dirt(now)
 
     def _follow_home(self, now: float) -> None:

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from roomba.configuration.robot import RobotConfig
 from roomba.control.position_loop import PositionLoop
 from roomba.geometry import Pose, Twist
-from roomba.world.simulator import Observation, Simulator
+from roomba.world.observation import Observation
+from roomba.world.simulator import Simulator
 
 CONFIG = RobotConfig()
 DT = 0.025

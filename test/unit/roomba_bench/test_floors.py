@@ -1,4 +1,4 @@
-"""Floors, boxes, and the independent reference for shortest ways."""
+"""Floors, and the independent reference for shortest ways."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ import pytest
 
 from roomba.grid import GridFrame
 from roomba_bench.floors import Floor, Mask, building, far_corners, free_poses, room_for
-from roomba_bench.peers.boxes import boxes_of
-from roomba_bench.peers.grids import links, path_facts
 from roomba_bench.shortest import ShortestWays
 
 FRAME = GridFrame(0.1, -1.0, 2.0, 40, 60)
@@ -18,21 +16,6 @@ FRAME = GridFrame(0.1, -1.0, 2.0, 40, 60)
 
 def random_floor(share: float = 0.3) -> Mask:
     return np.random.default_rng(3).random(FRAME.shape) < share
-
-
-def test_boxes_cover_each_solid_cell_once() -> None:
-    solid = random_floor()
-    covered = np.zeros(solid.shape, int)
-    for left, low, right, high in boxes_of(solid):
-        covered[low:high, left:right] += 1
-    assert np.array_equal(covered, solid.astype(int))
-
-
-def test_a_room_is_four_boxes_and_no_room_is_none() -> None:
-    walls = np.ones((8, 12), bool)
-    walls[1:-1, 1:-1] = False
-    assert len(boxes_of(walls)) == 4
-    assert boxes_of(~np.ones((3, 3), bool)).shape == (0, 4)
 
 
 def test_a_building_is_the_same_each_time_and_most_of_it_is_one_floor() -> None:
@@ -50,21 +33,6 @@ def test_free_poses_have_room() -> None:
     for x, y, theta in free_poses(floor, 50, room=0.2):
         assert room[FRAME.cell_of(x, y)]
         assert -math.pi <= theta <= math.pi
-
-
-def test_path_facts_count_length_and_corners_cut() -> None:
-    fits = np.array([[True, False], [True, True]])
-    cut = path_facts(fits, np.array([[0, 0], [1, 1]]))
-    assert cut == {"length": pytest.approx(2**0.5), "corners cut": 1.0}
-    around = path_facts(fits, np.array([[0, 0], [1, 0], [1, 1]]))
-    assert around == {"length": 2.0, "corners cut": 0.0}
-    with pytest.raises(ValueError, match="closed cells"):
-        path_facts(fits, np.array([[0, 0], [0, 1]]))
-
-
-def test_links_cut_no_corners() -> None:
-    first, second, cost = links(np.array([[True, False], [True, True]]))
-    assert sorted(zip(first, second, cost, strict=True)) == [(0, 2, 1.0), (2, 3, 1.0)]
 
 
 def test_the_shortest_way_leads_around_a_wall() -> None:

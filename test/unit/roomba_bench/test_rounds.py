@@ -90,7 +90,7 @@ def test_a_peer_that_pip_refused_is_named_with_its_reason(tmp_path: Path) -> Non
 
 def test_without_a_python_of_the_peers_each_peer_says_what_to_name() -> None:
     peer, unavailable = compete(
-        [Peer(None, "pymunk", "pymunk", {}), Unavailable(None, "range-libc")], PACE
+        [Peer(None, "pymunk", "simulators.pymunk", {}), Unavailable(None, "range-libc")], PACE
     )
     assert peer.error == "there is no Python for it; name one that has pymunk: --peers PYTHON"
     assert unavailable.error == "there is no script for it here"
@@ -98,7 +98,7 @@ def test_without_a_python_of_the_peers_each_peer_says_what_to_name() -> None:
 
 def test_a_peer_runs_under_the_python_that_is_named() -> None:
     """This one has all that the script imports: Python's own library."""
-    [peer] = compete([Peer(Path(sys.executable), "raw TCP", "tcp", {"bytes": 64})], PACE)
+    [peer] = compete([Peer(Path(sys.executable), "raw TCP", "transport.tcp", {"bytes": 64})], PACE)
     assert peer.error == ""
     assert peer.rate is not None
     assert peer.rate > 0.0

@@ -13,8 +13,13 @@ from roomba_bench.topics import TOPICS, left_out
 
 FOLDER = Path(roomba_bench.__file__).parent
 USAGE = FOLDER.parent / "roomba" / "commands" / "usage.txt"
-SHARED = {"__init__", "__main__", "alone", "arena", "boxes", "grids", "protocol", "views"}
-PEERS = sorted(path for path in (FOLDER / "peers").glob("*.py") if path.stem not in SHARED)
+SHARED = {"__init__", "arena", "boxes", "grids", "views"}
+PEERS = sorted(path for path in (FOLDER / "peers").glob("*/*.py") if path.stem not in SHARED)
+
+
+def told(script: Path) -> str:
+    """Return a peer as topics name it: ``paths.networkx``."""
+    return f"{script.parent.name}.{script.stem}"
 
 
 def names_in(path: Path) -> set[str]:
@@ -48,7 +53,7 @@ def test_each_topic_can_be_measured_and_is_in_the_usage(topic: str) -> None:
     assert topic in line.split("topics:")[1].split()
 
 
-@pytest.mark.parametrize("script", PEERS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("script", PEERS, ids=told)
 def test_each_peer_has_what_the_protocol_wants_and_knows_nothing_of_the_robot(script: Path) -> None:
     assert {"DISTRIBUTION", "prepare"} <= names_in(script)
     tree = ast.parse(script.read_text(encoding="utf-8"))
@@ -56,7 +61,14 @@ def test_each_peer_has_what_the_protocol_wants_and_knows_nothing_of_the_robot(sc
     assert not [name for name in imported if name.split(".")[0] in ("roomba", "roomba_ros")]
 
 
-@pytest.mark.parametrize("script", PEERS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("script", PEERS, ids=told)
+def test_each_peer_is_named_by_a_topic(script: Path) -> None:
+    """Nothing imports it, so a name that leads nowhere is not seen before it is started."""
+    texts = [path.read_text(encoding="utf-8") for path in FOLDER.rglob("*.py")]
+    assert any(f'"{told(script)}"' in text for text in texts)
+
+
+@pytest.mark.parametrize("script", PEERS, ids=told)
 def test_each_peer_is_installed_by_the_list(script: Path) -> None:
     listed = (FOLDER / "peers.txt").read_text(encoding="utf-8").split()
     [line] = [

@@ -98,20 +98,20 @@ def test_a_clean_is_told_during_and_after() -> None:
     _, lines, answers = use(robot, "5", "")
     assert answers.prompts[:2] == ["Select: ", WHAT]
     assert robot.asked == [(CleanMode.WHOLE, ())]
-    begin = lines.index("Cleaned: 0.0 of 8.0 m2 (0%), cleaning, kitchen, battery 80%, 16 s to go")
+    begin = lines.index("Cleaned: 0.0 of 8.0 m² (0 %), cleaning, kitchen, battery 80 %, 16 s to go")
     assert lines[begin + 1 : begin + 14] == [
-        "Cleaned: 4.0 of 8.0 m2 (50%), cleaning, hall, battery 80%, 8 s to go",
-        "Cleaned: 8.0 of 8.0 m2 (100%), returning, hall, battery 80%",
+        "Cleaned: 4.0 of 8.0 m² (50 %), cleaning, hall, battery 80 %, 8 s to go",
+        "Cleaned: 8.0 of 8.0 m² (100 %), returning, hall, battery 80 %",
         "The clean is done, and the robot is back on its station.",
-        "Cleaned: 8.0 of 8.0 m2 (100%)",
+        "Cleaned: 8.0 of 8.0 m² (100 %)",
         "Distance travelled: 5.00 m",
-        "Time taken: 20 s, 24.00 m2 a minute",
+        "Time taken: 20 s, 24.00 m² a minute",
         "Where it went: sweeping at full speed 10 s, ways, and floor passed twice 5 s, turning on "
         "the spot 5 s",
         "Energy used: 0.20 Wh",
         "Dirt picked up: 12.00 g",
-        "Missed: 0.50 m2 in kitchen, at x = 1.25 m, y = -2.00 m: something stands there",
-        "Missed: 0.25 m2, at x = 0.00 m, y = 0.00 m: it was stopped before",
+        "Missed: 0.50 m² in kitchen, at x = 1.25 m, y = -2.00 m: something stands there",
+        "Missed: 0.25 m², at x = 0.00 m, y = 0.00 m: it was stopped before",
         "",
         "Please press 1-4 to choose what the robot does:",
     ]
@@ -233,14 +233,14 @@ def test_ctrl_c_leaves_a_clean_to_itself() -> None:
     end = lines.index(GOES_ON)
     assert robot.cleans[0].cancels == 0
     told = [line for line in lines[end:] if line.startswith(("State", "The robot"))]
-    amount = "battery 80%, cleaned 1.5 of 12.0 m2 (12%), 21 s to go"
+    amount = "battery 80 %, cleaned 1.5 of 12.0 m² (12 %), 21 s to go"
     assert told[1:] == [
         f"State: cleaning, in kitchen, {amount}",
         "The robot pauses; press 6 to let it go on.",
         f"State: paused, in kitchen, {amount}",
         "The robot goes on.",
         "The robot has stopped, and stays where it is.",
-        "State: idle, battery 80%",
+        "State: idle, battery 80 %",
     ]
     assert answers.prompts[2:] == ["Select: "] * 7
 
@@ -260,7 +260,7 @@ def test_docking_tells_what_it_does_and_its_result() -> None:
     begin = lines.index("The robot is returning.")
     assert lines[begin + 1] == "The robot is on its charging station."
     assert lines.count("The robot is returning.") == 1
-    assert "State: docked, battery 80%" in lines
+    assert "State: docked, battery 80 %" in lines
 
 
 @pytest.mark.parametrize(
@@ -330,7 +330,7 @@ def test_a_terminal_gets_a_live_bar() -> None:
         view.show(dataclasses.replace(PROGRESS, state="returning"))
     assert isinstance(console.file, io.StringIO)
     output = console.file.getvalue()
-    for text in ("Returning", "━", "2.5 of 10.0 m2 (25%)", "[red]den", "2 h 05 min to go"):
+    for text in ("Returning", "━", "2.5 of 10.0 m² (25 %)", "[red]den", "2 h 05 min to go"):
         assert text in output
     assert "battery unknown" in output
 
@@ -342,7 +342,7 @@ def test_plain_lines_are_few() -> None:
         view.show(PROGRESS)
         clock.sleep(1.0)
     assert isinstance(console.file, io.StringIO)
-    assert console.file.getvalue().count("Cleaned: 2.5 of 10.0 m2 (25%), cleaning") == 4
+    assert console.file.getvalue().count("Cleaned: 2.5 of 10.0 m² (25 %), cleaning") == 4
 
 
 @pytest.mark.parametrize(
@@ -362,12 +362,12 @@ def test_times_for_people(seconds: float, text: str) -> None:
 
 def test_shares_and_areas_for_people() -> None:
     assert [percent(share) for share in (0.0, 0.999, 1.0, math.nan)] == [
-        "0%",
-        "99%",
-        "100%",
+        "0 %",
+        "99 %",
+        "100 %",
         "unknown",
     ]
-    assert percent(1.012) == "100%"
-    assert area_text(0.0, 0.0) == "0.0 of 0.0 m2 (100%)"
-    assert area_text(10.1, 10.0) == "10.1 of 10.0 m2 (100%)"
+    assert percent(1.012) == "100 %"
+    assert area_text(0.0, 0.0) == "0.0 of 0.0 m² (100 %)"
+    assert area_text(10.1, 10.0) == "10.1 of 10.0 m² (100 %)"
     assert area_text(math.nan, 1.0) == "unknown"

@@ -56,11 +56,11 @@ def test_a_robot_whose_bin_is_full_is_told_that_it_was_emptied() -> None:
 def test_an_exploration_is_told_during_and_after() -> None:
     lines = use(FakeRobot(), ["10"])
     told = [line for line in lines if line.startswith("The robot knows")]
-    assert told[0] == "The robot knows 0.00 m2."
+    assert told[0] == "The robot knows 0.00 m²."
     assert 5 <= len(told) <= 8
     end = lines.index("The map is whole, and the robot is back on its station.")
     assert lines[end + 1 : end + 4] == [
-        "Known: 40.00 m2",
+        "Known: 40.00 m²",
         "Distance travelled: 5.00 m",
         "Time taken: 20 s",
     ]

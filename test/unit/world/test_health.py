@@ -6,7 +6,8 @@ from fixtures.homes.rooms import room_home
 
 from roomba.configuration.body import HealthConfig
 from roomba.world.health import Level, PartHealth, health_of
-from roomba.world.simulator import Observation, Simulator
+from roomba.world.observation import Observation
+from roomba.world.simulator import Simulator
 
 HEALTH = HealthConfig()
 WHOLE = np.full(360, 2.0, np.float32)

@@ -30,7 +30,8 @@ from roomba.plots.style import (
     show_floor_plan,
 )
 from roomba.world.home.home import Home
-from roomba.world.simulator import Observation, Simulator
+from roomba.world.observation import Observation
+from roomba.world.simulator import Simulator
 
 _TICK = 0.05
 """s; between two looks at the sensors."""

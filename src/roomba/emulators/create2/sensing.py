@@ -17,7 +17,7 @@ from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.drivers.create2.open_interface import ENCODER_SPAN, Packet
 from roomba.geometry import Pose
 from roomba.world.engine.state.arrays import code_of
-from roomba.world.simulator import Observation
+from roomba.world.observation import Observation
 
 Told = Mapping[int, int]
 _FLOOR, _NO_FLOOR = 2800, 150

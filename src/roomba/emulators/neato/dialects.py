@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
+from roomba.world.observation import Observation
 from roomba.world.power import BatteryState
-from roomba.world.simulator import Observation
 
 Rows = list[str]
 _FLOOR, _DEEP = 19, 200

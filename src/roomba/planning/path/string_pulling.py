@@ -48,11 +48,6 @@ class StringPulling:
             np.zeros((capacity, 2)),
         )
 
-    @property
-    def capacity(self) -> int:
-        """How many points the work arrays have room for."""
-        return len(self._string.points)
-
     @cached_property
     def _corners(self) -> NDArray[np.uint8]:
         rows, columns = self._walls.solid.shape
@@ -105,11 +100,11 @@ class StringPulling:
     def _pull(self, points: NDArray[np.float64], pinned: NDArray[np.bool_], pegs: Pegs) -> int:
         """Pull a way in the work arrays, and return how many points it has then."""
         while True:
-            size = len(points)
-            if size <= self.capacity:
+            size, capacity = len(points), len(self._string.points)
+            if size <= capacity:
                 self._string.points[:size] = points
                 self._string.pinned[:size] = pinned
                 size = pull(self._string, size, pegs)
                 if size != FULL:
                     return size
-            self._make_room(2 * self.capacity)
+            self._make_room(2 * capacity)

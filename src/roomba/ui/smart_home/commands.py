@@ -13,7 +13,7 @@ from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.client.view import CleanOrder
 from roomba.files.plain_json import load_json
 from roomba.ui.smart_home.told_state import shortened
-from roomba.ui.web.routes.api import CleanWish, PlaceWish, order_of
+from roomba.ui.web.routes.wishes import CleanWish, PlaceWish, order_of
 from roomba.vocabulary import FanLevel
 
 _GOES_ON: Final = ("paused", "error")

@@ -15,7 +15,7 @@ from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.ui.web.bounded.limits import MOST_GARBAGE
 from roomba.ui.web.feed import Feed
 from roomba.ui.web.guard import Guard
-from roomba.ui.web.routes.api import DriveWish
+from roomba.ui.web.routes.wishes import DriveWish
 from roomba.ui.web.streams.told import text_of
 
 SENSELESS: Final = 1008

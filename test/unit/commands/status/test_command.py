@@ -54,7 +54,7 @@ def test_it_tells_what_the_robot_does(port: int, capsys: pytest.CaptureFixture[s
     assert rows(capsys.readouterr().out) == {
         "state": "cleaning, in hall",
         "battery": "unknown",
-        "cleaned": "1.0 of 4.0 m2 (25%), 60 s to go",
+        "cleaned": "1.0 of 4.0 m² (25 %), 60 s to go",
         "dirt": "3.0 g picked up since the bin was emptied",
         "place": "x 1.00 m, y 2.00 m, heading 29°",
         "speed": "0.20 m/s",
@@ -73,7 +73,7 @@ def test_it_tells_what_is_wrong_and_how_the_last_errand_ended(
     told = capsys.readouterr().out
     assert rows(told)["state"] == "error, stuck, in hall"
     assert rows(told)["place"] == "x 0.00 m, y 2.00 m, heading 0°"
-    assert rows(told)["last"] == "stuck, 2.0 of 4.0 m2 (50%), 2.00 m2 a minute, free its wheels"
+    assert rows(told)["last"] == "stuck, 2.0 of 4.0 m² (50 %), 2.00 m² a minute, free its wheels"
     troubles = [line.split(maxsplit=1)[1] for line in told.splitlines() if "trouble" in line]
     assert [each.strip() for each in troubles] == ["both wheels spin", "held: a hand", "it is dark"]
 

@@ -18,7 +18,7 @@ from fixtures.robots.located import (
 from roomba.geometry import Pose, Twist
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.localization.localizer import Localizer
-from roomba.world.simulator import Observation
+from roomba.world.observation import Observation
 
 
 def wander(robot: Located, seconds: float, seed: int) -> list[Observation]:

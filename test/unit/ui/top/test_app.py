@@ -80,7 +80,7 @@ def log_of(pilot: Pilot[int]) -> str:
 def test_it_shows_the_state_the_map_and_what_changes(page: Page) -> None:
     async def check(pilot: Pilot[int]) -> None:
         await until(pilot, lambda: "cleaning, in hall" in shown(pilot))
-        assert "1.0 of 4.0 m2 (25%)" in shown(pilot)
+        assert "1.0 of 4.0 m² (25 %)" in shown(pilot)
         await until(pilot, lambda: "." in shown(pilot, "map"), "the map")
         panel = pilot.app.query_one("#map")
         assert panel.size.height > 20

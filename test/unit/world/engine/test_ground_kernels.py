@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
-from roomba.world.simulator import Cliff, Simulator
+from roomba.world.observation import Cliff
+from roomba.world.simulator import Simulator
 
 CONFIG = SimulatedRobotConfig()
 EDGE = 3.0

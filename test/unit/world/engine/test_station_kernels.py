@@ -16,7 +16,8 @@ from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.world.catalogue.furniture import STATION_GAP
 from roomba.world.engine.state.arrays import Fault, Infrared
-from roomba.world.simulator import Observation, Simulator
+from roomba.world.observation import Observation
+from roomba.world.simulator import Simulator
 
 CONFIG = SimulatedRobotConfig()
 HALO, GREEN, RED = Infrared.HALO, Infrared.GREEN, Infrared.RED

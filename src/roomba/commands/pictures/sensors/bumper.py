@@ -25,7 +25,8 @@ from roomba.plots.style import (
     stacked,
 )
 from roomba.world.home.home import Home
-from roomba.world.simulator import Bumper, Simulator
+from roomba.world.observation import Bumper
+from roomba.world.simulator import Simulator
 
 _POST = 0.05
 """m; radius of what it runs into."""

@@ -9,7 +9,8 @@ from pydantic import Field
 
 from roomba.client.household import Household, plans_of, upkeep_of
 from roomba.plans.plan import MOST_QUIET, Emptying, Plan, Preset, QuietHours
-from roomba.ui.web.routes.api import Answer, Wish, obeyed
+from roomba.ui.web.routes.api import obeyed
+from roomba.ui.web.routes.wishes import Answer, Wish
 from roomba.upkeep.parts import Part
 from roomba.vocabulary import LONGEST_NAME
 

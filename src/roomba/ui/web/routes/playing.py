@@ -8,7 +8,8 @@ from fastapi import APIRouter
 from pydantic import Field
 
 from roomba.client.observed import Playground
-from roomba.ui.web.routes.api import Answer, Name, PlaceWish, Wish, obeyed, obeying
+from roomba.ui.web.routes.api import obeyed, obeying
+from roomba.ui.web.routes.wishes import Answer, Name, PlaceWish, Wish
 
 
 class DoorWish(Wish):

@@ -50,7 +50,7 @@ from roomba.perception.localization.belief.reckon_kernels import (
 )
 from roomba.perception.localization.estimate import Knowledge, worst_deviation
 from roomba.perception.localization.localizer import Localizer
-from roomba.world.simulator import Observation
+from roomba.world.observation import Observation
 
 Floats = NDArray[np.float64]
 LOCALIZATION, GYRO = CONFIG.localization, CONFIG.gyro

@@ -11,8 +11,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba_bench.peers.arena import Arena, work_of
 from roomba_bench.peers.protocol import Parameters, Work
+from roomba_bench.peers.simulators.arena import Arena, work_of
 
 DISTRIBUTION = "mujoco"
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from roomba_bench.peers.grids import grid_case, links
+from roomba_bench.peers.paths.grids import grid_case, links
 from roomba_bench.peers.protocol import Parameters, Work, once
 
 DISTRIBUTION = "scipy"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import moderngl
 import numpy as np
 
+from roomba_bench.peers.cameras.views import Film, Floats, metres, pose_matrix, triangles, work_of
 from roomba_bench.peers.protocol import Parameters, Work
-from roomba_bench.peers.views import Film, Floats, metres, pose_matrix, triangles, work_of
 
 DISTRIBUTION = "moderngl"
 

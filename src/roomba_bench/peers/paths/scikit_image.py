@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from skimage.graph import route_through_array
 
-from roomba_bench.peers.grids import grid_case, path_facts
+from roomba_bench.peers.paths.grids import grid_case, path_facts
 from roomba_bench.peers.protocol import Parameters, Work, once
 
 DISTRIBUTION = "scikit-image"

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pybullet
 
+from roomba_bench.peers.cameras.views import Film, Floats, metres, pose_matrix, work_of
 from roomba_bench.peers.protocol import Parameters, Work
-from roomba_bench.peers.views import Film, Floats, metres, pose_matrix, work_of
 
 DISTRIBUTION = "pybullet"
 

@@ -8,8 +8,8 @@ import numpy as np
 import pymunk
 from numpy.typing import NDArray
 
-from roomba_bench.peers.arena import Arena, work_of
 from roomba_bench.peers.protocol import Parameters, Work
+from roomba_bench.peers.simulators.arena import Arena, work_of
 
 DISTRIBUTION = "pymunk"
 

@@ -17,8 +17,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba_bench.peers.boxes import boxes_of
 from roomba_bench.peers.protocol import Parameters, Work
+from roomba_bench.peers.simulators.boxes import boxes_of
 
 SPEED = 0.3
 """m/s."""

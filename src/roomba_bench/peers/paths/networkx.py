@@ -5,7 +5,7 @@ from __future__ import annotations
 import networkx
 import numpy as np
 
-from roomba_bench.peers.grids import grid_case, links, path_facts
+from roomba_bench.peers.paths.grids import grid_case, links, path_facts
 from roomba_bench.peers.protocol import LeftOutError, Parameters, Work, once
 
 DISTRIBUTION = "networkx"

@@ -6,8 +6,16 @@ import numpy as np
 import pyrender
 import trimesh
 
+from roomba_bench.peers.cameras.views import (
+    FAR,
+    NEAR,
+    Film,
+    Floats,
+    pose_matrix,
+    triangles,
+    work_of,
+)
 from roomba_bench.peers.protocol import Parameters, Work
-from roomba_bench.peers.views import FAR, NEAR, Film, Floats, pose_matrix, triangles, work_of
 
 DISTRIBUTION = "pyrender"
 

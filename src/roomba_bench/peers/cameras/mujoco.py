@@ -7,8 +7,8 @@ import math
 import mujoco
 import numpy as np
 
+from roomba_bench.peers.cameras.views import FAR, NEAR, Film, Floats, metres, work_of
 from roomba_bench.peers.protocol import Parameters, Work
-from roomba_bench.peers.views import FAR, NEAR, Film, Floats, metres, work_of
 
 DISTRIBUTION = "mujoco"
 

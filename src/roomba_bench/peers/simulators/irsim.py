@@ -14,8 +14,8 @@ import yaml
 from numpy.typing import NDArray
 from PIL import Image
 
-from roomba_bench.peers.arena import Arena, work_of
 from roomba_bench.peers.protocol import Parameters, Work
+from roomba_bench.peers.simulators.arena import Arena, work_of
 
 DISTRIBUTION = "ir-sim"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import skfmm
 
-from roomba_bench.peers.grids import grid_case
+from roomba_bench.peers.paths.grids import grid_case
 from roomba_bench.peers.protocol import Parameters, Work, once
 
 DISTRIBUTION = "scikit-fmm"

@@ -1,0 +1,1 @@
+"""Renderers of what a camera sees in a home, and the film that they share."""

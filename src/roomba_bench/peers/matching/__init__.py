@@ -1,0 +1,1 @@
+"""Matchers of scans: to a map, or to the scans before."""

@@ -1,0 +1,1 @@
+"""Planners of paths over the cells of a grid, and how their paths are measured."""

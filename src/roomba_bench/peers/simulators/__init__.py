@@ -1,0 +1,1 @@
+"""Simulators of a robot with a lidar among walls, and the arena that they share."""

@@ -1,0 +1,1 @@
+"""Transports of messages between two processes, without ROS."""
