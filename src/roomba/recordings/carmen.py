@@ -41,6 +41,7 @@ from roomba.recordings.readings import (
     Refused,
     Value,
 )
+from roomba.recordings.untimed import spread_times, tell_nothing
 
 BASE: Final = "base_link"
 WORDS: Final = ("FLASER", "ROBOTLASER1", "RAWLASER1", "ODOM", "PARAM")
@@ -111,6 +112,7 @@ class CarmenLog:
             )
         if self._broken:
             self.notes.append(f"{self._broken} lines of {path.name} cannot be read: left out")
+        self._tell_apart()
         largest = max((_largest(line.ranges) for line in self._lines), default=0.0)
         self._farthest = _ECHO * largest
         self.channels = self._count()
@@ -195,6 +197,22 @@ class CarmenLog:
         except (ValueError, IndexError):
             self._broken += 1
         return None
+
+    def _tell_apart(self) -> None:
+        """Give lines times by their order if those of the scans are nearly all the same."""
+        is_scan = np.array([line.fan is not None for line in self._lines])
+        stamps = np.array([line.stamp for line in self._lines])
+        arrivals = np.array([line.arrival for line in self._lines])
+        if not (tell_nothing(stamps[is_scan]) and tell_nothing(arrivals[is_scan])):
+            return
+        times = spread_times(arrivals, is_scan).tolist()
+        self._lines = [
+            line._replace(stamp=0.0, arrival=time)
+            for line, time in zip(self._lines, times, strict=True)
+        ]
+        self.notes.append(
+            f"the times in {self.path.name} do not tell its scans apart: they go by their order"
+        )
 
     def _count(self) -> list[Channel]:
         counts = Counter(line.word for line in self._lines)

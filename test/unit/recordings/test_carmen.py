@@ -183,3 +183,30 @@ def test_lines_without_times_have_no_stamp(tmp_path: Path) -> None:
 def test_a_text_that_is_no_log_is_refused_with_what_it_has(tmp_path: Path) -> None:
     with pytest.raises(LogError, match=r"expected lines FLASER.*it has To, whom"):
         log_of(tmp_path, "To be or not", "whom it may concern")
+
+
+@pytest.mark.parametrize(
+    ("stamp", "arrival"),
+    [("0", "0"), ("1.13486e+09", "1.13486e+09")],
+    ids=["missing", "cut to few digits"],
+)
+def test_without_times_that_differ_the_order_of_lines_counts(
+    tmp_path: Path, stamp: str, arrival: str
+) -> None:
+    lines = [f"FLASER 3 1.0 2.0 81.83 {x} 0 0 {x} 0 0 {stamp} made {arrival}" for x in range(5)]
+    log = log_of(tmp_path, *lines)
+    entries = list(log.entries([channel(log, "FLASER", Kind.SCAN)]))
+    assert [entry.stamp for entry in entries] == [0.0] * 5
+    arrivals = np.array([entry.arrival for entry in entries])
+    assert np.diff(arrivals) == pytest.approx(np.full(4, 10.0))
+    assert log.notes == [
+        "the times in made.log do not tell its scans apart: they go by their order"
+    ]
+
+
+def test_stamps_that_differ_count_even_if_no_time_of_recording_does(tmp_path: Path) -> None:
+    lines = [f"FLASER 3 1.0 2.0 81.83 0 0 0 0 0 0 {12.5 + x} made 0" for x in range(5)]
+    log = log_of(tmp_path, *lines)
+    entries = list(log.entries([channel(log, "FLASER", Kind.SCAN)]))
+    assert [entry.stamp for entry in entries] == [12.5 + x for x in range(5)]
+    assert not log.notes
