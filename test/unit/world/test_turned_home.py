@@ -183,6 +183,19 @@ def test_what_is_told_of_things_and_places_is_turned() -> None:
     assert world.pose.distance_to(aside.x, aside.y) < 1e-9
 
 
+@pytest.mark.parametrize("quarters", [1, 2, 3])
+def test_after_quarter_turns_cells_lie_on_cells(quarters: int) -> None:
+    # Maps of others begin anywhere, not at a whole number of cells.
+    own = HOME.frame
+    frame = replace(own, origin_x=own.origin_x + 0.013, origin_y=own.origin_y - 0.027)
+    turned = turned_home(
+        replace(HOME, map=OccupancyMap(frame, HOME.map.values)), quarters * math.pi / 2.0
+    )
+    # Rows go up: what numpy turns clockwise goes counter-clockwise.
+    np.testing.assert_array_equal(turned.map.values, np.rot90(HOME.map.values, -quarters))
+    np.testing.assert_array_equal(turned.solid, np.rot90(HOME.solid, -quarters))
+
+
 def test_crumbs_are_spilled_where_the_turned_frame_says() -> None:
     world = Simulator(turned_home(HOME, 2.0), IDEAL)
     own = HOME.station.compose(Pose(0.3, 0.4, 0.0))

@@ -70,17 +70,22 @@ def with_steps(home: Home) -> Home:
 
 
 def turned_frame(frame: GridFrame, angle: float) -> GridFrame:
-    """Return a grid along the axes, of the same cell size, that holds all of a turned one."""
+    """Return a grid along the axes, of the same cell size, that holds all of a turned one.
+
+    The corner of the turned one's first cell is one of its own, so that after quarter turns cells
+    lie on cells.
+    """
     x_min, x_max, y_min, y_max = frame.extent
     corners = placed(
         np.array([[x_min, y_min], [x_max, y_min], [x_max, y_max], [x_min, y_max]]),
         Pose(0.0, 0.0, angle),
     )
-    size = frame.resolution
-    low = np.floor(corners.min(axis=0) / size + 1e-6)
-    high = np.ceil(corners.max(axis=0) / size - 1e-6)
+    size, first = frame.resolution, corners[0]
+    low = np.floor((corners.min(axis=0) - first) / size + 1e-6)
+    high = np.ceil((corners.max(axis=0) - first) / size - 1e-6)
     columns, rows = (high - low).astype(int).tolist()
-    return GridFrame(size, float(low[0] * size), float(low[1] * size), rows, columns)
+    x, y = (first + low * size).tolist()
+    return GridFrame(size, x, y, rows, columns)
 
 
 def placed(rows: Floats, axes: Pose) -> Floats:
