@@ -24,6 +24,8 @@ class DockingConfig(Frozen):
     """While it is not near."""
     creep_speed: Positive = 0.05
     """Over the last of the way: it stops within the contacts' tolerance, senses being late."""
+    feeling_speed: Positive = 0.02
+    """Past the docked place, where the contacts should have touched: current may be told late."""
     creep_distance: Positive = 0.08
     """Of the way; as sure as the believed place and the halo's edge are."""
     braking: Positive = 0.8

@@ -54,6 +54,7 @@ class Docking:
         self._search: BeamSearch | None = None
         self._is_blind = False
         self._lines_up = False
+        self._arrived: float | None = None
         self._wanted = Twist()
         self._dt = 0.0
         # When something was so for the last time, s since the beginning.
@@ -154,7 +155,7 @@ class Docking:
             self._fail(self._trouble or Trouble.BEAMS_LOST)
             return Twist()
         self._attempts += 1
-        self._search = None
+        self._search = self._arrived = None
         self._is_blind = is_blind
         if is_blind:
             self._track.forget_beams()
@@ -196,12 +197,27 @@ class Docking:
             return self._give_up_attempt(
                 Trouble.NOT_THERE if self._is_blind else Trouble.NO_CONTACT
             )
-        return self._drive_at_station()
+        return Twist() if self._awaits_current() else self._drive_at_station()
+
+    def _awaits_current(self) -> bool:
+        """Whether it stands for now where it should be docked: current may be told late.
+
+        On a slow line it would be past the contacts by then, and press against the station.
+        """
+        now = self._time.elapsed
+        if self._arrived is None and self._track.left <= 0.0:
+            self._arrived = now
+        if self._arrived is None or now - self._arrived >= self._config.contact_wait:
+            return False
+        self._moved = now  # it stands of its own will
+        return True
 
     def _drive_at_station(self) -> Twist:
         config, left = self._config, max(self._track.left, 0.0)
         speed = config.creep_speed + config.braking * (left - config.creep_distance)
         speed = min(max(speed, config.creep_speed), config.speed)
+        if self._arrived is not None:
+            speed = config.feeling_speed
         reach = max(config.shortest_reach, 0.6 * left)
         aside = min(config.most_aside, config.least_aside + 1.2 * left)
         wrong = self._track.steering(reach, aside)

@@ -103,6 +103,18 @@ def test_in_the_station_without_current_it_goes_back_straight_and_tries_again() 
     assert max(abs(pose.theta) for pose in rig.poses) < 0.5
 
 
+@pytest.mark.parametrize("current_delay", [10, 20, 30])
+@pytest.mark.parametrize("wrong", [Pose(), Pose(0.012, 0.01, 0.0), Pose(-0.012, 0.01, 0.0)])
+def test_current_that_is_told_late_comes_before_it_meets_the_station(
+    current_delay: int, wrong: Pose
+) -> None:
+    # As over a slow line: by then it would be past the contacts, which touch within 15 mm.
+    rig = Rig(wrong=wrong, current_delay=current_delay)
+    step = rig.run(20.0)
+    assert (step.state, step.attempts) == (DockState.DOCKED, 1)
+    assert rig.hits == []
+
+
 def test_it_goes_slowly_at_the_end() -> None:
     rig = Rig(delay=0)
     rig.run()
