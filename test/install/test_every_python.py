@@ -132,7 +132,9 @@ def test_it_measures_how_fast_it_plans(installed: Installation) -> None:
     done = installed.roomba("bench", "--quick", "plan", "--json", "plan.json")
     assert done.returncode == 0, done.stdout + done.stderr
     rows = json.loads((installed.away / "plan.json").read_text(encoding="utf-8"))
-    assert all(row["value"] > 0.0 for row in rows if "times better" not in row["figure"])
+    times = [row["value"] for row in rows if row["unit"] == "ms"]
+    assert len(times) > 2
+    assert min(times) > 0.0
 
 
 def test_it_compares_variants_on_a_cluster(installed: Installation) -> None:
