@@ -18,7 +18,7 @@ from roomba.world.fleet import Fleet
 from roomba.world.home.home import Home
 from roomba.world.lidar import Lidar
 from roomba_bench.floors import Floor, free_poses
-from roomba_bench.peers.protocol import Work
+from roomba_bench.peers.protocol import CHECKED_POSES, Work
 from roomba_bench.peers.simulators.arena import SPEED, TURNING_SPEED
 
 ROBOT: Final = SimulatedRobotConfig().with_lidar(EXACT_LIDAR)
@@ -99,7 +99,8 @@ def scanning(floor: Floor, poses: NDArray[np.float64]) -> Work:
 
     work()
     reach = np.float32(lidar.config.max_range)
-    checked = np.where(np.isposinf(out), reach, out)
+    first = out[:CHECKED_POSES]
+    checked = np.where(np.isposinf(first), reach, first)
     return Work(work, {"mean range": float(np.mean(checked)), "edges": float(lidar.edges.count)})
 
 

@@ -19,6 +19,8 @@ from typing import Any, TextIO, TypeAlias
 
 Parameters: TypeAlias = Mapping[str, Any]
 
+CHECKED_POSES = 40
+"""The first poses of a case of scans: of these all tell the mean range, and no peer waits long."""
 _LONGEST = 200
 """Characters of an error."""
 

@@ -17,7 +17,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba_bench.peers.protocol import Parameters, Work
+from roomba_bench.peers.protocol import CHECKED_POSES, Parameters, Work
 from roomba_bench.peers.simulators.boxes import boxes_of
 
 SPEED = 0.3
@@ -26,7 +26,6 @@ TURNING_SPEED = 1.5
 """rad/s."""
 SHORTEST_TURN, LONGEST_TURN = 0.4, 3.0
 """s."""
-_CHECKED_POSES = 40
 _CHECKED_STEPS = 200
 _LEAST_WAY = 0.3
 """m; a robot that has not travelled so far after the checked steps (10 s) is stuck."""
@@ -141,7 +140,7 @@ def _scanning(engine: Engine, parameters: Parameters) -> Work:
         return 1.0
 
     ranges = []
-    for pose in poses[:_CHECKED_POSES]:
+    for pose in poses[:CHECKED_POSES]:
         engine.place(*pose)
         ranges.append(float(np.mean(engine.scan())))
     return Work(scan, {"mean range": float(np.mean(ranges))})

@@ -68,7 +68,7 @@ def test_each_option_does_what_it_says(start: Start) -> None:
     assert "The clean is done" in choose(menu, "5", "2", "1")
     whole = choose(menu, "5", "")
     assert "The clean is done, and the robot is back on its station" in whole
-    assert re.search(r"Cleaned: .*\((9\d|100)%\)\n(.*\n)*Dirt picked up: ", whole)
+    assert re.search(r"Cleaned: .*\((9\d|100) %\)\n(.*\n)*Dirt picked up: ", whole)
     assert "The robot is on its charging station" in choose(menu, "8")
     assert "The robot has stopped" in choose(menu, "7")
     assert "nothing to explore" in choose(menu, "10")
