@@ -19,7 +19,7 @@ from shapely.affinity import rotate
 
 from roomba.configuration.sensors import CameraConfig, LidarConfig
 from roomba.geometry import Pose, Twist
-from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.world.camera.camera import Camera, Scene
 from roomba.world.home.home import Home, Move, Rectangle, Room
 from roomba.world.home.turned import turned_home
@@ -125,15 +125,8 @@ def test_the_camera_sees_slanted_walls_exactly(
 @given(angle=angles)
 def test_the_map_shows_slanted_walls_as_steps(angle: float) -> None:
     turned = turned_home(HOME, angle)
-    frame, solid = turned.frame, solid_turned(angle)
-    left, low = np.meshgrid(
-        frame.origin_x + np.arange(frame.columns) * frame.resolution,
-        frame.origin_y + np.arange(frame.rows) * frame.resolution,
-    )
-    cells = shapely.box(left, low, left + frame.resolution, low + frame.resolution)
-    share = _area_in(solid, cells) / frame.resolution**2
-    inside = _area_in(rotate(_outline(HOME), angle, (0.0, 0.0), use_radians=True), cells)
-    whole = inside > 0.999 * frame.resolution**2
+    share, inside = _shares(turned.frame, angle)
+    whole = inside > 0.999
     assert whole.sum() > 0.8 * HOME.solid.size
     shown = turned.map.values
     # An edge that is hardly aslant takes a whole row of nine, and shares are rounded up.
@@ -143,6 +136,32 @@ def test_the_map_shows_slanted_walls_as_steps(angle: float) -> None:
     assert turned.solid[whole & (share > 0.03)].all()
     assert not turned.solid[whole & (share < 1e-6)].any()
     assert turned.solid[inside == 0.0].all()
+
+
+@settings(max_examples=examples(10), deadline=None)
+@given(angle=angles)
+def test_what_is_not_known_behind_a_wall_is_as_solid(angle: float) -> None:
+    # Walls of one cell, as robots' own maps have them: what is behind was never seen.
+    values = HOME.map.values.copy()
+    values[[0, -1], :] = values[:, [0, -1]] = UNKNOWN
+    turned = turned_home(replace(HOME, map=OccupancyMap(HOME.frame, values)), angle)
+    share, inside = _shares(turned.frame, angle)
+    shown = turned.map.values
+    walled = (shown > FREE) & (inside > 0.999)
+    assert walled.sum() > 100
+    assert np.abs(shown[walled] - OCCUPIED * share[walled]).max() < OCCUPIED / 9 + 1.0
+
+
+def _shares(frame: GridFrame, angle: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return how much of each cell is solid in HOME, turned, and lies on its grid, 0..1."""
+    left, low = np.meshgrid(
+        frame.origin_x + np.arange(frame.columns) * frame.resolution,
+        frame.origin_y + np.arange(frame.rows) * frame.resolution,
+    )
+    cells = shapely.box(left, low, left + frame.resolution, low + frame.resolution)
+    outline = rotate(_outline(HOME), angle, (0.0, 0.0), use_radians=True)
+    area = frame.resolution**2
+    return _area_in(solid_turned(angle), cells) / area, _area_in(outline, cells) / area
 
 
 def _area_in(shape: shapely.Geometry, cells: NDArray[np.object_]) -> NDArray[np.float64]:

@@ -2,7 +2,8 @@
 
 The world goes on in the home's own axes, so lidar, contact and camera stay exact and as fast as
 they are; poses are told in the turned frame. The grids of that frame are what a map of slanted
-walls is: steps. Cells that a wall touches are not free, and tell how much of them is solid.
+walls is: steps. Cells that touch a wall, or floor that is not known, are not free, and tell how
+much of them is solid.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.grid import OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.world.home.free_wall import FreeWall, inside
 from roomba.world.home.home import (
     DirtSource,
@@ -106,14 +107,13 @@ def _grids(home: Home, frame: GridFrame, angle: float) -> dict[str, Any]:
     free = found.walls if found is not None else ()
     mapped = [wall for wall in free if wall.on_map]
     walls = [wall for wall in free if wall.line]
-    values = _in_middles(home.map.values, UNKNOWN, own, frame, angle)
-    share = _share(home.map.values == OCCUPIED, False, own, frame, angle, mapped)
+    is_wall = _share(home.map.values == OCCUPIED, False, own, frame, angle, mapped) > 0.0
+    # The body does not pass what is not known: that is as solid as a wall.
+    share = _share(home.map.values != FREE, True, own, frame, angle, mapped)
     grades = np.ceil(OCCUPIED * share).astype(np.int8)
-    # The body does not pass what is not known: no cell that this touches is told to be free.
-    is_unknown = _share(home.map.values == UNKNOWN, True, own, frame, angle, ()) > 0.0
-    values = np.where(is_unknown, np.int8(UNKNOWN), values)
+    is_unknown = (share == 1.0) & ~is_wall
     return {
-        "map": OccupancyMap(frame, np.where(share > 0.0, grades, values)),
+        "map": OccupancyMap(frame, np.where(is_unknown, np.int8(UNKNOWN), grades)),
         "solid": _share(home.solid, True, own, frame, angle, free) > 0.0,
         "walls": _share(home.walls, False, own, frame, angle, walls) > 0.0,
         "free_walls": None,
