@@ -15,7 +15,7 @@ from fixtures.homes.free_walls import home_with, room_outline, straight_wall, wa
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import DT, IDEAL
 from fixtures.thoroughness import examples
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from roomba.configuration.sensors import CameraConfig
@@ -56,10 +56,10 @@ def bay_home() -> Home:
 BAY = bay_home()
 
 
-def outlines() -> list[shapely.Geometry]:
-    """The same room drawn plainly, its circles with four thousand corners."""
+def outlines(off: float = 0.0) -> list[shapely.Geometry]:
+    """The same room drawn plainly, its circles with four thousand corners, ``off`` m smaller."""
     circle = [
-        shapely.Point(CENTRE).buffer(radius, quad_segs=1000).exterior
+        shapely.Point(CENTRE).buffer(radius - off, quad_segs=1000).exterior
         for radius in (ROUND, ROUND + 0.1)
     ]
     east = shapely.box(CENTRE[0], 0.0, 5.0, 4.0)
@@ -75,6 +75,10 @@ def outlines() -> list[shapely.Geometry]:
 
 
 LINES = outlines()
+SMALLER = outlines(5e-4)
+"""As far off the circles as docs/homes.md promises: a chord of a circle lies within it."""
+SINGLE = 1e-5
+"""m; what single precision, and a circle of four thousand corners, are off: 3e-6 was measured."""
 
 
 def expected_way(x: float, y: float, direction: float) -> float | None:
@@ -85,10 +89,12 @@ def expected_way(x: float, y: float, direction: float) -> float | None:
 
 
 @settings(max_examples=examples(12), deadline=None)
+@example(x=1.65625, y=1.203125, theta=1.20703125, turn=0.0)
 @given(x=st.floats(1.5, 3.6), y=st.floats(1.2, 2.8), theta=angles, turn=st.sampled_from([0.0, 0.6]))
-def test_lidars_meet_round_and_slanted_walls_within_a_millimetre(
+def test_lidars_meet_slanted_walls_and_round_ones_within_half_a_millimetre_of_their_circle(
     x: float, y: float, theta: float, turn: float
 ) -> None:
+    """Across the wall: along a beam that meets it at a slant, the same half millimetre is more."""
     home = turned_home(BAY, turn) if turn else BAY
     pose = Pose(0.0, 0.0, turn).compose(Pose(x, y, theta))
     alone = Lidar.of(home, IDEAL.lidar).scan(np.array([[pose.x, pose.y, pose.theta]]))[0]
@@ -100,10 +106,12 @@ def test_lidars_meet_round_and_slanted_walls_within_a_millimetre(
         seen.append(world.ranges)
     compared = 0
     for beam in range(0, 360, 5):
-        way = expected_way(x, y, theta + math.radians(beam))
-        if way is not None:
+        direction = theta + math.radians(beam)
+        way, inner = expected_way(x, y, direction), way_to(SMALLER, x, y, direction)
+        # One that grazes the smaller circle alone may pass a piece, too.
+        if way is not None and abs(way - inner) < 0.02:
             for ranges in seen:
-                assert ranges[beam] == pytest.approx(way, abs=1e-3)
+                assert min(way, inner) - SINGLE <= ranges[beam] <= max(way, inner) + SINGLE
             compared += 1
     assert compared > 40
 
