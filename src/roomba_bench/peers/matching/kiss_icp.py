@@ -14,6 +14,7 @@ from kiss_icp.config import KISSConfig  # type: ignore[import-not-found, unused-
 from kiss_icp.kiss_icp import KissICP  # type: ignore[import-not-found, unused-ignore]
 from numpy.typing import NDArray
 
+from roomba_bench.peers.matching.matrices import matrix_of, pose_of
 from roomba_bench.peers.protocol import Parameters, Work
 
 DISTRIBUTION = "kiss-icp"
@@ -59,8 +60,8 @@ def prepare(parameters: Parameters) -> Work:
     """Follow the whole drive, and write the poses; then it is followed anew, scan by scan."""
     drive = np.load(parameters["scans"])
     ranges, reckoned = drive["ranges"], drive["reckoned"]
-    start = _matrix(parameters["start"])
-    stations = [start, *map(_matrix, reckoned)]
+    start = matrix_of(parameters["start"])
+    stations = [start, *map(matrix_of, reckoned)]
     steps = [np.linalg.inv(one) @ other for one, other in itertools.pairwise(stations)]
 
     def odometry() -> Odometry:
@@ -73,7 +74,7 @@ def prepare(parameters: Parameters) -> Work:
         start @ following.register(scan, step if at else np.eye(4))
         for at, (scan, step) in enumerate(zip(ranges, steps, strict=True))
     ]
-    np.save(parameters["poses"], np.array([_pose(pose) for pose in poses]))
+    np.save(parameters["poses"], np.array([pose_of(pose) for pose in poses]))
     following = odometry()
     at = 0
 
@@ -86,14 +87,3 @@ def prepare(parameters: Parameters) -> Work:
         return 1.0
 
     return Work(work)
-
-
-def _matrix(pose: Floats) -> Floats:
-    cosine, sine = math.cos(pose[2]), math.sin(pose[2])
-    matrix = np.eye(4)
-    matrix[:2] = [[cosine, -sine, 0.0, pose[0]], [sine, cosine, 0.0, pose[1]]]
-    return matrix
-
-
-def _pose(matrix: Floats) -> tuple[float, float, float]:
-    return matrix[0, 3], matrix[1, 3], math.atan2(matrix[1, 0], matrix[0, 0])

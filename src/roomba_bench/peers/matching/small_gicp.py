@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
 
 import numpy as np
 import small_gicp  # type: ignore[import-not-found, unused-ignore]
 from numpy.typing import NDArray
 
+from roomba_bench.peers.matching.matrices import matrix_of, pose_of
 from roomba_bench.peers.protocol import Parameters, Work
 
 DISTRIBUTION = "small_gicp"
@@ -62,7 +62,7 @@ class Registration:
             translation_epsilon=_SETTLED,
         )
         # It stays on the floor.
-        return _matrix(_pose(result.T_target_source))
+        return matrix_of(pose_of(result.T_target_source))
 
 
 def prepare(parameters: Parameters) -> Work:
@@ -75,12 +75,12 @@ def prepare(parameters: Parameters) -> Work:
         parameters["nearest"],
         parameters["farthest"],
     )
-    pose, before = _matrix(parameters["start"]), _matrix(parameters["start"])
+    pose, before = matrix_of(parameters["start"]), matrix_of(parameters["start"])
     guesses, poses = [], []
-    for scan, now in zip(ranges, map(_matrix, reckoned), strict=True):
+    for scan, now in zip(ranges, map(matrix_of, reckoned), strict=True):
         guesses.append(pose @ np.linalg.inv(before) @ now)
         pose, before = registration.register(scan, guesses[-1]), now
-        poses.append(_pose(pose))
+        poses.append(pose_of(pose))
     np.save(parameters["poses"], np.array(poses))
     again = itertools.cycle(zip(ranges, guesses, strict=True))
 
@@ -89,14 +89,3 @@ def prepare(parameters: Parameters) -> Work:
         return 1.0
 
     return Work(work)
-
-
-def _matrix(pose: Sequence[float] | Floats) -> Floats:
-    cosine, sine = math.cos(pose[2]), math.sin(pose[2])
-    matrix = np.eye(4)
-    matrix[:2] = [[cosine, -sine, 0.0, pose[0]], [sine, cosine, 0.0, pose[1]]]
-    return matrix
-
-
-def _pose(matrix: Floats) -> tuple[float, float, float]:
-    return matrix[0, 3], matrix[1, 3], math.atan2(matrix[1, 0], matrix[0, 0])
