@@ -13,7 +13,7 @@ from roomba_bench.topics import TOPICS, left_out
 
 FOLDER = Path(roomba_bench.__file__).parent
 USAGE = FOLDER.parent / "roomba" / "commands" / "usage.txt"
-SHARED = {"__init__", "arena", "boxes", "grids", "views"}
+SHARED = {"__init__", "arena", "boxes", "grids", "matrices", "views"}
 PEERS = sorted(path for path in (FOLDER / "peers").glob("*/*.py") if path.stem not in SHARED)
 
 
