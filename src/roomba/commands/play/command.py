@@ -19,7 +19,8 @@ from roomba.commands.play.owned import (
     owned_life,
     require_fitting,
 )
-from roomba.commands.play.serving import add_page_options, end_as_by_ctrl_c, listen_at, serve_page
+from roomba.commands.play.serving import add_page_options, listen_at, serve_page
+from roomba.commands.play.told_to_end import ToldToEnd
 from roomba.commands.spelling import spelled
 from roomba.configuration.frozen import load_config
 from roomba.configuration.household import HouseholdConfig
@@ -44,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
     wanted = parser.parse_args(arguments)
     require_fitting(parser, wanted)
     # However the program is told to end, a robot on a line is given back.
-    end_as_by_ctrl_c()
+    ending = ToldToEnd()
     with contextlib.ExitStack() as until_end:
         try:
             if wanted.lidar != "none":  # a robot that goes by its bumper needs none of it
@@ -53,7 +54,7 @@ def main(arguments: list[str] | None = None) -> int:
             file = wanted.smart_home
             smart_home = None if file is None else switched_on(client, file, _warn)
             bound = listen_at(wanted)
-            _live(wanted, client, bound, source, told, smart_home)
+            _live(wanted, client, bound, source, told, ending, smart_home)
         except RoombaError as error:
             print(f"{PROGRAM}: {error}", file=sys.stderr)
             return 2
@@ -83,6 +84,7 @@ def _live(
     bound: socket.socket,
     source: RunSource,
     told: str,
+    ending: ToldToEnd,
     smart_home: Switched | None,
 ) -> None:
     """Let the robot live, with its household, history and page, until Ctrl-C."""
@@ -102,6 +104,7 @@ def _live(
             client,
             bound,
             told,
+            ending,
             is_opened=wanted.open,
             keeper=keeper,
             household=household,

@@ -7,7 +7,8 @@ import sys
 from pathlib import Path
 from typing import Final
 
-from roomba.commands.play.serving import add_page_options, end_as_by_ctrl_c, listen_at, serve_page
+from roomba.commands.play.serving import add_page_options, listen_at, serve_page
+from roomba.commands.play.told_to_end import ToldToEnd
 from roomba.commands.spelling import spelled
 from roomba.errors import RoombaError
 from roomba.history.database import LAST, History
@@ -22,14 +23,14 @@ PROGRAM: Final = spelled("replay")
 def main(arguments: list[str] | None = None) -> int:
     """Show a run until Ctrl-C; returns 0, or 2 for one that cannot be read."""
     wanted = _parser().parse_args(arguments)
-    end_as_by_ctrl_c()
+    ending = ToldToEnd()
     try:
         figures, recording = _run_of(wanted.run, History(wanted.history or history_folder()))
         robot = RecordedRobot(figures, recording)
         bound = listen_at(wanted)
         robot.play(is_playing=True)
         told = f"A recorded run of {figures.source.home!r}. Its page:"
-        serve_page(robot, bound, told, is_opened=wanted.open)
+        serve_page(robot, bound, told, ending, is_opened=wanted.open)
     except RoombaError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return 2

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import signal
 import socket
 import sys
+from typing import Final
 
 from roomba.client.household import Household
 from roomba.client.observed import ObservedRobot
 from roomba.client.ports import DEFAULT_PORT, LAST_PORT
 from roomba.commands.options import whole
+from roomba.commands.play.told_to_end import ToldToEnd
 from roomba.history.recorder import HistoryKeeper
 from roomba.ui.desktop import open_on_desktop
 from roomba.ui.smart_home.switch import Switched
@@ -20,6 +21,9 @@ from roomba.ui.web.guard import LOOPBACK, Guard
 from roomba.ui.web.kept_token import kept_token
 from roomba.ui.web.reach import ALL, addresses_of, guard_for, is_host
 from roomba.ui.web.server import PageServer, listen
+
+_HEARD_WITHIN: Final = 0.2
+"""s of wall time within which it ends although Python dropped the exception."""
 
 
 def add_page_options(parser: argparse.ArgumentParser) -> None:
@@ -47,12 +51,6 @@ def add_page_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def end_as_by_ctrl_c() -> None:
-    """Have SIGTERM and SIGINT raise KeyboardInterrupt; shells ignore SIGINT for background jobs."""
-    for told_to_end in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(told_to_end, signal.default_int_handler)
-
-
 def listen_at(wanted: argparse.Namespace) -> socket.socket:
     """Return a socket where the options want the page; raises ServerError."""
     port = DEFAULT_PORT if wanted.port is None else wanted.port
@@ -63,13 +61,14 @@ def serve_page(
     robot: ObservedRobot,
     bound: socket.socket,
     told: str,
+    ending: ToldToEnd,
     *,
     is_opened: bool,
     keeper: HistoryKeeper | None = None,
     household: Household | None = None,
     smart_home: Switched | None = None,
 ) -> None:
-    """Print the address; serve the page and the smart home of a robot until Ctrl-C or SIGTERM.
+    """Print the address; serve the page and the smart home of a robot until it is told to end.
 
     Raises ServerError.
     """
@@ -85,7 +84,8 @@ def serve_page(
         if smart_home is not None:
             smart_home.start()
             until_end.callback(smart_home.stop)
-        server.wait()
+        while not (ending.is_told or server.has_ended(within=_HEARD_WITHIN)):
+            pass
 
 
 def _tell(bound: socket.socket, guard: Guard, told: str) -> None:

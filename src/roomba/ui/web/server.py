@@ -104,10 +104,11 @@ class PageServer:
         self._tell_if_broken()
         raise ServerError(f"expected the page to be served within {_START:g} s; it was not")
 
-    def wait(self) -> None:
-        """Wait until it serves no more; raises ServerError when it broke."""
-        self._ended.wait()
+    def has_ended(self, within: float) -> bool:
+        """Return whether it serves no more ``within`` s; raises ServerError when it broke."""
+        has_ended = self._ended.wait(within)
         self._tell_if_broken()
+        return has_ended
 
     def stop(self) -> None:
         """End the thread that serves."""

@@ -15,6 +15,7 @@ import pytest
 from fixtures.robots.able_robot import AbleRobot
 
 from roomba.commands.play import serving
+from roomba.commands.play.told_to_end import ToldToEnd
 from roomba.ui.web.server import PageServer, ServerError, listen
 
 DEADLINE = 15
@@ -50,8 +51,8 @@ def tell(number: signal.Signals) -> None:
     os.kill(os.getpid(), number)
 
 
-def serve(bound: socket.socket) -> None:
-    serving.serve_page(AbleRobot(), bound, "A robot. Its page:", is_opened=False)
+def serve(bound: socket.socket, ending: ToldToEnd) -> None:
+    serving.serve_page(AbleRobot(), bound, "A robot. Its page:", ending, is_opened=False)
 
 
 def expect_no_page() -> None:
@@ -65,7 +66,7 @@ MOMENTS = {
     "while the page is made": (serving, "create_app"),
     "as it begins to serve": (PageServer, "start"),
     "while the address is printed": (serving, "_tell"),
-    "while it serves": (PageServer, "wait"),
+    "while it serves": (PageServer, "has_ended"),
 }
 
 
@@ -84,17 +85,42 @@ def test_told_to_end_at_any_moment_it_ends_and_serves_no_more(
         return plain(*arguments, **named)
 
     monkeypatch.setattr(owner, name, told_then)
-    serving.end_as_by_ctrl_c()
-    serve(bound)
+    serve(bound, ToldToEnd())
     assert time.monotonic() - told_at[0] < SOON
+    expect_no_page()
+
+
+class ToldAsItGoes:
+    """An object that is being deleted when the signal comes."""
+
+    def __del__(self) -> None:
+        """Be told to end; Python drops what this raises."""
+        signal.raise_signal(signal.SIGTERM)
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_told_to_end_while_an_object_is_deleted_it_ends(
+    bound: socket.socket, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    owner, name = MOMENTS["while the page is made"]
+    plain = getattr(owner, name)
+
+    def told_first(*arguments: Any, **named: Any) -> Any:
+        ToldAsItGoes()
+        return plain(*arguments, **named)
+
+    monkeypatch.setattr(owner, name, told_first)
+    began = time.monotonic()
+    serve(bound, ToldToEnd())
+    assert time.monotonic() - began < SOON
     expect_no_page()
 
 
 def test_in_the_background_of_a_shell_it_hears_that_it_is_to_end(bound: socket.socket) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    serving.end_as_by_ctrl_c()
+    ending = ToldToEnd()
     threading.Timer(0.3, tell, [signal.SIGINT]).start()
-    serve(bound)
+    serve(bound, ending)
     expect_no_page()
 
 
@@ -106,4 +132,4 @@ def test_a_server_that_breaks_is_told(
 
     monkeypatch.setattr("uvicorn.Server.serve", breaks)
     with pytest.raises(ServerError, match="no more files"):
-        serve(bound)
+        serve(bound, ToldToEnd())
