@@ -271,7 +271,7 @@ class Mapper:
         follower = self._follower
         unsure = follower.unsure_way, follower.unsure_turn
         self._map.begin_piece(follower.here, follower.way, unsure, self.range_noise)
-        follower.jump()
+        follower.begin_piece()
         self._finding_back.begin_again()
 
     def _is_keyframe(self) -> bool:

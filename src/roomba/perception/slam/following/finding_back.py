@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.slam.following.finding_back_kernels import FINDING, is_due
 from roomba.perception.slam.following.scan_follower import ScanFollower
-from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher, is_in_reach
+from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher
 
 Floats = NDArray[np.float64]
 
@@ -64,27 +64,46 @@ class FindingBack:
         points, config = follower.points, self._config
         if not clouds or not follower.shows_enough:
             return
-        # As seen from where it is thought to be: what is far from there is left out.
-        here = follower.here
-        seen = np.ascontiguousarray(np.concatenate(clouds)[::_STRIDE, :2] - here[:2])
-        if not is_in_reach(seen, self._reach):
+        # As seen from where it is thought to be: what is far from there is left out on both sides.
+        here, near = follower.here, self._near(points)
+        seen = self._near(np.concatenate(clouds)[::_STRIDE] - (here[0], here[1], 0.0, 0.0))
+        if not len(seen):
             return
         thought = np.array([0.0, 0.0, here[2]])
-        window, turn = self._window(follower)
+        way, turn = self._slip(follower)
         matcher = CorrelativeMatcher(seen, self._reach)
-        found = matcher.best(points, thought, window, turn, config.likelihood)
+        window = way + self._unseen(follower)
+        found = matcher.best(near, thought, window, turn, config.likelihood)
+        if found is None and self._is_far_apart(follower):
+            found = matcher.best(near, thought, way / 2, turn / 2, config.likelihood_apart)
         if found is not None:
             pose = np.array([*(found.pose[:2] + here[:2]), found.pose[2]])
             follower.try_at(pose, config.better)
             self._row["misses"] *= not follower.is_sure
 
-    def _window(self, follower: ScanFollower) -> tuple[float, float]:
-        """Return how far around it may be, m and rad."""
-        row, config = self._row, self._config
-        since = row["stamp"] - row["well_since"]
-        unseen = float(row["pace"]) * float(since if since > 0.0 else 0.0)
-        share = config.searched_share
-        way = config.searched_way + share * follower.unsure_way
-        way += min(unseen, config.searched_farthest)
-        turn = config.searched_turn + share * follower.unsure_turn
+    def _near(self, points: Floats) -> Floats:
+        """Return the points, [n, 4], that are near the origin: what is farther is less sure."""
+        near: Floats = points[np.hypot(points[:, 0], points[:, 1]) < self._reach]
+        return near
+
+    def _is_far_apart(self, follower: ScanFollower) -> bool:
+        """Whether so much was driven from scan to scan that each shows much that none before did.
+
+        Then the right pose is less likely, and is taken from near where it is thought to be alone.
+        """
+        misses = max(int(self._row["misses"]), 1)
+        return follower.unsure_way >= self._config.far_apart * misses
+
+    def _slip(self, follower: ScanFollower) -> tuple[float, float]:
+        """Return how far wheels that slip may have been off, m and rad."""
+        config = self._config
+        way = config.searched_way + config.searched_share * follower.unsure_way
+        turn = config.searched_turn + config.searched_share * follower.unsure_turn
         return way, min(turn, math.pi)
+
+    def _unseen(self, follower: ScanFollower) -> float:
+        """Return how far it may have driven, m, while odometry stood still."""
+        row = self._row
+        since = float(row["stamp"] - row["well_since"])
+        driven = float(row["pace"]) * since if since > 0.0 else 0.0
+        return min(max(driven - follower.unsure_way, 0.0), self._config.searched_farthest)

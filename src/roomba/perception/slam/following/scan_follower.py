@@ -168,6 +168,12 @@ class ScanFollower:
         self._row["here"] = 0.0
         self._drop_window()
 
+    def begin_piece(self) -> None:
+        """Go on at the origin of another submap, which lies where the newest scan was taken."""
+        self.restart()
+        self._row["spread"] = 0.0
+        self._row["unsure_way"] = self._row["unsure_turn"] = 0.0
+
     def jump(self) -> None:
         """Go on at the origin of another submap, where the robot was put down."""
         self._go_on_from(np.zeros(3))
@@ -214,9 +220,8 @@ class ScanFollower:
         self._reckoning.belief[0]["calibration"]["is_open"] = False
 
     def _go_on_from(self, here: Floats) -> None:
-        self._drop_window()
-        self._row["here"], self._row["spread"] = here, 0.0
-        self._row["unsure_way"] = self._row["unsure_turn"] = 0.0
+        self.begin_piece()
+        self._row["here"] = here
         reckoned = self._reckoning.pose
         self._row["reckoned"] = reckoned.x, reckoned.y, reckoned.theta
 

@@ -1,6 +1,7 @@
 """Correlative scan matching in a wide window, by branch and bound.
 
-The points of a place make a likelihood field: a grid of how likely a surface is in each cell.
+The points of a place, and the lines between neighbours on one plane surface, make a likelihood
+field: a grid of how likely a surface is in each cell. So few or far beams show it as well as many.
 Coarser grids above it hold the maximum over blocks of 2, 4, 8 ... cells, which bounds the score of
 all shifts within a block. The search goes from coarse to fine and prunes blocks whose bound does
 not exceed the best score, so that it finds the best pose of the window (Hess et al., "Real-time
@@ -32,6 +33,10 @@ _TURN_STEP: Final = 0.012
 _MOST_POINTS: Final = 250
 """More make the search no surer."""
 _FULL: Final = 255
+_PARALLEL: Final = 0.9
+"""Cosine between the normals of two points of one plane surface, at least."""
+_WIDEST_GAP: Final = 0.6
+"""m; between neighbouring beams that meet one surface, at most."""
 _ANOTHER: Final = 0.8
 """m; a pose that is farther from a match is of another place."""
 _NEARLY: Final = 0.8
@@ -52,19 +57,19 @@ class CorrelativeMatch:
 
 
 class CorrelativeMatcher:
-    """Finds points on those of one place, float64 [n, 2 or more], x, y, m, in its frame."""
+    """Finds points on those of one place, float64 [n, 4], x, y, m, and normal, in its frame."""
 
     def __init__(self, points: Floats, reach: float) -> None:
         """Make the grids; raises ValueError without a point within ``reach``, m, of the origin.
 
         Farther points are left out: their bearing is less sure.
         """
-        near = points[np.hypot(points[:, 0], points[:, 1]) < reach, :2]
+        near = np.ascontiguousarray(points[np.hypot(points[:, 0], points[:, 1]) < reach])
         if not len(near):
             raise ValueError("expected points in reach, got none")
         room = 1 << (_LEVELS - 1)
-        first = np.floor(near.min(axis=0) / _CELL).astype(np.int64) - 4 - room
-        last = np.floor(near.max(axis=0) / _CELL).astype(np.int64) + 4
+        first = np.floor(near[:, :2].min(axis=0) / _CELL).astype(np.int64) - 4 - room
+        last = np.floor(near[:, :2].max(axis=0) / _CELL).astype(np.int64) + 4
         self._corner = first * _CELL
         columns, rows = (last - first + 1).tolist()
         self._levels = np.zeros((_LEVELS, rows, columns), np.uint8)
@@ -121,20 +126,47 @@ class CorrelativeMatcher:
 def _spread_out(
     points: Floats, corner: Floats, cell: float, blur: float, grid: Likelihoods
 ) -> None:
-    """Fill a grid, uint8 [rows, columns], with how likely a surface is in each cell."""
+    """Fill a grid, uint8 [rows, columns], with how likely a surface is in each cell.
+
+    Where neighbours among ``points`` [n, 4] lie on one plane surface, so does what is between them.
+    """
+    for index in range(points.shape[0]):
+        x, y = points[index, 0], points[index, 1]
+        _mark(x, y, corner, cell, blur, grid)
+        if index == 0 or not _is_one_surface(points[index - 1], points[index], blur):
+            continue
+        off_x, off_y = x - points[index - 1, 0], y - points[index - 1, 1]
+        parts = math.ceil(math.hypot(off_x, off_y) / cell)
+        for part_of in range(1, parts):
+            share = part_of / parts
+            _mark(x - share * off_x, y - share * off_y, corner, cell, blur, grid)
+
+
+@inner_part
+def _is_one_surface(one: Floats, other: Floats, deviation: float) -> bool:
+    """Whether two points, [4] with normals, lie on one plane surface without a gap."""
+    off_x, off_y = other[0] - one[0], other[1] - one[1]
+    return (
+        one[2] * other[2] + one[3] * other[3] > _PARALLEL
+        and abs(off_x * one[2] + off_y * one[3]) < deviation
+        and abs(off_x * other[2] + off_y * other[3]) < deviation
+        and math.hypot(off_x, off_y) < _WIDEST_GAP
+    )
+
+
+@inner_part
+def _mark(x: float, y: float, corner: Floats, cell: float, blur: float, grid: Likelihoods) -> None:
+    """Note in the cells around a point, m, how likely its surface is there."""
     rows, columns = grid.shape
     reach = math.ceil(2.5 * blur / cell)
-    for index in range(points.shape[0]):
-        u, v = (points[index, 0] - corner[0]) / cell, (points[index, 1] - corner[1]) / cell
-        middle_column, middle_row = math.floor(u), math.floor(v)
-        for row in range(max(middle_row - reach, 0), min(middle_row + reach + 1, rows)):
-            for column in range(
-                max(middle_column - reach, 0), min(middle_column + reach + 1, columns)
-            ):
-                off_u, off_v = (column + 0.5 - u) * cell, (row + 0.5 - v) * cell
-                square = (off_u * off_u + off_v * off_v) / (blur * blur)
-                likelihood = np.uint8(_FULL * math.exp(-0.5 * square))
-                grid[row, column] = max(grid[row, column], likelihood)
+    u, v = (x - corner[0]) / cell, (y - corner[1]) / cell
+    middle_column, middle_row = math.floor(u), math.floor(v)
+    for row in range(max(middle_row - reach, 0), min(middle_row + reach + 1, rows)):
+        for column in range(max(middle_column - reach, 0), min(middle_column + reach + 1, columns)):
+            off_u, off_v = (column + 0.5 - u) * cell, (row + 0.5 - v) * cell
+            square = (off_u * off_u + off_v * off_v) / (blur * blur)
+            likelihood = np.uint8(_FULL * math.exp(-0.5 * square))
+            grid[row, column] = max(grid[row, column], likelihood)
 
 
 @entry

@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.robots.located import Eye
+from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig
+from roomba.configuration.sensors import LidarConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.slam.following.finding_back import FindingBack
 from roomba.perception.slam.mapper import Mapper
+
+Floats = NDArray[np.float64]
 
 CUPBOARDS = (
     (1.5, 0.0, 2.1, 0.4),
@@ -73,3 +80,76 @@ def test_odometry_that_stands_still_for_a_while_does_not_carry_it_away(
     mapper.finish()
     end = true_pose(12.0 - PERIOD)
     assert mapper.at_scan.distance_to(end.x, end.y) < 0.25
+
+
+FAR_APART = 10.0
+"""s between scans that are a metre apart, as logs keep them."""
+
+
+def mapper_at(start: Pose) -> Mapper:
+    config = RobotConfig()
+    return Mapper(MappingConfig(), config.localization, config.gyro, start)
+
+
+def test_in_a_hall_that_is_larger_than_the_search_a_turn_of_the_wheels_is_put_right() -> None:
+    """What is farther than it looks is no reason against a place, and few beams show a wall."""
+    pillars = [
+        (6.0 * n, 12.0 + 4.0 * n % 9, 6.0 * n + 1.5, 13.0 + 4.0 * n % 9) for n in range(1, 7)
+    ]
+    far = LidarConfig(max_range=40.0, sweep_time=0.0)
+    eye = Eye(room_home(44.0, 34.0, pillars), far)
+    lidar = LidarModel(ANGLES, 0.1, 40.0, Pose())
+    true, slipped = Pose(3.0, 17.0, 0.1), Pose(0.0, 0.0, math.radians(9.0))
+    mapper, shown = mapper_at(true), true
+    beams = np.round(np.degrees(ANGLES)).astype(int) % 360
+    for step in range(20):
+        mapper.move(FAR_APART * step, shown)
+        mapper.see(FAR_APART * step, eye.scan(true)[beams].astype(np.float32), lidar)
+        assert mapper.estimate.knowledge is Knowledge.KNOWN or not step
+        assert mapper.at_scan.distance_to(true.x, true.y) < 0.15
+        moved = Pose(1.0, 0.0, -0.01)
+        true = true.compose(moved)
+        shown = shown.compose(moved if step != 9 else moved.compose(slipped))
+
+
+def test_a_piece_begins_where_the_wheels_say() -> None:
+    """Scans that show something else each time tell nothing; then the map goes by the wheels."""
+    here = Pose()
+    mapper = mapper_at(here)
+    for step in range(12):
+        ranges = np.full(len(ANGLES), 0.7 + 0.12 * step, np.float32)
+        mapper.move(FAR_APART * step, here)
+        mapper.see(FAR_APART * step, ranges, LIDAR)
+        assert mapper.at_scan.distance_to(here.x, here.y) < 0.01
+        here = here.compose(Pose(4.0, 0.0, 0.1))
+
+
+CORNER = np.array(
+    [(x, 2.0) for x in np.arange(-1.5, 2.0, 0.1)] + [(2.0, y) for y in np.arange(-1.5, 2.0, 0.1)]
+)
+AHEAD = 2.5
+"""m; so far before the place where it is thought to be a scan fits."""
+
+
+@pytest.mark.parametrize(("told", "is_found"), [(0.0, True), (AHEAD, False)])
+def test_it_is_looked_for_where_odometry_that_stood_still_may_have_left_it(
+    told: float, is_found: bool
+) -> None:
+    """Not so far off where odometry told of the way that it drives in that time."""
+    tried: list[Floats] = []
+    follower: Any = SimpleNamespace(
+        points=np.column_stack((CORNER - (AHEAD, 0.0), np.zeros_like(CORNER))),
+        here=np.zeros(3),
+        unsure_way=told,
+        unsure_turn=0.0,
+        shows_enough=True,
+        is_sure=False,
+        try_at=lambda pose, better: tried.append(pose),
+    )
+    finding = FindingBack(MappingConfig())
+    row = finding.state[0]
+    row["stamp"], row["well_since"], row["pace"] = FAR_APART, 0.0, AHEAD / FAR_APART
+    finding.search(follower, [np.column_stack((CORNER, np.zeros_like(CORNER)))])
+    assert bool(tried) is is_found
+    if is_found:
+        assert tried[0][:2] == pytest.approx((AHEAD, 0.0), abs=0.1)

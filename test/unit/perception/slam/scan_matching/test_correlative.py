@@ -20,7 +20,9 @@ from roomba.perception.slam.submaps.submap import moved
 REACH = MappingConfig().search_reach
 HERE = Pose(2.5, 1.2, 0.0)
 ROOM = moved(points_of(Eye(FURNISHED).scan(HERE)), row(HERE))
-MATCHER = CorrelativeMatcher(ROOM, REACH)
+POINTS = np.column_stack((ROOM[:, :2], np.zeros_like(ROOM[:, :2])))
+"""The room's, without normals: nothing is known of what is between them."""
+MATCHER = CorrelativeMatcher(POINTS, REACH)
 
 
 def likelihood(points: Floats, pose: Floats) -> float:
@@ -69,7 +71,7 @@ def test_what_fits_nowhere_is_not_found() -> None:
 
 def test_a_place_without_points_is_refused() -> None:
     with pytest.raises(ValueError, match="points in reach"):
-        CorrelativeMatcher(np.full((3, 2), 100.0), REACH)
+        CorrelativeMatcher(np.full((3, 4), 100.0), REACH)
 
 
 def corridor(doors: list[float]) -> Floats:
@@ -96,3 +98,39 @@ def test_where_all_looks_alike_no_place_is_unique() -> None:
         unique = matcher.is_unique(points, found, around, around_window, 0.2)
         assert unique == expected
         assert not unique or np.abs(found.pose[:2]).max() < 0.06
+
+
+def wall(along: Floats) -> Floats:
+    """Points [n, 4] of a straight wall and of a corner at its end, the wall's at ``along``, m."""
+    front = np.column_stack((along, np.full((len(along), 3), (2.0, 0.0, -1.0))))
+    side = np.column_stack(
+        (np.full(4, 3.0), np.arange(1.8, 0.9, -0.25), np.full((4, 2), (-1.0, 0.0)))
+    )
+    return np.concatenate((front, side))
+
+
+def score_of(seen: Floats, points: Floats) -> float:
+    """The mean likelihood of points where they are."""
+    found = CorrelativeMatcher(seen, REACH).best(points, np.zeros(3), 0.0, 0.0, 0.0)
+    return 0.0 if found is None else found.score
+
+
+def test_between_neighbours_on_one_surface_there_is_surface() -> None:
+    """However few beams there are: those of the next scan end between them."""
+    seen, between = wall(np.arange(-3.0, 2.9, 0.4)), wall(np.arange(-2.8, 2.7, 0.4))[:-4]
+    assert score_of(seen, between) > 0.8
+    unknown = np.column_stack((seen[:, :2], np.zeros_like(seen[:, :2])))
+    assert score_of(unknown, between) < 0.1
+
+
+def test_a_door_between_two_walls_stays_open() -> None:
+    left, right = wall(np.arange(-3.0, -0.9, 0.1))[:-4], wall(np.arange(0.0, 2.1, 0.1))[:-4]
+    door = wall(np.arange(-0.8, -0.2, 0.1))[:-4]
+    assert score_of(np.concatenate((left, right)), door) < 0.1
+
+
+def test_a_step_between_two_surfaces_is_not_joined() -> None:
+    near = wall(np.arange(-3.0, 0.1, 0.2))[:-4]
+    far = near + np.array([3.2, 0.4, 0.0, 0.0])
+    between = np.array([[0.1, 2.2, 0.0, -1.0]])
+    assert score_of(np.concatenate((near, far)), between) < 0.1
