@@ -236,10 +236,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
         "unit/perception/swept/test_coverage_map.py",
         PART,
     ),
-    "roomba/perception/slam/following/finding_back_kernels": (
-        "unit/perception/slam/test_mapper_foreign.py",
-        PART,
-    ),
     "roomba/perception/slam/submaps/relocation": (
         "unit/perception/slam/test_mapper_foreign.py",
         PART,

@@ -36,6 +36,7 @@ class FindingBack:
         self._row = self.state[0]
         self._row["doubtful"] = self._config.doubtful
         self._row["pace_fades"] = self._config.pace_fades
+        self._row["far_apart"] = self._config.far_apart
         self._row["well_since"] = np.nan
 
     def begin_again(self) -> None:

@@ -24,6 +24,7 @@ FINDING: Final = np.dtype(
         # what does not change: see FollowingConfig
         ("doubtful", "f8"),
         ("pace_fades", "f8"),  # s
+        ("far_apart", "f8"),  # m
     ],
     align=True,
 )
@@ -76,7 +77,9 @@ def _count(findings: Rows, follower: Row, stamp: float) -> None:
     finding.misses = 0
     agreement = follower.met * follower.close
     stands = not is_apart(follower.reckoned, finding.well_at, _STANDS, _STANDS)
-    if agreement < least_usual(findings) and stands:
+    # On the way new things come into sight; but scans that are far apart may fit at a wrong place.
+    is_doubted = stands or follower.way - finding.way >= finding.far_apart
+    if agreement < least_usual(findings) and is_doubted:
         finding.doubts += 1
         return
     finding.doubts = 0
