@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.slam.following.finding_back_kernels import FINDING, is_due
 from roomba.perception.slam.following.scan_follower import ScanFollower
-from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher
+from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher, is_in_reach
 
 Floats = NDArray[np.float64]
 
@@ -65,27 +65,22 @@ class FindingBack:
         points, config = follower.points, self._config
         if not clouds or not follower.shows_enough:
             return
-        # As seen from where it is thought to be: what is far from there is left out on both sides.
-        here, near = follower.here, self._near(points)
-        seen = self._near(np.concatenate(clouds)[::_STRIDE] - (here[0], here[1], 0.0, 0.0))
-        if not len(seen):
+        # As seen from where it is thought to be: what is far from there is left out.
+        here = follower.here
+        seen = np.concatenate(clouds)[::_STRIDE] - (here[0], here[1], 0.0, 0.0)
+        if not is_in_reach(seen, self._reach):
             return
         thought = np.array([0.0, 0.0, here[2]])
         way, turn = self._slip(follower)
         matcher = CorrelativeMatcher(seen, self._reach)
         window = way + self._unseen(follower)
-        found = matcher.best(near, thought, window, turn, config.likelihood)
+        found = matcher.best(points, thought, window, turn, config.likelihood)
         if found is None and self._is_far_apart(follower):
-            found = matcher.best(near, thought, way / 2, turn / 2, config.likelihood_apart)
+            found = matcher.best(points, thought, way / 2, turn / 2, config.likelihood_apart)
         if found is not None:
             pose = np.array([*(found.pose[:2] + here[:2]), found.pose[2]])
             follower.try_at(pose, config.better)
             self._row["misses"] *= not follower.is_sure
-
-    def _near(self, points: Floats) -> Floats:
-        """Return the points, [n, 4], that are near the origin: what is farther is less sure."""
-        near: Floats = points[np.hypot(points[:, 0], points[:, 1]) < self._reach]
-        return near
 
     def _is_far_apart(self, follower: ScanFollower) -> bool:
         """Whether so much was driven from scan to scan that each shows much that none before did.

@@ -45,7 +45,7 @@ _NEARLY: Final = 0.8
 
 def is_in_reach(points: Floats, reach: float) -> bool:
     """Whether some of the points of a place, [n, 2 or more], are within ``reach``, m, of it."""
-    return bool((np.hypot(points[:, 0], points[:, 1]) < reach).any())
+    return len(_within(points, reach)) > 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,9 +62,11 @@ class CorrelativeMatcher:
     def __init__(self, points: Floats, reach: float) -> None:
         """Make the grids; raises ValueError without a point within ``reach``, m, of the origin.
 
-        Farther points are left out: their bearing is less sure.
+        Farther points are left out, of the place and of what is found on it: their bearing is less
+        sure.
         """
-        near = np.ascontiguousarray(points[np.hypot(points[:, 0], points[:, 1]) < reach])
+        self._reach = reach
+        near = np.ascontiguousarray(_within(points, reach))
         if not len(near):
             raise ValueError("expected points in reach, got none")
         room = 1 << (_LEVELS - 1)
@@ -81,8 +83,8 @@ class CorrelativeMatcher:
     ) -> CorrelativeMatch | None:
         """Return the best pose within ``window``, m, and ``turn``, rad, of a pose [3].
 
-        ``points`` are float64 [n, 2 or more], x, y, m. None if no pose has a mean likelihood of
-        more than ``least``, 0..1.
+        ``points`` are float64 [n, 2 or more], x, y, m, about where they were seen from. None if no
+        pose has a mean likelihood of more than ``least``, 0..1.
         """
         return self._best(points, around, window, turn, least, np.zeros(3))
 
@@ -111,8 +113,9 @@ class CorrelativeMatcher:
         beside: Floats,
     ) -> CorrelativeMatch | None:
         """Return the best pose in a window, as :meth:`best`; ``beside`` is as in ``_search``."""
-        stride = max(1, -(-len(points) // _MOST_POINTS))
-        few = np.ascontiguousarray(points[::stride, :2])
+        near = _within(points, self._reach)
+        stride = max(1, -(-len(near) // _MOST_POINTS))
+        few = np.ascontiguousarray(near[::stride, :2])
         found = np.empty(4)
         if not len(few) or not _search(
             self._levels, self._corner, _CELL, few, around, window, turn, _TURN_STEP, least, beside,
@@ -120,6 +123,12 @@ class CorrelativeMatcher:
         ):  # fmt: skip
             return None
         return CorrelativeMatch(found[:3].copy(), float(found[3]))
+
+
+def _within(points: Floats, reach: float) -> Floats:
+    """Return the points, [n, 2 or more], that are within ``reach``, m, of their origin."""
+    near: Floats = points[np.hypot(points[:, 0], points[:, 1]) < reach]
+    return near
 
 
 @entry

@@ -123,6 +123,16 @@ def test_between_neighbours_on_one_surface_there_is_surface() -> None:
     assert score_of(unknown, between) < 0.1
 
 
+def test_what_is_farther_than_the_reach_says_nothing() -> None:
+    """Of the place nothing is known there; in a large hall most points lie so far off."""
+    seen = wall(np.arange(-3.0, 3.0, 0.05))
+    far = np.column_stack((np.linspace(-9.0, 9.0, 300), np.full((300, 3), (30.0, 0.0, -1.0))))
+    assert score_of(seen, np.concatenate((seen, far))) == pytest.approx(
+        score_of(seen, seen), abs=0.02
+    )
+    assert score_of(seen, far) == 0.0
+
+
 def test_a_door_between_two_walls_stays_open() -> None:
     left, right = wall(np.arange(-3.0, -0.9, 0.1))[:-4], wall(np.arange(0.0, 2.1, 0.1))[:-4]
     door = wall(np.arange(-0.8, -0.2, 0.1))[:-4]
