@@ -88,10 +88,11 @@ class FollowingConfig(Frozen):
     pace_fades: Positive = 10.0
     """After so long the fastest pace counts a third."""
     likelihood: Ratio = 0.5
-    """Mean of points, from which a pose is looked at closely;"""
+    """Mean of points, from which a pose is looked at closely."""
     far_apart: Positive = 0.5
+    """Between scans that are so far apart, which show much that none before them did,"""
     likelihood_apart: Ratio = 0.3
-    """between scans that are so far apart from this one, up to half as far off as wheels slip."""
+    """it is this, up to half as far off as wheels may have slipped."""
     better: Annotated[float, Field(ge=1.0, le=10.0)] = 1.2
     """Times that a place found must agree better than the one that is thought to be right."""
     given_up_after: AtLeastOne = 7
