@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from fixtures.waiting import promised
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 MAPPING = "-m roomba.commands.map.warm"
@@ -69,10 +69,7 @@ class Checkout:
 
     def wait(self, condition: Callable[[], bool]) -> None:
         """Wait until something is so."""
-        began = time.monotonic()
-        while not condition():
-            assert time.monotonic() - began < DEADLINE, self.calls
-            time.sleep(0.02)
+        promised(condition, DEADLINE, lambda: str(self.calls))
 
     def is_complete(self) -> bool:
         """Whether all is compiled."""

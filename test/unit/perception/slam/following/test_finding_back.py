@@ -35,6 +35,8 @@ EYE = Eye(room_home(16.0, 2.4, CUPBOARDS))
 SPEED, PERIOD = 1.0, 0.2
 """m/s, s; a quick robot whose lidar is slow."""
 ANGLES = np.radians(np.arange(-90.0, 91.0))
+BEAMS = np.round(np.degrees(ANGLES)).astype(int) % 360
+"""Those of a scan all around."""
 LIDAR = LidarModel(ANGLES, 0.1, 12.0, Pose())
 
 
@@ -43,13 +45,17 @@ def true_pose(time: float) -> Pose:
     return Pose(1.0 + SPEED * time, 1.2 + 0.2 * math.sin(time), 0.2 * math.cos(time))
 
 
+def mapper_at(start: Pose) -> Mapper:
+    config = RobotConfig()
+    return Mapper(MappingConfig(), config.localization, config.gyro, start)
+
+
 def driven(frozen: float, leaps: bool) -> tuple[Mapper, list[float]]:
     """Return the mapper and its errors after each scan, m.
 
     After 5 s odometry stands still for some time; then it leaps to where the robot is, or not.
     """
-    config, random = RobotConfig(), np.random.default_rng(2)
-    mapper = Mapper(MappingConfig(), config.localization, config.gyro, true_pose(0.0))
+    random, mapper = np.random.default_rng(2), mapper_at(true_pose(0.0))
     errors, lost, shown = [], Pose(), true_pose(0.0)
     for tick in range(round(12.0 / PERIOD)):
         now = tick * PERIOD
@@ -59,9 +65,8 @@ def driven(frozen: float, leaps: bool) -> tuple[Mapper, list[float]]:
         elif not leaps:
             lost = shown.compose(here.inverse())
         mapper.move(now, shown)
-        beams = np.round(np.degrees(ANGLES)).astype(int) % 360
-        noise = random.normal(0.0, 0.01, len(beams))
-        ranges = (EYE.scan(here)[beams] + noise).astype(np.float32)
+        noise = random.normal(0.0, 0.01, len(BEAMS))
+        ranges = (EYE.scan(here)[BEAMS] + noise).astype(np.float32)
         mapper.see(now, ranges, LIDAR)
         errors.append(mapper.at_scan.distance_to(here.x, here.y))
     return mapper, errors
@@ -86,11 +91,6 @@ FAR_APART = 10.0
 """s between scans that are a metre apart, as logs keep them."""
 
 
-def mapper_at(start: Pose) -> Mapper:
-    config = RobotConfig()
-    return Mapper(MappingConfig(), config.localization, config.gyro, start)
-
-
 def test_in_a_hall_that_is_larger_than_the_search_a_turn_of_the_wheels_is_put_right() -> None:
     """What is farther than it looks is no reason against a place, and few beams show a wall."""
     pillars = [
@@ -101,10 +101,9 @@ def test_in_a_hall_that_is_larger_than_the_search_a_turn_of_the_wheels_is_put_ri
     lidar = LidarModel(ANGLES, 0.1, 40.0, Pose())
     true, slipped = Pose(3.0, 17.0, 0.1), Pose(0.0, 0.0, math.radians(9.0))
     mapper, shown = mapper_at(true), true
-    beams = np.round(np.degrees(ANGLES)).astype(int) % 360
     for step in range(20):
         mapper.move(FAR_APART * step, shown)
-        mapper.see(FAR_APART * step, eye.scan(true)[beams].astype(np.float32), lidar)
+        mapper.see(FAR_APART * step, eye.scan(true)[BEAMS].astype(np.float32), lidar)
         assert mapper.estimate.knowledge is Knowledge.KNOWN or not step
         assert mapper.at_scan.distance_to(true.x, true.y) < 0.15
         moved = Pose(1.0, 0.0, -0.01)
