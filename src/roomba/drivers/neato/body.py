@@ -34,6 +34,8 @@ _ANSWER: Final = 0.3
 _SCAN_ANSWER: Final = 1.5
 _BEGINNING: Final = 1.0
 """s; the same for what takes the robot over."""
+_GIVING_BACK: Final = 3
+"""Times that it is tried; a radio that fails once may not fail again."""
 _SILENT: Final = 0.15
 """s; the robot stands when what it is to do is older than this."""
 _HOLD: Final = 0.3
@@ -165,14 +167,24 @@ class NeatoBody:
             self._planned.take(self._now(), None)
 
     def end(self) -> None:
-        """Let the robot stand, and give it back."""
-        for command in (STOP, *_AT_REST, "SetLDSRotation Off", "TestMode Off"):
-            try:
-                self._line.ask(command, _ANSWER)
-            except SilenceError:
-                continue
-            except LineError:
-                return
+        """Let the robot stand, and give it back.
+
+        Once a command is not answered, what gives it back comes next, some times if need be: until
+        then its own buttons do nothing, and little time may be left.
+        """
+        for command in (STOP, *_AT_REST, "SetLDSRotation Off"):
+            if not self._is_answered(command):
+                break
+        for _ in range(_GIVING_BACK):
+            if self._is_answered("TestMode Off"):
+                break
+
+    def _is_answered(self, command: str) -> bool:
+        try:
+            self._line.ask(command, _ANSWER)
+        except LineError:
+            return False
+        return True
 
     def serve(self) -> None:
         """Send the command that is due; raises LineError, after which :meth:`begin` is due.

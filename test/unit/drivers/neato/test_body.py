@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
-from fixtures.robots.neato_rig import NeatoRig
+from fixtures.robots.neato_rig import NEATO, NeatoRig
 from fixtures.waiting import wait_until
 
+from roomba.configuration.robot import load_robot_config
 from roomba.drivers.line import LineError, SerialLine
-from roomba.drivers.neato.conversation import SilenceError
+from roomba.drivers.neato.body import NeatoBody
+from roomba.drivers.neato.conversation import END, Conversation, SilenceError
+from roomba.drivers.neato.wheels import STOP
 from roomba.emulators.pseudo_terminal import PseudoTerminal
 from roomba.geometry import Twist
 from roomba.robot.command import Command
@@ -73,6 +77,63 @@ def test_a_line_that_is_gone_is_told() -> None:
     rig.terminal.close()
     wait_until(lambda: bool(rig.errors), 10.0, "the driver notices")
     rig.close()
+
+
+class FailingLine:
+    """A line whose other end answers at once, but what is said with ``failing`` the first times."""
+
+    def __init__(self, failing: str, times: int, *, is_gone: bool) -> None:
+        self.said: list[str] = []
+        self._failing, self._left, self._is_gone = failing, times, is_gone
+        self._answer = b""
+
+    def write(self, data: bytes) -> None:
+        command = data.decode().strip()
+        self.said.append(command)
+        self._answer = f"{command}\r\n".encode() + END
+        if command != self._failing or self._left == 0:
+            return
+        self._left -= 1
+        self._answer = b""
+        if self._is_gone:
+            raise LineError("gone")
+
+    def read(self, seconds: float) -> bytes:
+        answer, self._answer = self._answer, b""
+        return answer
+
+    def discard(self) -> None:
+        self._answer = b""
+
+    def close(self) -> None:
+        pass
+
+
+def given_back(line: FailingLine) -> list[str]:
+    """Return what a driver says at its end."""
+    seconds = itertools.count()  # one goes by at each look at the clock
+    talk = Conversation(line, lambda: float(next(seconds)))
+    body = NeatoBody(talk, lambda: 0.0, load_robot_config(NEATO))
+    body.end()
+    return line.said
+
+
+@pytest.mark.parametrize("is_gone", [False, True])
+@pytest.mark.parametrize("times", [1, 2])
+@pytest.mark.parametrize("failing", ["SetMotor VacuumOff", "TestMode Off"])
+def test_it_is_given_back_though_a_command_is_not_answered(
+    failing: str, times: int, *, is_gone: bool
+) -> None:
+    said = given_back(FailingLine(failing, times, is_gone=is_gone))
+    assert said[0] == STOP
+    assert said.index(failing) == len(said) - 2 or failing == "TestMode Off"
+    assert said.count("TestMode Off") == (times + 1 if failing == "TestMode Off" else 1)
+    assert said[-1] == "TestMode Off"
+
+
+@pytest.mark.parametrize("is_gone", [False, True])
+def test_giving_it_back_ends_where_nothing_answers(*, is_gone: bool) -> None:
+    assert given_back(FailingLine("TestMode Off", 100, is_gone=is_gone)).count("TestMode Off") == 3
 
 
 def test_a_port_that_is_not_there_is_told_with_what_to_do(tmp_path: Path) -> None:
