@@ -13,6 +13,7 @@ from typing import Any, Final
 import pytest
 from fixtures.graph import RosGraph
 from fixtures.spoiled import NUMBERS, spoiled, spoiled_values
+from fixtures.waiting import wait_until
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from ros.rosbridge.conftest import Served
@@ -20,6 +21,9 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from roomba_ros.rosbridge.rosapi import SERVICES
+
+Parts = list[list[str]]
+"""Topics that are published, and services, by their names."""
 
 WITHIN: Final = 20.0
 MORE: Final = int(os.environ.get("ROOMBA_EXAMPLES", "0"))
@@ -116,16 +120,23 @@ class Conversation:
 
 
 @pytest.fixture(scope="module")
-def known(served: Served) -> Iterator[Conversation]:
+def untouched(bridge_graph: RosGraph) -> Parts:
+    """What there is before a program comes."""
+    return parts_of_others(bridge_graph)
+
+
+@pytest.fixture
+def known(served: Served, untouched: Parts) -> Iterator[Conversation]:
     """A program with the token."""
     conversation = Conversation(served.address)
     yield conversation
     conversation.end()
 
 
-@pytest.fixture(scope="module")
-def unknown(served: Served) -> Iterator[Conversation]:
-    """A program without it."""
+@pytest.fixture
+def unknown(served: Served, untouched: Parts) -> Iterator[Conversation]:
+    """A program without it; what another one published is taken back before."""
+    wait_until(lambda: parts_of_others(served.graph) == untouched, WITHIN, "all is as before")
     conversation = Conversation(f"ws://127.0.0.1:{served.port}/rosbridge")
     yield conversation
     conversation.end()
@@ -140,14 +151,13 @@ def test_any_operation_is_answered(known: Conversation, said: str | bytes) -> No
 @FUZZ
 @given(said=SAID)
 def test_a_program_without_the_token_changes_nothing(
-    bridge_graph: RosGraph, unknown: Conversation, said: str | bytes
+    bridge_graph: RosGraph, unknown: Conversation, untouched: Parts, said: str | bytes
 ) -> None:
-    before = parts_of_others(bridge_graph)
     unknown.say(said)
-    assert parts_of_others(bridge_graph) == before
+    assert parts_of_others(bridge_graph) == untouched
 
 
-def parts_of_others(graph: RosGraph) -> list[list[str]]:
+def parts_of_others(graph: RosGraph) -> Parts:
     """Return what is published and served; what the bridge listens to is its own matter."""
     published, _, served = graph.system_state()
     return [sorted(published), sorted(served)]
