@@ -100,47 +100,14 @@ def test_where_all_looks_alike_no_place_is_unique() -> None:
         assert not unique or np.abs(found.pose[:2]).max() < 0.06
 
 
-def wall(along: Floats) -> Floats:
-    """Points [n, 4] of a straight wall and of a corner at its end, the wall's at ``along``, m."""
-    front = np.column_stack((along, np.full((len(along), 3), (2.0, 0.0, -1.0))))
-    side = np.column_stack(
-        (np.full(4, 3.0), np.arange(1.8, 0.9, -0.25), np.full((4, 2), (-1.0, 0.0)))
-    )
-    return np.concatenate((front, side))
-
-
-def score_of(seen: Floats, points: Floats) -> float:
-    """The mean likelihood of points where they are."""
-    found = CorrelativeMatcher(seen, REACH).best(points, np.zeros(3), 0.0, 0.0, 0.0)
-    return 0.0 if found is None else found.score
-
-
-def test_between_neighbours_on_one_surface_there_is_surface() -> None:
-    """However few beams there are: those of the next scan end between them."""
-    seen, between = wall(np.arange(-3.0, 2.9, 0.4)), wall(np.arange(-2.8, 2.7, 0.4))[:-4]
-    assert score_of(seen, between) > 0.8
-    unknown = np.column_stack((seen[:, :2], np.zeros_like(seen[:, :2])))
-    assert score_of(unknown, between) < 0.1
-
-
 def test_what_is_farther_than_the_reach_says_nothing() -> None:
     """Of the place nothing is known there; in a large hall most points lie so far off."""
-    seen = wall(np.arange(-3.0, 3.0, 0.05))
-    far = np.column_stack((np.linspace(-9.0, 9.0, 300), np.full((300, 3), (30.0, 0.0, -1.0))))
-    assert score_of(seen, np.concatenate((seen, far))) == pytest.approx(
-        score_of(seen, seen), abs=0.02
-    )
-    assert score_of(seen, far) == 0.0
+    near, far = POINTS[:, :2], np.column_stack((np.linspace(-9.0, 9.0, 300), np.full(300, 30.0)))
+    for points, score in ((near, score_of(near)), (far, 0.0)):
+        assert score_of(np.concatenate((points, far))) == pytest.approx(score, abs=0.02)
 
 
-def test_a_door_between_two_walls_stays_open() -> None:
-    left, right = wall(np.arange(-3.0, -0.9, 0.1))[:-4], wall(np.arange(0.0, 2.1, 0.1))[:-4]
-    door = wall(np.arange(-0.8, -0.2, 0.1))[:-4]
-    assert score_of(np.concatenate((left, right)), door) < 0.1
-
-
-def test_a_step_between_two_surfaces_is_not_joined() -> None:
-    near = wall(np.arange(-3.0, 0.1, 0.2))[:-4]
-    far = near + np.array([3.2, 0.4, 0.0, 0.0])
-    between = np.array([[0.1, 2.2, 0.0, -1.0]])
-    assert score_of(np.concatenate((near, far)), between) < 0.1
+def score_of(points: Floats) -> float:
+    """The mean likelihood of points where they are."""
+    found = MATCHER.best(points, np.zeros(3), 0.0, 0.0, 0.0)
+    return 0.0 if found is None else found.score
