@@ -27,6 +27,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose, wrap_angle
+from roomba.perception.localization.belief.belief import unknown_belief
 from roomba.perception.localization.tracker import Tracker, moved
 from roomba.perception.matching.scan_view import Fit, ScanView
 from roomba.perception.matching.surface_field import SurfaceField
@@ -141,6 +142,41 @@ def test_a_glass_wall_does_not_drag_it_away(home: Home, behind: float) -> None:
     assert worst < 0.03
     # It was so from the beginning: what is usual here.
     assert doubts == 0
+
+
+def moved_wall_among_much_else(ranges: Ranges) -> Ranges:
+    """Ahead, a fifth of the beams see a wall that is 8 cm nearer; all others end at no wall."""
+    turns = np.arange(len(ranges)) / len(ranges)
+    ahead = np.minimum(turns, 1.0 - turns) < 0.1
+    return np.where(ahead, ranges - np.float32(0.08), np.float32(0.4) * ranges)
+
+
+def test_what_little_agrees_with_the_map_takes_it_nowhere_and_teaches_no_walls() -> None:
+    """The rest is not where the map has it: what agrees may have been moved as well."""
+    pose, belief = Pose(3.4, 1.3, 0.0), unknown_belief()
+    field = SurfaceField.of(FURNISHED.map)
+    tracker = Tracker(field, CONFIG.localization, pose, SURE.copy(), belief)
+    ranges = Eye(FURNISHED).scan(pose)
+    for _ in range(10):
+        tracker.see(LIDAR.view(ranges))
+        tracker.judge(LIDAR.view(ranges))
+    assert not tracker.is_doubtful
+    before, sure = tracker.pose, tracker.covariance[0, 0]
+    for number in range(100):
+        tracker.move(Pose(), 0.01 * SPREAD)
+        belief["unlike"] = 1.0  # as if it saw another place each time
+        view = LIDAR.view(moved_wall_among_much_else(ranges))
+        tracker.see(view)
+        tracker.judge(view)
+        assert tracker.is_doubtful or number < 3
+        if number == 3:
+            learned = belief["wall_offset"].copy()
+    assert tracker.pose.distance_to(before.x, before.y) < 0.01
+    assert (belief["wall_offset"] == learned).all()
+    # It grows unsure meanwhile, and is put right by the next scan that fits.
+    assert tracker.covariance[0, 0] > 1.5 * sure
+    tracker.see(LIDAR.view(ranges))
+    assert tracker.pose.distance_to(pose.x, pose.y) < 0.01
 
 
 def test_along_a_corridor_it_becomes_unsure_and_across_it_does_not() -> None:

@@ -30,6 +30,8 @@ BELIEF: Final = np.dtype(
     [
         ("pose", "f8", (3,)),  # x, y, theta, map
         ("covariance", "f8", (3, 3)),  # of these, m2 and rad2
+        ("unmatched", "f8", (3,)),  # both as they were before the newest scan was matched
+        ("unmatched_covariance", "f8", (3, 3)),
         ("map_spread", "f8", (3, 3)),  # covariance by the map's errors where it is, m2 and rad2
         ("wall_offset", "f8", (2,)),  # of walls against the map's: beams times m, and beams
         ("unlike", "f8"),  # 0..1, how much else is in sight than at the newest scan
@@ -55,7 +57,7 @@ BELIEF: Final = np.dtype(
         ("usual_agree", "f8"),  # and of about the last 5 s
         ("usual_through", "f8"),
         ("counts", "f8", (5,)),  # what the kernels work in; means nothing between them
-        ("work", "f8", (14, 3)),
+        ("work", "f8", (13, 3)),
         ("calibration", CALIBRATION),  # how far wheels, gyro and lidar are off what is told
     ],
     align=True,

@@ -145,23 +145,39 @@ def match_ends(
     """Move the pose to where the ends of beams, [n, 4], of a scan taken there, fit best."""
     belief = beliefs[0]
     pose, covariance, work = belief.pose, belief.covariance, belief.work
-    prior, after = work[MATCH_WORK], work[MATCH_WORK + 1 : MATCH_WORK + 4]
+    before, after = belief.unmatched, work[MATCH_WORK : MATCH_WORK + 3]
     for row in range(3):
-        prior[row] = pose[row]
+        before[row] = pose[row]
         for column in range(3):
-            after[row, column] = covariance[row, column]
+            belief.unmatched_covariance[row, column] = after[row, column] = covariance[row, column]
         after[row, row] += _STILL[row]
-    unsure = numbers[0].unsure_deviation
-    is_unsure = max(after[0, 0], after[1, 1]) > unsure * unsure
-    scales = _WIDE if is_unsure else _NARROW
+    scales = _WIDE if _is_unsure(covariance, numbers[0]) else _NARROW
     variance = _beam_variance(numbers[0], place, count)
-    match_in(field, place, ends, count, prior, after, scales, variance, pose, work, lanes)
-    note_correction(belief, prior)
-    _note_map_errors(belief, field, place, ends, count)
+    match_in(field, place, ends, count, before, after, scales, variance, pose, work, lanes)
+    note_correction(belief, before)
+    if not belief.is_doubtful:
+        _note_map_errors(belief, field, place, ends, count)
     pose[2] = wrapped(pose[2])
     for row in range(3):
         for column in range(3):
             covariance[row, column] = after[row, column]
+
+
+@inner_part
+def _is_unsure(covariance: Floats, numbers: Row) -> bool:
+    """Whether the pose is so unsure that a scan is matched from farther away."""
+    unsure: float = numbers.unsure_deviation
+    is_unsure: bool = max(covariance[0, 0], covariance[1, 1]) > unsure * unsure
+    return is_unsure
+
+
+@inner_part
+def _take_back(belief: Row) -> None:
+    """Leave the pose, and how unsure it is, as they were before the newest scan was matched."""
+    for row in range(3):
+        belief.pose[row] = belief.unmatched[row]
+        for column in range(3):
+            belief.covariance[row, column] = belief.unmatched_covariance[row, column]
 
 
 @allocating_part
@@ -212,7 +228,10 @@ def judge_ends(
     mount: Floats,
     lanes: Floats,
 ) -> None:
-    """Judge how well a scan fits the pose, and whether scans do so much worse than usual."""
+    """Judge how well a scan fits the pose, and whether scans do so much worse than usual.
+
+    One that hardly fits moves nothing, while the pose is not unsure.
+    """
     belief, known = beliefs[0], numbers[0]
     pose, fit = belief.pose, belief.fit
     counts = belief.counts
@@ -233,6 +252,9 @@ def judge_ends(
     )
     if not belief.is_doubtful:
         learn_trust(belief)
+    # What little agrees with the map may stand elsewhere now: it would take the robot along.
+    if fit[AGREE] < known.doubt_agree and not _is_unsure(belief.unmatched_covariance, known):
+        _take_back(belief)
 
 
 @entry
