@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
 from roomba.perception.calibration.state import CALIBRATION
+from roomba.perception.matching.match_kernels import MATCH_WORK
 
 Row: TypeAlias = Any
 """One row of an array below, in a kernel."""
@@ -57,7 +58,7 @@ BELIEF: Final = np.dtype(
         ("usual_agree", "f8"),  # and of about the last 5 s
         ("usual_through", "f8"),
         ("counts", "f8", (5,)),  # what the kernels work in; means nothing between them
-        ("work", "f8", (13, 3)),
+        ("work", "f8", (MATCH_WORK, 3)),
         ("calibration", CALIBRATION),  # how far wheels, gyro and lidar are off what is told
     ],
     align=True,

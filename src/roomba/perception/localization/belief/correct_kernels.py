@@ -21,7 +21,7 @@ from roomba.perception.matching.fit_kernels import AGREEING, LOOKED_AT, judge
 from roomba.perception.matching.fit_kernels import EVIDENCE as ALL_EVIDENCE
 from roomba.perception.matching.fit_kernels import SHORT as ALL_SHORT
 from roomba.perception.matching.fit_kernels import THROUGH as ALL_THROUGH
-from roomba.perception.matching.match_kernels import MATCH_WORK, beam_ends, match_in
+from roomba.perception.matching.match_kernels import beam_ends, match_in
 from roomba.perception.matching.pose_kernels import beyond, seen_from
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
 
@@ -144,23 +144,19 @@ def match_ends(
 ) -> None:
     """Move the pose to where the ends of beams, [n, 4], of a scan taken there, fit best."""
     belief = beliefs[0]
-    pose, covariance, work = belief.pose, belief.covariance, belief.work
-    before, after = belief.unmatched, work[MATCH_WORK : MATCH_WORK + 3]
+    pose, covariance, before = belief.pose, belief.covariance, belief.unmatched
     for row in range(3):
         before[row] = pose[row]
         for column in range(3):
-            belief.unmatched_covariance[row, column] = after[row, column] = covariance[row, column]
-        after[row, row] += _STILL[row]
-    scales = _WIDE if _is_unsure(covariance, numbers[0]) else _NARROW
-    variance = _beam_variance(numbers[0], place, count)
-    match_in(field, place, ends, count, before, after, scales, variance, pose, work, lanes)
+            belief.unmatched_covariance[row, column] = covariance[row, column]
+        covariance[row, row] += _STILL[row]
+    scales = _WIDE if _is_unsure(belief.unmatched_covariance, numbers[0]) else _NARROW
+    variance, work = _beam_variance(numbers[0], place, count), belief.work
+    match_in(field, place, ends, count, before, covariance, scales, variance, pose, work, lanes)
     note_correction(belief, before)
     if not belief.is_doubtful:
         _note_map_errors(belief, field, place, ends, count)
     pose[2] = wrapped(pose[2])
-    for row in range(3):
-        for column in range(3):
-            covariance[row, column] = after[row, column]
 
 
 @inner_part
