@@ -14,10 +14,10 @@ Count = Annotated[int, Field(ge=1, le=1000)]
 class ThingConfig(Frozen):
     """What is a thing and what is not; m, and evidence, of which a scan gives ``gain`` to a cell.
 
-    ``margin``, ``margin_share``
-        A beam that ends nearer to a surface of the map saw that surface: the pose (0.01), half a
-        cell that a surveyed map is off, and 0.7 degrees that edges and the heading are off,
-        which count by the range. Noise of the range comes beside that.
+    ``map_error``, ``margin_share``
+        A beam that ends nearer to a surface of the map saw that surface: so many cells, not m, the
+        map may be off, and by so much of the range an edge or the heading, 0.7 degrees. The
+        deviation of the place and noise of the range come beside that.
     ``sure``
         A range is off by no more than so many times the standard deviation of its noise, which is
         measured from the scans.
@@ -41,12 +41,12 @@ class ThingConfig(Frozen):
         A thing's cell counts as a disc of this size around where the beams end in it: as thick as a
         leg of a chair, and those of neighbouring cells leave no gap for any body.
     ``newest``
-        Share of the newest beam in that place.
+        Share of each new beam in that place.
     ``next_to``
         As near to a surface of the map a point is mapped: about a cell.
     """
 
-    margin: Positive = 0.075
+    map_error: Positive = 0.5
     margin_share: NotNegative = 0.012
     sure: Positive = 3.0
     farthest: Positive = 4.0

@@ -135,6 +135,7 @@ class Burst:
             row["progress_timeout"] = brain.config.driving.progress_timeout
         row["felt_version"] = mission.obstacles.felt_version
         row["clock"] = brain.readings.time - self._body.simulator.time
+        row["unsure"] = brain.keeper.place.estimate.position_deviation
         row["scans"], row["seen_at"] = self._body.scans, brain.keeper.scans.seen_at
         mapper = self._mapper
         if mapper is not None:

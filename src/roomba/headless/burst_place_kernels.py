@@ -18,6 +18,7 @@ from roomba.perception.localization.belief.correct_kernels import (
     correct,
     correct_late,
     is_calm,
+    place_deviation,
 )
 from roomba.perception.localization.belief.reckon_kernels import reckon_on
 from roomba.perception.localization.recent_sight_kernels import Sights, note_sight
@@ -125,7 +126,10 @@ def localize(
     note_sight(sights, stamp, reckoned, beams.ends, count)
     still, at = place.still if burst.is_late else ranges, burst.seen_from
     at[0], at[1], at[2] = pose_then(belief[0].pose, belief[0].reckoned, reckoned)
-    note(sight.things, sight.field, sight.place, beams, still, ranges, at, burst.stride)
+    burst.unsure = place_deviation(belief)
+    note(
+        sight.things, sight.field, sight.place, beams, still, ranges, at, burst.unsure, burst.stride
+    )  # fmt: skip
     return True
 
 
@@ -147,5 +151,7 @@ def map_on(
     at[0], at[1], at[2] = beyond(submap[0], submap[1], submap[2], here[0], here[1], here[2])
     beams = place.beams
     still = ranges if beams.time_increment == 0.0 else following.still
-    note(sight.things, sight.field, sight.place, beams, still, ranges, at, burst.stride)
+    note(
+        sight.things, sight.field, sight.place, beams, still, ranges, at, burst.unsure, burst.stride
+    )  # fmt: skip
     return True

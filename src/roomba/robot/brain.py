@@ -161,7 +161,8 @@ class Brain:
     def look(self) -> None:
         """Look in the newest scan for things that the map does not show."""
         place = self.keeper.place
-        self._mapped.lookout.look(place.placed, place.estimate.knowledge)
+        here = place.estimate
+        self._mapped.lookout.look(place.placed, here.knowledge, here.position_deviation)
 
     def use_newer_map(self) -> None:
         """Begin a mission on the first map, or let it go on with a newer one."""

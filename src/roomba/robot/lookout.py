@@ -25,11 +25,15 @@ class Lookout:
         self.things = ThingLayer(field, self._config)
         return self.things
 
-    def look(self, scan: PlacedScan | None, knowledge: Knowledge) -> None:
-        """Look in a scan, if there is one where it was taken; only if the place is known."""
+    def look(self, scan: PlacedScan | None, knowledge: Knowledge, unsure: float) -> None:
+        """Look in a scan, if there is one where it was taken; only if the place is known.
+
+        ``unsure`` is the deviation of the place, m.
+        """
         if scan is not None and self.things is not None and knowledge is Knowledge.KNOWN:
             beams = self.beams_of(scan.lidar)
-            self.things.see(scan.ranges, beams, scan.pose, self._stride, scan.measured)
+            at, stride = scan.pose, self._stride
+            self.things.see(scan.ranges, beams, at, stride, scan.measured, unsure)
 
     def beams_of(self, lidar: LidarModel) -> LidarBeams:
         """Return a lidar as kernels know it, made anew only when it is another one."""

@@ -46,8 +46,7 @@ def vacuum_of(message: VacuumState) -> VacuumSnapshot:
 
 def doubt_of(message: Localization) -> str:
     """Return why the robot does not know its place better; empty if it knows it."""
-    _, reason = knowledge_of(message)
-    return reason
+    return knowledge_of(message).reason
 
 
 def room_names_of(message: RoomArray) -> tuple[str, ...]:

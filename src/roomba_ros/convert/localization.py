@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from typing import NamedTuple
 
 from geometry_msgs.msg import Point32, PolygonStamped, PoseArray, PoseWithCovarianceStamped
 from roomba_robot.msg import Localization
@@ -41,8 +42,16 @@ def localization_message(now: float, estimate: Estimate, frame_id: str) -> Local
     )
 
 
-def knowledge_of(message: Localization) -> tuple[Knowledge, str]:
-    """Return how well the place is known, and why not better.
+class ToldPlace(NamedTuple):
+    """How well the place is known, why not better, and its standard deviation, m."""
+
+    knowledge: Knowledge
+    reason: str = ""
+    deviation: float = 0.0
+
+
+def knowledge_of(message: Localization) -> ToldPlace:
+    """Return how well the place is known.
 
     Raises MessageError for a state that there is not, and for numbers that are not finite.
     """
@@ -54,7 +63,7 @@ def knowledge_of(message: Localization) -> tuple[Knowledge, str]:
     )
     for knowledge, state in STATES.items():
         if state == message.state:
-            return knowledge, message.message
+            return ToldPlace(knowledge, message.message, message.position_deviation)
     raise MessageError(f"expected a state from 0 to {len(STATES) - 1}, got {message.state}")
 
 

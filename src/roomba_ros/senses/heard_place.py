@@ -18,7 +18,7 @@ from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.reckoned_path import ReckonedPath
 from roomba.robot.readings import Readings
-from roomba_ros.convert.localization import knowledge_of
+from roomba_ros.convert.localization import ToldPlace, knowledge_of
 from roomba_ros.convert.readings import StampedPose, stamped_pose_of
 from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender
 from roomba_ros.runtime.subscriptions import subscribe
@@ -44,7 +44,7 @@ class HeardPlace:
         self._heard = 0.0
         self._correction = Pose()
         self._corrected: StampedPose | None = None
-        self._told = (Knowledge.KNOWN, "")
+        self._told = ToldPlace(Knowledge.KNOWN)
 
     def start(self) -> None:
         """Connect."""
@@ -78,7 +78,14 @@ class HeardPlace:
         Of two nodes that tell it, one is wrong: nothing is to drive by that.
         """
         conflict = self._senders.conflict
-        return (Knowledge.SEARCHING, f"of its place {conflict}") if conflict else self._told
+        if conflict:
+            return Knowledge.SEARCHING, f"of its place {conflict}"
+        return self._told.knowledge, self._told.reason
+
+    @property
+    def deviation(self) -> float:
+        """The standard deviation of its place as it is told, m."""
+        return self._told.deviation
 
     @property
     def path(self) -> ReckonedPath:
@@ -145,7 +152,7 @@ class HeardPlace:
             self._heard = time.monotonic()
             self._pose = told._replace(stamp=told.stamp or rospy.get_time())
 
-    def _on_localization(self, told: tuple[Knowledge, str]) -> None:
+    def _on_localization(self, told: ToldPlace) -> None:
         self._told = told
 
 

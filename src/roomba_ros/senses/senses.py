@@ -63,7 +63,7 @@ class HeardSenses:
         if scan is not None and pose is not None:
             still = scan.lidar.at_once(scan.stamp, scan.ranges, self.place.path)
             placed = PlacedScan(pose, still, plain_ranges(scan.ranges), scan.lidar)
-            lookout.look(placed, self.place.knowledge[0])
+            lookout.look(placed, self.place.knowledge[0], self.place.deviation)
 
     @property
     def pose(self) -> Pose | None:

@@ -216,10 +216,8 @@ def test_a_pose_of_another_frame_is_refused() -> None:
 
 
 def test_a_state_of_the_place_that_there_is_not_is_refused() -> None:
-    assert knowledge_of(Localization(state=Localization.ROUGH, message="dark")) == (
-        Knowledge.ROUGH,
-        "dark",
-    )
+    told = Localization(state=Localization.ROUGH, message="dark", position_deviation=0.5)
+    assert knowledge_of(told) == (Knowledge.ROUGH, "dark", 0.5)
     with pytest.raises(MessageError, match="a state from 0 to 3, got 4"):
         knowledge_of(Localization(state=4))
 

@@ -129,8 +129,11 @@ def test_it_tells_how_old_the_newest_pose_is(ros: Lockstep) -> None:
 
 def test_it_passes_on_how_well_the_place_is_known(ros: Lockstep) -> None:
     heard = place()
-    ros.publish("/localization", Localization(state=Localization.LOST, message="fog"))
+    assert heard.deviation == 0.0
+    lost = Localization(state=Localization.LOST, message="fog", position_deviation=1.5)
+    ros.publish("/localization", lost)
     assert heard.knowledge == (Knowledge.LOST, "fog")
+    assert heard.deviation == 1.5
 
 
 def test_another_node_does_not_say_that_the_place_is_known(

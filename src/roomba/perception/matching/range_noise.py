@@ -21,7 +21,7 @@ _BINS: Final = 160
 _FIRST, _LAST = 1e-4, 1.0
 """m; deviations between which samples are told apart, in steps of 6 %."""
 _STEP: Final = math.log(_LAST / _FIRST) / _BINS
-_LEAST_SAMPLES: Final = 300
+LEAST_SAMPLES: Final = 300
 """Fewer say too little."""
 _MOST_SAMPLES: Final = 100_000
 """With more the older ones count half."""
@@ -63,7 +63,7 @@ def measure_noise(
     noise = noises[0]
     counts = noise.counts
     noise.total += _count(ranges, nearest, min(farthest, _FARTHEST), counts)
-    if noise.total >= _LEAST_SAMPLES:
+    if noise.total >= LEAST_SAMPLES:
         sum_so_far, middle = 0, 0
         while sum_so_far + counts[middle] < 0.5 * noise.total:
             sum_so_far += counts[middle]

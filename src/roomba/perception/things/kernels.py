@@ -36,12 +36,14 @@ def note(
     ranges: Ranges,
     measured: Ranges,
     pose: Floats,
+    unsure: float,
     scans: int,
 ) -> None:
     """Take a scan, float32 [beams], m, that was taken at ``pose`` [3], map, which is known.
 
-    ``ranges`` are as if all were measured there, ``measured`` as they were. The scan stands for so
-    many ``scans``, its own included. ``lidar.ends`` is a work array here.
+    ``unsure`` is the deviation of that place, m. ``ranges`` are as if all were measured there,
+    ``measured`` as they were. The scan stands for so many ``scans``, its own included.
+    ``lidar.ends`` is a work array here.
     """
     layer = things.layer[0]
     layer.scan += 1
@@ -50,7 +52,8 @@ def note(
     x = pose[0] + cosine * lidar.mount[0] - sine * lidar.mount[1]
     y = pose[1] + sine * lidar.mount[0] + cosine * lidar.mount[1]
     heading = pose[2] + lidar.mount[2]
-    count = _find_ends(things, layer, field, place, lidar, ranges, x, y, heading)
+    margin = layer.map_error * place[2] + unsure
+    count = _find_ends(things, layer, field, place, lidar, ranges, x, y, heading, margin)
     _count_in(things, layer, field, place, lidar.ends, count)
     _count_behind(things, layer, field, place, lidar.ends, count)
     first = heading + lidar.first_angle
@@ -69,18 +72,19 @@ def _find_ends(
     x: float,
     y: float,
     heading: float,
+    margin: float,
 ) -> int:
     """Fill ``lidar.ends`` with those of beams that end away from all surfaces; return how many.
 
-    Of each it is x, y, m, map, and the way on which a beam is as likely to have ended by its noise
-    as there, along x and y, m.
+    ``margin`` is what a surface may be off, m. Of each beam it is x, y, m, map, and the way on
+    which it is as likely to have ended by its noise as there, along x and y, m.
     """
     rows, columns = field.shape
     cosine, sine = math.cos(heading), math.sin(heading)
     inverse = 1.0 / place[2]
     around = round(2.0 * math.pi / abs(lidar.step))
     # From nowhere in a cell a surface is farther than from its middle by more than half its size.
-    near = layer.margin - 0.7072 * place[2]
+    near = margin - 0.7072 * place[2]
     count = 0
     for beam in range(ranges.size):
         away = ranges[beam]
@@ -94,7 +98,7 @@ def _find_ends(
             continue
         off, _, _ = look(field, place, end_x, end_y)
         slack = layer.sure * noise_at(things.noise, away)
-        if off <= layer.margin + layer.margin_share * away + slack or off >= OFF_MAP:
+        if off <= margin + layer.margin_share * away + slack or off >= OFF_MAP:
             continue
         if is_mixed(ranges, beam, lidar.step, around, slack):
             continue
@@ -114,6 +118,8 @@ def _count_in(
         cell = _cell_of(field, place, x, y)
         if things.touched[cell] == layer.scan:
             things.beams[cell, IN] += 1
+            things.sums[cell, 0] += x - things.spots[cell, 0]
+            things.sums[cell, 1] += y - things.spots[cell, 1]
             continue
         if things.evidence[cell] == 0:
             if layer.count == things.listed.size:
@@ -123,8 +129,8 @@ def _count_in(
             things.spots[cell, 0], things.spots[cell, 1] = x, y
         things.touched[cell] = layer.scan
         things.beams[cell, IN], things.beams[cell, BEHIND] = 1, 0
-        things.spots[cell, 0] += np.float32(layer.newest * (x - things.spots[cell, 0]))
-        things.spots[cell, 1] += np.float32(layer.newest * (y - things.spots[cell, 1]))
+        things.sums[cell, 0] = x - things.spots[cell, 0]
+        things.sums[cell, 1] = y - things.spots[cell, 1]
 
 
 @inner_part
@@ -191,6 +197,7 @@ def _weigh(
         cell = things.listed[number]
         before = things.evidence[cell]
         if things.touched[cell] == layer.scan:
+            _move_spot(things, layer, cell)
             is_in = things.beams[cell, IN] >= max(things.beams[cell, BEHIND], 1)
             more = gain if is_in else -layer.behind * scans
         else:
@@ -211,6 +218,19 @@ def _weigh(
             layer.count -= 1
             things.listed[number] = things.listed[layer.count]
     return is_other
+
+
+@inner_part
+def _move_spot(things: Things, layer: Row, cell: int) -> None:
+    """Move a cell's spot towards the mean of this scan's beams, by their share of all that count.
+
+    All count alike, wherever in the cell they end: the first ones of a sweep all meet one side.
+    """
+    ended = things.beams[cell, IN]
+    if ended > 0:
+        share = (1.0 - (1.0 - layer.newest) ** ended) / ended
+        things.spots[cell, 0] += np.float32(share * things.sums[cell, 0])
+        things.spots[cell, 1] += np.float32(share * things.sums[cell, 1])
 
 
 @inner_part

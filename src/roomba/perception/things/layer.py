@@ -46,6 +46,7 @@ class ThingLayer:
             np.zeros((rows * columns, 2), np.int16),
             np.zeros(_MOST_CELLS, np.int64),
             np.zeros((rows * columns, 2), np.float32),
+            np.zeros((rows * columns, 2), np.float32),
             unknown_noises(self.config.farthest),
         )
         for name, value in self.config.model_dump().items():
@@ -63,15 +64,17 @@ class ThingLayer:
         pose: Pose,
         scans: int = 1,
         measured: Ranges | None = None,
+        unsure: float = 0.01,
     ) -> None:
         """Take a scan, float32 [beams], m, taken at a pose of the map that is known.
 
         It stands for so many ``scans`` of the lidar, its own included. ``measured`` are the ranges
-        as they were, if ``ranges`` were made of them for a robot that moved meanwhile.
+        as they were, if ``ranges`` were made of them for a robot that moved meanwhile. ``unsure``
+        is the deviation of the place, m.
         """
         measured = ranges if measured is None else measured
         at = np.array([pose.x, pose.y, pose.theta])
-        note(self.arrays, self._field, self._place, lidar, ranges, measured, at, scans)
+        note(self.arrays, self._field, self._place, lidar, ranges, measured, at, unsure, scans)
 
     def cells(self, least: int | None = None) -> NDArray[np.int64]:
         """Return the things' cells, int64 [n, 2], row and column: those with enough evidence."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import inner_part, part
-from roomba.perception.matching.range_noise import measure_noise, unknown_noise
+from roomba.perception.matching.range_noise import LEAST_SAMPLES, measure_noise, unknown_noise
 
 Ranges = NDArray[np.float32]
 Rows = NDArray[np.void]
@@ -22,6 +22,8 @@ _STEP: Final = 0.5
 """m; the noise of ranges is measured for each such stretch of them by itself."""
 _EVERY: Final = 5
 """Scans from one whose noise is measured to the next."""
+_UNKNOWN: Final = 0.02
+"""m; noise of ranges of which nothing is known, nor of farther ones: hardly a lidar has more."""
 _STEEP: Final = 5.7
 """Tangent of 80 degrees: what is met more aslant is hardly seen."""
 _OF_TWO: Final = math.sqrt(2.0)
@@ -31,7 +33,9 @@ _OF_THREE: Final = math.sqrt(6.0)
 
 def unknown_noises(farthest: float) -> Rows:
     """Return what is taken for the noise of ranges up to ``farthest``, m, before a scan came."""
-    return np.concatenate([unknown_noise() for _ in range(math.ceil(farthest / _STEP))])
+    noises = np.concatenate([unknown_noise() for _ in range(math.ceil(farthest / _STEP))])
+    noises["deviation"] = _UNKNOWN
+    return noises
 
 
 @inner_part
@@ -42,6 +46,12 @@ def measure_noises(noises: Rows, scan: int, ranges: Ranges, nearest: float) -> N
     for index in range(noises.size):
         first = max(nearest, index * _STEP)
         measure_noise(noises[index : index + 1], ranges, first, (index + 1) * _STEP)
+    # Of what is hardly ever met so near, the next farther ranges tell.
+    farther = _UNKNOWN
+    for index in range(noises.size - 1, -1, -1):
+        if noises[index]["total"] < LEAST_SAMPLES:
+            noises[index]["deviation"] = farther
+        farther = float(noises[index]["deviation"])
 
 
 @part

@@ -12,7 +12,7 @@ Row: TypeAlias = Any
 
 LAYER: Final = np.dtype(
     [
-        ("margin", "f8"),  # m
+        ("map_error", "f8"),  # cells
         ("margin_share", "f8"),  # of the range
         ("sure", "f8"),  # deviations of the noise
         ("farthest", "f8"),  # m
@@ -40,8 +40,9 @@ class Things(NamedTuple):
     ``layer`` is LAYER [1]; ``evidence`` int16 and ``touched`` int64, the newest scan that ended in
     a cell, are [cells], row by row as the map's; ``beams`` int16 [cells, 2] counts those of that
     scan which ended in it, and just behind it; ``listed`` int64 [n] has the cells with evidence;
-    ``spots`` float32 [cells, 2] is where in its cell the beams end, m, map frame: their mean;
-    ``noise`` is NOISE [n], that of ranges of each half metre.
+    ``spots`` float32 [cells, 2] is where in its cell the beams end, m, map frame: their mean, in
+    which those of long ago count less; ``sums`` float32 [cells, 2] is by how much those of that
+    scan are off it together; ``noise`` is NOISE [n], that of ranges of each half metre.
     """
 
     layer: NDArray[np.void]
@@ -50,4 +51,5 @@ class Things(NamedTuple):
     beams: NDArray[np.int16]
     listed: NDArray[np.int64]
     spots: NDArray[np.float32]
+    sums: NDArray[np.float32]
     noise: NDArray[np.void]

@@ -121,12 +121,38 @@ def test_what_the_map_shows_is_no_thing_wherever_it_is_seen_from() -> None:
         assert layer.version == 0
 
 
-@pytest.mark.parametrize("off", [0.04, 0.08, 0.15, 0.25])
-def test_what_stands_at_a_wall_is_a_thing_if_it_sticks_out(off: float) -> None:
-    """The wall is at x = 6."""
+@pytest.mark.parametrize("off", [0.03, 0.08, 0.15, 0.25])
+@pytest.mark.parametrize("unsure", [0.005, 0.06])
+def test_what_stands_at_a_wall_is_a_thing_if_it_sticks_out(off: float, unsure: float) -> None:
+    """The wall is at x = 6, and may be half a cell nearer; by the place it may be off as well."""
     pose = Pose(5.0, 2.5, 0.0)
-    layer = seen(ROOM, (6.0 - off + 0.03, 2.5, 0.03), pose=pose)
-    assert bool(layer.obstacles()) == (off > 0.12)
+    ranges = with_discs(Eye(ROOM).scan(pose), pose, (6.0 - off + 0.03, 2.5, 0.03))
+    layer = layer_of(ROOM)
+    layer.arrays.noise["deviation"] = 0.002
+    for _ in range(4):
+        layer.see(ranges, BEAMS, pose, unsure=unsure)
+    assert bool(layer.obstacles()) == (off > 0.05 + unsure)
+
+
+@pytest.mark.parametrize("facing", [0.0, 0.5 * math.pi, math.pi, 1.5 * math.pi])
+def test_a_leg_stands_in_the_middle_of_what_is_seen_of_it(facing: float) -> None:
+    """Not at the side that the beams of a sweep meet first."""
+    leg = (3.025, 2.525)  # in the middle of a cell
+    half = 0.018
+    pose = Pose(leg[0] - 0.4 * math.cos(facing), leg[1] - 0.4 * math.sin(facing), facing)
+    angles = pose.theta + np.arange(BEAMS.directions.shape[0]) * BEAMS.step
+    aside = (0.4 - half) * np.tan(angles - facing)
+    meets = (np.abs(aside) < half) & (np.cos(angles - facing) > 0.0)
+    assert np.count_nonzero(meets) >= 5
+    face = (0.4 - half) / np.cos(angles - facing)
+    ranges = np.where(meets, face, Eye(ROOM).scan(pose)).astype(np.float32)
+    layer = layer_of(ROOM)
+    for _ in range(10):
+        layer.see(ranges, BEAMS, pose)
+    ((x, y, _),) = layer.obstacles()
+    off_x, off_y = x - leg[0], y - leg[1]
+    assert -math.sin(facing) * off_x + math.cos(facing) * off_y == pytest.approx(0.0, abs=0.002)
+    assert math.cos(facing) * off_x + math.sin(facing) * off_y == pytest.approx(-half, abs=0.002)
 
 
 def test_where_the_map_says_nothing_is_no_thing() -> None:
@@ -216,6 +242,10 @@ def test_it_can_be_told_to_forget() -> None:
     assert len(layer.cells(1)) > 0
 
 
+_UNSURE = 0.01
+"""m; how unsure places are when nothing else is said."""
+
+
 class Plain:
     """The same rules, cell by cell and slowly; the noise is what the layer measured."""
 
@@ -236,7 +266,8 @@ class Plain:
             x, y = pose.x + length * way[0], pose.y + length * way[1]
             half_metre = min(int(length / 0.5), len(self._layer.arrays.noise) - 1)
             slack = config.sure * self._layer.arrays.noise["deviation"][half_metre]
-            if self._off(x, y) <= config.margin + config.margin_share * length + slack:
+            margin = config.map_error * frame.resolution + _UNSURE
+            if self._off(x, y) <= margin + config.margin_share * length + slack:
                 continue
             if is_mixed_by_itself(ranges, beam, slack):
                 continue

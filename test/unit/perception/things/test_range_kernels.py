@@ -44,6 +44,18 @@ def test_noise_is_measured_where_ranges_are_as_long() -> None:
     assert noise_at(noises, 9.0) == noise_at(noises, 3.9)
 
 
+def test_ranges_that_were_not_met_are_as_noisy_as_the_next_longer_ones() -> None:
+    """And where no longer ones were met, as those of the worst lidars."""
+    random, noises = np.random.default_rng(1), unknown_noises(4.0)
+    assert (noises["deviation"] == 0.02).all()
+    for scan in range(1, 200):
+        ranges = wall(1.2, 0.0, 41) + random.normal(0.0, 0.006, 41)
+        measure_noises(noises, scan, ranges.astype(np.float32), 0.1)
+    assert noise_at(noises, 1.2) == pytest.approx(0.006, rel=0.3)
+    assert noise_at(noises, 0.3) == noise_at(noises, 0.8) == noise_at(noises, 1.2)
+    assert noise_at(noises, 2.2) == 0.02
+
+
 def test_noise_is_measured_in_some_of_the_scans() -> None:
     noises, ranges = unknown_noises(1.0), wall(0.7, 0.0)
     for scan in (1, 2, 3, 4):

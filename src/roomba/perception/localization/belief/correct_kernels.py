@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
-from roomba.compilation import allocating_entry, allocating_part, entry, inner_part
+from roomba.compilation import allocating_entry, allocating_part, entry, inner_part, part
 from roomba.perception.calibration.kernels import drop_window
 from roomba.perception.calibration.place_kernels import note_pose
 from roomba.perception.localization.belief.belief import AGREE, EVIDENCE, SHORT, THROUGH, Row, Rows
@@ -127,7 +127,18 @@ def is_calm(beliefs: Rows, numbers: Rows, now: float) -> bool:
 @entry
 def deviation(covariance: Floats) -> float:
     """Return the standard deviation along the worst direction of the floor, m; nan is infinite."""
-    xx, xy, yy = covariance[0, 0], covariance[0, 1], covariance[1, 1]
+    return _worst(covariance[0, 0], covariance[0, 1], covariance[1, 1])
+
+
+@part
+def place_deviation(beliefs: Rows) -> float:
+    """Return the same of the place, m, errors of the map included."""
+    own, of_map = beliefs[0].covariance, beliefs[0].map_spread
+    return _worst(own[0, 0] + of_map[0, 0], own[0, 1] + of_map[0, 1], own[1, 1] + of_map[1, 1])
+
+
+@part
+def _worst(xx: float, xy: float, yy: float) -> float:
     variance = 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)
     return math.sqrt(max(0.0, variance)) if variance == variance else math.inf
 
