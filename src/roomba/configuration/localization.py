@@ -138,9 +138,9 @@ class CalibrationConfig(Frozen):
     least_scale: Positive = 0.01
     least_gyro: Positive = 0.004
     least_drift: Positive = 0.02
-    least_shift: Positive = 0.004
-    least_turn: Positive = 0.3
-    sure: AtLeastOne = 4
+    least_shift: Positive = 0.001
+    least_turn: Positive = 0.1
+    sure: AtLeastOne = 1
     window_way: Positive = 1.0
     window_turn: Positive = 1.5
     forgetting_way: Positive = 20_000.0

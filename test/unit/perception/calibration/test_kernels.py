@@ -180,6 +180,15 @@ def test_a_healthy_robot_is_left_alone() -> None:
         assert not row["is_lidar_due"]
 
 
+@pytest.mark.parametrize("left", [-0.003, 0.003])
+def test_a_lidar_that_sits_a_little_aside_is_corrected(left: float) -> None:
+    """A robot that passes walls by 5 mm would touch them."""
+    random, row = np.random.default_rng(3), fresh()
+    measure(row, drive(Worn(lidar=(0.0, left, 0.0)), rooms(random), random))
+    apply_lidar(row)
+    assert row["applied"][LEFT] == pytest.approx(left, abs=0.001)
+
+
 def test_slip_and_pushes_count_little() -> None:
     random = np.random.default_rng(5)
     told, row = drive(WORN, rooms(random), random), fresh()
