@@ -26,8 +26,6 @@ _LOOKED_AT: Final = 96
 """Beams that are looked at, at most: six of a group tell how far it is off."""
 _ALIKE: Final = 0.8
 """Cosine of the angle between surfaces that face alike."""
-_SCALE: Final = 0.1
-"""m; beams that end farther off a surface lose weight, as in a match."""
 _LARGEST: Final = (0.3, 0.3, 0.15)
 """m, rad; along what a scan does not tell the map's errors do not count for more."""
 _LEAST_WEIGHT: Final = 5.0
@@ -75,7 +73,7 @@ def map_spread(
         x, y = cosine * end[0] - sine * end[1], sine * end[0] + cosine * end[1]
         off, slope[0], slope[1] = look(field, place, pose[0] + x, pose[1] + y)
         slope[2] = slope[1] * x - slope[0] * y
-        share = off / _SCALE
+        share = off / place[2]
         weight = 1.0 / (1.0 + share * share)
         weight *= weight
         weights += weight

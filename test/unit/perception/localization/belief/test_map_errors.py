@@ -7,12 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from fixtures.drives.made_lidars import TICK, Floats, Lidar, outlines
+from fixtures.robots.located import FURNISHED, LIDAR, Eye
 from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, wrap_angle
 from roomba.grid import GridFrame, OccupancyMap
+from roomba.perception.localization.belief.map_spread_kernels import (
+    OFFSET,
+    OFFSET_BEAMS,
+    map_spread,
+)
 from roomba.perception.localization.localizer import Localizer
+from roomba.perception.matching.match_kernels import beam_ends
 from roomba.perception.matching.surface_field import SurfaceField
 
 CONFIG = RobotConfig()
@@ -118,3 +125,20 @@ def test_on_coarse_cells_a_wall_may_be_anywhere_in_its_cell() -> None:
 def test_walls_are_looked_for_inside_of_their_cells() -> None:
     errors, _ = drive(Surveyed.of(outlines((0.05, 0.05, 6.05, 6.05))), 30.0, 3)
     assert np.median(errors) < 0.01
+
+
+def test_what_stands_more_than_a_cell_before_walls_hardly_counts_as_walls() -> None:
+    """A sixth of what is in sight was pushed by 7 cm; all walls are where the map shows them."""
+    pose, beams = Pose(3.0, 1.3, 0.4), LIDAR.arrays()
+    ranges = Eye(FURNISHED).scan(pose)
+    ranges[100:160] -= 0.07
+    count = beam_ends(
+        ranges, beams.directions, beams.mount, beams.nearest, beams.farthest, beams.ends
+    )
+    field, told = SurfaceField.of(FURNISHED.map), np.empty(4)
+    at, of_cell = np.array([pose.x, pose.y, pose.theta]), 0.05**2 / 12.0
+    spread = np.empty((3, 3))
+    assert map_spread(
+        field.values, field.place, beams.ends, count, at, of_cell, of_cell, spread, told
+    )
+    assert abs(told[OFFSET] / told[OFFSET_BEAMS]) < 0.004
