@@ -20,7 +20,11 @@ _NAMES: Final = {
     "SECURITY.md": "security",
     "benchmarks/README.md": "benchmarks",
 }
-OUTSIDE: Final = {path: f"{name}.md" for path, name in _NAMES.items()}
+_MEASURED: Final = Path(__file__).resolve().parent.parent / "benchmarks" / "measured"
+OUTSIDE: Final = {path: f"{name}.md" for path, name in _NAMES.items()} | {
+    f"benchmarks/measured/{page.name}": f"measured/{page.name}"
+    for page in sorted(_MEASURED.glob("*.md"))
+}
 """Pages of the site that do not lie in ``docs``: their files, and what they are on the site."""
 DECISIONS: Final = posixpath.join("adr", "README.md")
 API: Final = "api"

@@ -20,6 +20,8 @@ SITE: dict[str, Any] = yaml.safe_load((ROOT / "mkdocs.yml").read_text("utf-8"))
         ("[all](commands.md#the-rest)", "page.md", "[all](commands.md#the-rest)"),
         ("[help](../CONTRIBUTING.md#tests)", "gym.md", "[help](contributing.md#tests)"),
         ("[it](../../benchmarks/README.md)", "adr/0001-a.md", "[it](../benchmarks.md)"),
+        ("[all](../benchmarks/measured/slam.md#x)", "gym.md", "[all](measured/slam.md#x)"),
+        ("[how](../../docs/gym.md)", "measured/slam.md", "[how](../gym.md)"),
         ("![a map](docs/pictures/map.png)", "start.md", "![a map](pictures/map.png)"),
         ("[why](docs/adr/0001-a.md)", "contributing.md", "[why](adr/0001-a.md)"),
         ("[all](docs/adr/)", "start.md", "[all](adr/README.md)"),
