@@ -15,9 +15,9 @@ class ThingConfig(Frozen):
     """What is a thing and what is not; m, and evidence, of which a scan gives ``gain`` to a cell.
 
     ``map_error``, ``margin_share``
-        A beam that ends nearer to a surface of the map saw that surface: so many cells, not m, the
-        map may be off, and by so much of the range an edge or the heading, 0.7 degrees. The
-        deviation of the place and noise of the range come beside that.
+        A beam that ends nearer to a surface of the map saw that surface: the map may be off by
+        ``map_error`` of its cells, and an edge or the heading (0.7 degrees) by ``margin_share`` of
+        the range. The deviation of the place and noise of the range come beside that.
     ``sure``
         A range is off by no more than so many times the standard deviation of its noise, which is
         measured from the scans.

@@ -41,8 +41,8 @@ class Things(NamedTuple):
     a cell, are [cells], row by row as the map's; ``beams`` int16 [cells, 2] counts those of that
     scan which ended in it, and just behind it; ``listed`` int64 [n] has the cells with evidence;
     ``spots`` float32 [cells, 2] is where in its cell the beams end, m, map frame: their mean, in
-    which those of long ago count less; ``sums`` float32 [cells, 2] is by how much those of that
-    scan are off it together; ``noise`` is NOISE [n], that of ranges of each half metre.
+    which those of long ago count less; ``sums`` float32 [cells, 2] adds up how far those of that
+    scan are from it along x and y, m; ``noise`` is NOISE [n], that of ranges of each half metre.
     """
 
     layer: NDArray[np.void]
