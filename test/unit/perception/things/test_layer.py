@@ -139,7 +139,8 @@ def test_a_leg_stands_in_the_middle_of_what_is_seen_of_it(facing: float) -> None
     """Not at the side that the beams of a sweep meet first."""
     leg = (3.025, 2.525)  # in the middle of a cell
     half = 0.018
-    pose = Pose(leg[0] - 0.4 * math.cos(facing), leg[1] - 0.4 * math.sin(facing), facing)
+    # To its left, so that the beams of a sweep meet it from one side to the other.
+    pose = Pose(leg[0] - 0.4 * math.cos(facing), leg[1] - 0.4 * math.sin(facing), facing - 1.0)
     angles = pose.theta + np.arange(BEAMS.directions.shape[0]) * BEAMS.step
     aside = (0.4 - half) * np.tan(angles - facing)
     meets = (np.abs(aside) < half) & (np.cos(angles - facing) > 0.0)
