@@ -135,13 +135,13 @@ class Burst:
             row["progress_timeout"] = brain.config.driving.progress_timeout
         row["felt_version"] = mission.obstacles.felt_version
         row["clock"] = brain.readings.time - self._body.simulator.time
-        row["unsure"] = brain.keeper.place.estimate.position_deviation
         row["scans"], row["seen_at"] = self._body.scans, brain.keeper.scans.seen_at
         mapper = self._mapper
         if mapper is not None:
             at = mapper.at_scan
             row["at_scan"] = at.x, at.y, at.theta
             row["submap"] = mapper.submap_pose
+            row["unsure"] = mapper.estimate.position_deviation
         row["last"], row["way"] = (last.now, last.pose.x, last.pose.y), 0.0
         row["sweeps"] = mission.sweeps
         cleaning = mission.cleaning

@@ -126,10 +126,8 @@ def localize(
     note_sight(sights, stamp, reckoned, beams.ends, count)
     still, at = place.still if burst.is_late else ranges, burst.seen_from
     at[0], at[1], at[2] = pose_then(belief[0].pose, belief[0].reckoned, reckoned)
-    burst.unsure = place_deviation(belief)
-    note(
-        sight.things, sight.field, sight.place, beams, still, ranges, at, burst.unsure, burst.stride
-    )  # fmt: skip
+    unsure = place_deviation(belief)
+    note(sight.things, sight.field, sight.place, beams, still, ranges, at, unsure, burst.stride)
     return True
 
 
@@ -149,9 +147,7 @@ def map_on(
         return False
     submap, here, at = burst.submap, following.follower[0].here, burst.at_scan
     at[0], at[1], at[2] = beyond(submap[0], submap[1], submap[2], here[0], here[1], here[2])
-    beams = place.beams
+    beams, unsure = place.beams, burst.unsure
     still = ranges if beams.time_increment == 0.0 else following.still
-    note(
-        sight.things, sight.field, sight.place, beams, still, ranges, at, burst.unsure, burst.stride
-    )  # fmt: skip
+    note(sight.things, sight.field, sight.place, beams, still, ranges, at, unsure, burst.stride)
     return True

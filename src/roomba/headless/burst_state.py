@@ -26,7 +26,7 @@ BURST: Final = np.dtype(
         ("steps", "i8"),  # of the world in a tick
         ("apart", "f8"),  # s; at least, between two scans that are looked at
         ("stride", "i8"),  # scans that such a one stands for
-        ("unsure", "f8"),  # deviation of the place, m
+        ("unsure", "f8"),  # m; deviation of the place of a mapper
         ("bin_capacity", "f8"),  # micrograms
         ("is_late", "?"),  # whether scans are older than the tick at which they come
         ("is_turned", "?"),  # whether poses are told in another frame than the world's

@@ -32,8 +32,7 @@ class Lookout:
         """
         if scan is not None and self.things is not None and knowledge is Knowledge.KNOWN:
             beams = self.beams_of(scan.lidar)
-            at, stride = scan.pose, self._stride
-            self.things.see(scan.ranges, beams, at, stride, scan.measured, unsure)
+            self.things.see(scan.ranges, beams, scan.pose, self._stride, scan.measured, unsure)
 
     def beams_of(self, lidar: LidarModel) -> LidarBeams:
         """Return a lidar as kernels know it, made anew only when it is another one."""

@@ -116,21 +116,19 @@ def _count_in(
     for index in range(count):
         x, y = ends[index, 0], ends[index, 1]
         cell = _cell_of(field, place, x, y)
-        if things.touched[cell] == layer.scan:
-            things.beams[cell, IN] += 1
-            things.sums[cell, 0] += x - things.spots[cell, 0]
-            things.sums[cell, 1] += y - things.spots[cell, 1]
-            continue
-        if things.evidence[cell] == 0:
-            if layer.count == things.listed.size:
-                continue
-            things.listed[layer.count] = cell
-            layer.count += 1
-            things.spots[cell, 0], things.spots[cell, 1] = x, y
-        things.touched[cell] = layer.scan
-        things.beams[cell, IN], things.beams[cell, BEHIND] = 1, 0
-        things.sums[cell, 0] = x - things.spots[cell, 0]
-        things.sums[cell, 1] = y - things.spots[cell, 1]
+        if things.touched[cell] != layer.scan:
+            if things.evidence[cell] == 0:
+                if layer.count == things.listed.size:
+                    continue
+                things.listed[layer.count] = cell
+                layer.count += 1
+                things.spots[cell, 0], things.spots[cell, 1] = x, y
+            things.touched[cell] = layer.scan
+            things.beams[cell, IN], things.beams[cell, BEHIND] = 0, 0
+            things.sums[cell, 0], things.sums[cell, 1] = 0.0, 0.0
+        things.beams[cell, IN] += 1
+        things.sums[cell, 0] += x - things.spots[cell, 0]
+        things.sums[cell, 1] += y - things.spots[cell, 1]
 
 
 @inner_part
