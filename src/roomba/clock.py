@@ -1,4 +1,4 @@
-"""Jumps of a clock, set when a simulation begins anew or a bag is played again, and ages."""
+"""Jumps of a clock, set when a simulation begins anew or a bag is played again; ages and waits."""
 
 from __future__ import annotations
 
@@ -33,6 +33,23 @@ class ClockJumps:
             return 0.0
         step = now - last
         return 0.0 if -self._tolerance <= step <= self._longest else step
+
+
+class RobotTime:
+    """Adds up the time between ticks; a clock that is set back or forward changes little."""
+
+    def __init__(self, now: float) -> None:
+        """Begin at ``now``, s of the robot's clock."""
+        self._last = now
+        self.elapsed = 0.0
+        """s since the beginning."""
+
+    def tick(self, now: float) -> float:
+        """Return the time since the last tick, s, from 0 to the longest that a tick may take."""
+        step = min(max(now - self._last, 0.0), LONGEST_TICK)
+        self._last = now
+        self.elapsed += step
+        return step
 
 
 def is_recent(now: float, heard: float, longest: float) -> bool:

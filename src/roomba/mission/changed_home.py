@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles
@@ -35,14 +36,18 @@ class ChangedHome:
             job.cleaning.use_context(context, job.dirt)
             job.look_no_more()
 
-    def use_map(self, context: PlanningContext, things: ThingLayer, dirt: DirtMap) -> None:
+    def use_map(
+        self, context: PlanningContext, things: ThingLayer, dirt: DirtMap, moved: Pose
+    ) -> None:
         """Go on with a map that has grown, or with the whole one, from the next tick on.
 
-        ``things`` and ``dirt`` are new ones of that map.
+        ``things`` and ``dirt`` are new ones of that map; the frame of the one before lies at
+        ``moved`` in its frame.
         """
-        job, before = self._job, self._drives.context
-        dirt.carry_on(job.dirt, context.station.compose(before.station.inverse()))
-        self._obstacles.use(things)
+        job = self._job
+        dirt.carry_on(job.dirt, moved)
+        self._obstacles.use(things, moved)
+        self._drives.trail.move(moved)
         job.dirt = dirt
         job.bin.forget_places()
         self.use_context(context)

@@ -109,8 +109,10 @@ class Commands:
     def _end(
         self, message: str, senses: Senses, outcome: CleanOutcome = CleanOutcome.STOPPED
     ) -> None:
-        """End the job under way for good."""
+        """End the job under way for good; the next one begins with nothing tried."""
+        self._transitions.drop_driver()
         self._transitions.end_job(outcome, message, senses)
+        self._retries.renew()
         self._job.forget()
 
     def _require_possible(self, event: Event) -> None:

@@ -141,7 +141,7 @@ class Mission:
         """
         moved = context.station.compose(self.context.station.inverse())
         self._ticks.carpets = self.carpets.carried_to(context.occupancy, moved)
-        self._home.use_map(context, things, dirt)
+        self._home.use_map(context, things, dirt, moved)
 
     def wants_map(self, occupancy: OccupancyMap) -> bool:
         """Whether a map that has grown to this makes a difference to what it does."""

@@ -20,7 +20,7 @@ from roomba.grid import OccupancyMap
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
-from roomba.mission.phases.machine import Event, Phase
+from roomba.mission.phases.machine import Event, Phase, next_state
 from roomba.mission.walking.walk import Walk
 from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.localization.localizer import Localizer
@@ -145,7 +145,7 @@ class Brain:
         """
         mission, senses = self.mission, self.senses()
         walk = self.walking.begin((x, y), mission.context.occupancy, mission.obstacles, senses)
-        if mission.state.drives:
+        if next_state(mission.state, Event.PAUSE) is not None:
             mission.command(Event.PAUSE, senses)
         return walk
 

@@ -19,7 +19,7 @@ from roomba_robot.msg import RobotPosition
 from std_msgs.msg import Float32
 
 from roomba.errors import RoombaError
-from roomba.geometry import wrap_angle
+from roomba.geometry import Pose, wrap_angle
 from roomba.grid import OccupancyMap
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.inputs.senses import Senses
@@ -155,7 +155,7 @@ class WalkToPointActionServer:
             newer, self._newer_map = self._newer_map, None
             if newer is not None:
                 self._planner, field = newer
-                self._obstacles.use(self._lookout.look_beside(field))
+                self._obstacles.use(self._lookout.look_beside(field), Pose())
 
     def _sense(self, now: float) -> Senses | None:
         """Return what is sensed, and look for what the map does not show; None without a map."""

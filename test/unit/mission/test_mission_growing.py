@@ -231,6 +231,20 @@ def test_a_map_that_is_not_finished_is_an_error_that_says_what_to_do() -> None:
     assert rig.tick(3).wants_whole_map
 
 
+def test_another_clean_waits_for_the_whole_map_as_long_as_the_first_one() -> None:
+    rig = cleaning(known=WHOLE)
+    swept(rig)
+    rig.tick(round(100.0 / TICK))
+    rig.mission.clean(CleanRequest(), rig.senses)
+    rig.tick(4)
+    assert rig.mission.driver is not None
+    swept(rig)
+    rig.tick(round(100.0 / TICK))
+    assert "waits for the map to be finished" in rig.mission.message
+    rig.tick(round(21.0 / TICK))
+    assert rig.phase is Phase.ERROR
+
+
 def test_dirt_that_is_met_on_a_newer_map_is_cleaned_once_more() -> None:
     rig = cleaning(known=WHOLE)
     rig.grow(WHOLE, is_growing=False)

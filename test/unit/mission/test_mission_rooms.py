@@ -21,13 +21,13 @@ from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRefusedError, CleanRequest
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Event, Phase
-from roomba.vocabulary import CleanMode, RoomWay
+from roomba.vocabulary import CleanMode, EdgeOrder, RoomWay
 
 
-def begun(*rooms: str, passes: int = 1) -> HeadlessMission:
+def begun(*rooms: str, passes: int = 1, edges: EdgeOrder = EdgeOrder.ANY) -> HeadlessMission:
     """A robot that has cleaned for twenty seconds."""
     robot = HeadlessMission(TWO_ROOMS, rooms=two_rooms(), seed=2)
-    request = CleanRequest(CleanMode.ROOMS, rooms=rooms, in_order=True, passes=passes)
+    request = CleanRequest(CleanMode.ROOMS, rooms=rooms, in_order=True, passes=passes, edges=edges)
     robot.mission.clean(request, robot.senses())
     until(robot, in_phase(robot, Phase.CLEANING))
     wait(robot, 20.0)
@@ -124,3 +124,40 @@ def test_from_room_to_room_it_goes_through_the_middle_of_the_door(rooms: tuple[s
     record = robot.clean(CleanRequest(CleanMode.ROOMS, rooms=rooms, in_order=True))
     assert_all_clean(robot, record)
     assert record.hits == 0
+
+
+@pytest.mark.parametrize("edges", [EdgeOrder.FIRST, EdgeOrder.LAST])
+def test_edges_and_middle_of_a_room_are_both_cleaned_when_another_one_is_added(
+    edges: EdgeOrder,
+) -> None:
+    robot = begun(HALL, edges=edges)
+    robot.mission.change_rooms((HALL, DEN))
+    assert_all_clean(robot, robot.run())
+    assert floor_clean(robot, robot.context.in_room(HALL)) >= FLOOR_TOO_LITTLE
+
+
+def test_a_room_that_is_renamed_meanwhile_is_cleaned_by_its_new_name() -> None:
+    robot = begun(HALL, DEN)
+    robot.brain.use_rooms(two_rooms().renamed(HALL, "corridor"), robot.context.zones)
+    assert robot.mission.queue == ("corridor", DEN)
+    robot.mission.change_rooms((DEN, "corridor"))
+    values = robot.mission.checkpoint(robot.senses())
+    assert values is not None
+    again = HeadlessMission(TWO_ROOMS, rooms=two_rooms().renamed(HALL, "corridor"), seed=2)
+    again.mission.restore(values, again.senses())
+    assert again.mission.queue == (DEN, "corridor")
+    assert_all_clean(robot, robot.run())
+
+
+def test_rooms_that_are_joined_or_forgotten_meanwhile_are_cleaned_all_the_same() -> None:
+    for rooms in (two_rooms().joined(DEN, HALL), None):
+        robot = begun(HALL, DEN)
+        robot.brain.use_rooms(rooms, robot.context.zones)
+        assert_all_clean(robot, robot.run())
+
+
+def test_a_newer_clean_knows_nothing_of_the_path_of_the_older_one() -> None:
+    robot = begun(HALL, DEN)
+    robot.mission.clean(CleanRequest(), robot.senses())
+    assert robot.mission.cleaning is not None
+    assert robot.mission.cleaning.broken_off == 0.0

@@ -19,7 +19,7 @@ from roomba.grid import OccupancyMap
 from roomba.headless.body import SimulatedBody
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.inputs.senses import Battery
-from roomba.mission.phases.machine import Phase
+from roomba.mission.phases.machine import Errand, MissionState, Phase
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.planning.path.planner import NoPathError
 from roomba.robot.brain import Brain
@@ -156,6 +156,17 @@ def test_a_walk_pauses_the_errand_under_way() -> None:
     robot.tick(replace(DOCKED, time=0.05))
     robot.walk(1.0, 0.5)
     assert robot.mission.state.phase is Phase.PAUSED
+    assert robot.walking.is_under_way
+
+
+def test_a_walk_while_it_charges_for_a_clean_pauses_that() -> None:
+    robot = brain(HOME.map)
+    robot.tick(DOCKED)
+    robot.mission.clean(CleanRequest(), robot.senses())
+    robot.mission._transitions.state = MissionState(Phase.CHARGING, Errand.CLEAN)
+    robot.walk(1.0, 0.5)
+    robot.tick(replace(DOCKED, time=0.05, battery=Battery(1.0, 26.0)))
+    assert robot.mission.state == MissionState(Phase.PAUSED, Errand.CLEAN, Phase.UNDOCKING)
     assert robot.walking.is_under_way
 
 

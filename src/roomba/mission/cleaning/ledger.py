@@ -18,8 +18,14 @@ from roomba.mission.cleaning.checkpoint import (
     unpacked,
 )
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
-from roomba.mission.cleaning.room_queue import changed_request, changed_stages, queue_of
-from roomba.mission.cleaning.stages import Stage, stages_of
+from roomba.mission.cleaning.room_queue import (
+    changed_request,
+    changed_stages,
+    queue_of,
+    renamed_rooms,
+    with_renamed,
+)
+from roomba.mission.cleaning.stages import Stage, parts_of_room, stages_of
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_bits import SWEPT, TRIED, WANTED
 from roomba.perception.swept.coverage_kernels import missed_of, swept_or
@@ -27,7 +33,7 @@ from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.raster.carried import carried
 from roomba.raster.distance import distance_to_nearest
-from roomba.vocabulary import CleanMode, RoomWay, listed
+from roomba.vocabulary import CleanMode, RoomWay
 
 Mask = NDArray[np.bool_]
 
@@ -132,7 +138,7 @@ class CoverageLedger:
             self.stages,
             self.stage_number,
             self.coverage.swept,
-            self._floor_of_room,
+            lambda name: parts_of_room(name, request, self._context),
         )
         self.request, self.stages, self.stage_number = request, stages, number
         self._want(self._union())
@@ -172,9 +178,18 @@ class CoverageLedger:
         self._context = context
 
     def _use_edits(self, context: PlanningContext) -> None:
-        coverable, wanted = context.coverable(), self._floor_of(self._asked(context), context)
+        names = renamed_rooms(self._context.rooms, context.rooms)
+        self.request = with_renamed(self.request, names)
+        coverable = context.coverable()
+        self.stages = [
+            Stage(names.get(s.name, s.name), s.floor & coverable, s.again) for s in self.stages
+        ]
+        try:
+            wanted = self._floor_of(self._asked(context), context)
+        except CleanRefusedError:
+            # A room that was joined to another one, or forgotten, is cleaned all the same.
+            wanted = self._floor_of(self.stages, context)
         freed = wanted & ~self.coverage.wanted
-        self.stages = [Stage(s.name, s.floor & coverable, s.again) for s in self.stages]
         if freed.any():
             self.stages.append(Stage("what was a zone before", freed))
         self._want((self.coverage.wanted & coverable & wanted) | freed)
@@ -259,19 +274,6 @@ class CoverageLedger:
         coverable = context.coverable()
         stages = stages_of(self.request, context, self._dirt, coverable, self._began_at)
         return stages[:1] if context.is_growing else stages
-
-    def _floor_of_room(self, name: str) -> Mask:
-        """Return what can be cleaned of a room; raises CleanRefusedError."""
-        rooms = self._context.rooms
-        known = () if rooms is None else rooms.names
-        if name not in known:
-            raise CleanRefusedError(
-                f"expected the name of a room, got {name!r}; there are: {listed(known)}"
-            )
-        floor = self._context.coverable() & self._context.in_room(name)
-        if not floor.any():
-            raise CleanRefusedError(f"expected floor that can be reached in {name!r}, got none")
-        return floor
 
     def _union(self) -> Mask:
         return self._floor_of(self.stages, self._context)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.cleaning.stages import Stage
+from roomba.perception.rooms.rooms import Rooms
 from roomba.vocabulary import CleanMode, RoomWay
 
 Mask = NDArray[np.bool_]
@@ -59,13 +60,14 @@ def changed_stages(
     stages: Sequence[Stage],
     number: int,
     swept: Mask,
-    floor_of: Callable[[str], Mask],
+    parts_of: Callable[[str], Sequence[Stage]],
 ) -> tuple[list[Stage], int]:
     """Return the stages with other rooms from the present one on, and the number of that.
 
     ``before`` is the request of the ``stages``, of which ``number`` is under way, and ``request``
-    the changed one; ``floor_of`` tells the floor of a room. A present room that is no more wanted
-    leaves what was ``swept`` of it. Each room has its first pass before any has its second.
+    the changed one; ``parts_of`` tells the parts in which one pass over a room is swept. A present
+    room that is no more wanted leaves what was ``swept`` of it. Each room has its first pass before
+    any has its second.
     """
     done, present, later = list(stages[:number]), stages[number], stages[number + 1 :]
     finished = Counter(stage.name for stage in done)
@@ -73,14 +75,52 @@ def changed_stages(
     if present.name not in names and present not in others:
         # Without a name: should it be wanted again, only the rest of it is swept.
         done.append(Stage("", present.floor & swept))
-    passes = {name: request.way_of(name).passes for name in names}
-    left = {name: passes[name] - finished[name] % passes[name] for name in names}
-    new = [
-        present
-        if number_of_pass == 0 and name == present.name
-        else Stage(name, floor_of(name), again=number_of_pass > 0 or finished[name] > 0)
-        for number_of_pass in range(max(left.values()))
+    left = {
+        name: _passes_left(parts_of(name), request.way_of(name).passes, finished[name])
         for name in names
-        if number_of_pass < left[name]
+    }
+    if present.name in left:
+        left[present.name][0][0] = present
+    most = max(len(passes) for passes in left.values())
+    new = [
+        part
+        for number_of_pass in range(most)
+        for passes in left.values()
+        if number_of_pass < len(passes)
+        for part in passes[number_of_pass]
     ]
     return [*done, *new, *others], len(done)
+
+
+def renamed_rooms(before: Rooms | None, after: Rooms | None) -> dict[str, str]:
+    """Return the new names of rooms, by their old ones, whose cells are what they were.
+
+    A room that goes by its old name is left out, and one of which cells came or went.
+    """
+    if before is None or after is None or before.frame != after.frame:
+        return {}
+    names = {}
+    for label, name in enumerate(before.names, 1):
+        cells = before.labels == label
+        now = int(after.labels[cells][0])
+        if name not in after.names and now and np.array_equal(after.labels == now, cells):
+            names[name] = after.names[now - 1]
+    return names
+
+
+def with_renamed(request: CleanRequest, names: Mapping[str, str]) -> CleanRequest:
+    """Return the request with new names of rooms, by their old ones."""
+    return replace(request, rooms=tuple(names.get(name, name) for name in request.rooms))
+
+
+def _passes_left(parts: Sequence[Stage], passes: int, finished: int) -> list[list[Stage]]:
+    """Return the passes over a room that are left, each as its parts, of which some are finished.
+
+    When all are finished, all are left: it is wanted once more.
+    """
+    begun, first = divmod(finished % (passes * len(parts)), len(parts))
+    is_swept = finished >= len(parts)
+    left = [[Stage(part.name, part.floor, again=is_swept) for part in parts[first:]]]
+    for _ in range(begun + 1, passes):
+        left.append([Stage(part.name, part.floor, again=True) for part in parts])
+    return left

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,7 +15,7 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.planner import NoPathError
 from roomba.raster.distance import distance_to_nearest
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, listed
 
 Mask = NDArray[np.bool_]
 
@@ -37,8 +38,7 @@ def stages_of(
     request: CleanRequest, context: PlanningContext, dirt: DirtMap, coverable: Mask, here: Pose
 ) -> list[Stage]:
     """Return the parts of a clean in their order, all passes; raises CleanRefusedError."""
-    if request.carpets is CarpetWay.AVOID:
-        coverable = coverable & ~context.carpets
+    coverable = _allowed(request, context, coverable)
     once = [
         part
         for whole in _parts(request, context, dirt, coverable, here)
@@ -50,6 +50,29 @@ def stages_of(
         for part in once
         if number < request.way_of(part.name).passes
     ]
+
+
+def parts_of_room(name: str, request: CleanRequest, context: PlanningContext) -> list[Stage]:
+    """Return the parts of one pass over a room, in their order; raises CleanRefusedError."""
+    known = () if context.rooms is None else context.rooms.names
+    _require_known((name,), known)
+    floor = _allowed(request, context, context.coverable()) & context.in_room(name)
+    if not floor.any():
+        raise CleanRefusedError(f"expected floor that can be reached in {name!r}, got none")
+    return _by_edges(Stage(name, floor), request.edges, context)
+
+
+def _allowed(request: CleanRequest, context: PlanningContext, coverable: Mask) -> Mask:
+    """Return the floor that a request lets the robot clean."""
+    return coverable & ~context.carpets if request.carpets is CarpetWay.AVOID else coverable
+
+
+def _require_known(names: Iterable[str], known: Sequence[str]) -> None:
+    for name in names:
+        if name not in known:
+            raise CleanRefusedError(
+                f"expected the name of a room, got {name!r}; there are: {listed(known)}"
+            )
 
 
 def _by_edges(part: Stage, order: EdgeOrder, context: PlanningContext) -> list[Stage]:
@@ -107,11 +130,7 @@ def _room_names(request: CleanRequest, context: PlanningContext, dirt: DirtMap) 
             for name in known
         }
         return sorted(known, key=lambda name: -dirtiest[name])
-    for name in request.rooms:
-        if name not in known:
-            raise CleanRefusedError(
-                f"expected the name of a room, got {name!r}; there are: {', '.join(known)}"
-            )
+    _require_known(request.rooms, known)
     names = list(dict.fromkeys(request.rooms))
     return names if request.in_order else _nearest_first(names, context)
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from typing import Final
 
+from roomba.clock import RobotTime
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.sensors import StationConfig
 from roomba.geometry import Pose, Twist, wrap_angle
-from roomba.mission.docking.expected_time import RobotTime
 from roomba.mission.docking.search import BeamSearch, drive_to, is_at_staging, steered
 from roomba.mission.docking.step import DockSenses, DockState, DockStep, Trouble
 from roomba.mission.docking.track import StationTrack

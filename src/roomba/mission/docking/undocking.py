@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+from roomba.clock import RobotTime
 from roomba.configuration.docking import DockingConfig
 from roomba.geometry import Pose, Twist, wrap_angle
-from roomba.mission.docking.expected_time import RobotTime
 from roomba.mission.docking.step import DockSenses
 
 

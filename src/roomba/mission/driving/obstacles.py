@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import WalkConfig
 from roomba.configuration.mission import DrivingConfig
+from roomba.geometry import Pose
 from roomba.mission.driving.unknown_things import UnknownThings
 from roomba.mission.inputs.senses import Senses
 from roomba.perception.localization.estimate import Knowledge
@@ -79,10 +80,18 @@ class Obstacles:
         """A number that changes when something comes or goes."""
         return self.seen.version + self.felt_version
 
-    def use(self, seen: ThingLayer) -> None:
-        """Go on with what is seen besides another map; what was felt stays."""
+    def use(self, seen: ThingLayer, moved: Pose) -> None:
+        """Go on with what is seen besides another map; what was felt stays where it was.
+
+        The frame of the map before lies at ``moved`` in that of this one.
+        """
         self.felt_version += self.seen.version + 1
         self.seen = seen
+        for felt in (self._felt, self._lasting, self._edges):
+            felt.move(moved)
+        there = [moved.compose(Pose(x, y)) for x, y in self._touched]
+        self._touched = deque(((place.x, place.y) for place in there), maxlen=_TOUCHES)
+        self.low = self.low.moved(moved)
 
     def feel(self, senses: Senses) -> None:
         """Remember what bumper or cliff sensors found where the robot stands."""

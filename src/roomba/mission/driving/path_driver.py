@@ -203,7 +203,6 @@ class PathDriver:
             return DriveStep(self._state, Twist(-config.backing_speed, 0.0))
         self._backs_from = None
         self._state = DriveState.DRIVING
-        self.progress["recoveries"] += way < 0.25 * config.backing_way
         if any(senses.touches) and way < 0.25 * config.backing_way:
             self._begin_recovery(senses)
         elif self._touches > self._config.most_touches:

@@ -16,13 +16,13 @@ class RetryPolicy:
     def __init__(self, config: WaitingConfig) -> None:
         """Begin with nothing tried."""
         self._config = config
+        self.renew()
+
+    def renew(self) -> None:
+        """Forget what was tried, and wait no longer."""
         self._tries = self._waits = 0
         self._since = self._looked = -math.inf
         self.gets_out = self._has_begun = False
-
-    def renew(self) -> None:
-        """Count the ways home anew."""
-        self._tries = self._waits = 0
 
     def wait(self, now: float) -> None:
         """Begin to wait."""

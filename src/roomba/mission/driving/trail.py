@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Final
 
@@ -9,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import entry
+from roomba.geometry import Pose
+from roomba.perception.swept.coverage_kernels import LONGEST_STEP
 from roomba.planning.path.costmap import Point
 
 Floats = NDArray[np.float64]
@@ -26,7 +29,7 @@ class Trail:
 
     def __init__(self) -> None:
         """Begin anywhere."""
-        self._places = np.empty((_LENGTH, 2))
+        self._places = np.zeros((_LENGTH, 2))
         self._count = np.zeros(1, np.int64)
 
     def add(self, x: float, y: float) -> None:
@@ -36,6 +39,12 @@ class Trail:
     def add_all(self, places: Floats) -> None:
         """Remember where the robot was, float64 [n, 2], m, one place after the other."""
         remember(self._places, self._count, places)
+
+    def move(self, moved: Pose) -> None:
+        """Go on in another frame, in which this one lies at ``moved``."""
+        cosine, sine = math.cos(moved.theta), math.sin(moved.theta)
+        turned = self._places @ np.array([[cosine, sine], [-sine, cosine]])
+        self._places[:] = turned + np.array([moved.x, moved.y])
 
     def forget(self) -> None:
         """The robot was carried: there is no way back."""
@@ -61,12 +70,15 @@ class Trail:
 def remember(kept: Floats, count: NDArray[np.int64], places: Floats) -> None:
     """Keep those of some places, [n, 2], m, that are not near to the one kept before.
 
-    ``kept`` is a ring; ``count`` [1] tells how many were ever put there.
+    ``kept`` is a ring; ``count`` [1] tells how many were put there since it was begun. To a place
+    that is too far off for a step the robot was carried: it is begun anew there.
     """
     for number in range(places.shape[0]):
         x, y = places[number, 0], places[number, 1]
         last = (count[0] - 1) % kept.shape[0]
         off = abs(x - kept[last, 0]) + abs(y - kept[last, 1])
+        if off > LONGEST_STEP:
+            count[0] = 0
         if count[0] == 0 or off >= _STEP:
             at = count[0] % kept.shape[0]
             kept[at, 0], kept[at, 1] = x, y

@@ -26,6 +26,11 @@ class _Touch(NamedTuple):
         """Return the point so far from the body's middle in that direction, m."""
         return self.x + away * math.cos(self.direction), self.y + away * math.sin(self.direction)
 
+    def moved(self, moved: Pose) -> _Touch:
+        """Return the same in another frame, in which this one lies at ``moved``."""
+        there = moved.compose(Pose(self.x, self.y, self.direction))
+        return _Touch(self.time, there.x, there.y, there.theta)
+
 
 class UnknownThings:
     """Round obstacles felt by the bumper; each is forgotten after ``memory`` s, for things move."""
@@ -69,6 +74,10 @@ class UnknownThings:
         self._felt = [
             touch for touch in self._felt if math.dist(self._middle_of(touch), (x, y)) > self._reach
         ]
+
+    def move(self, moved: Pose) -> None:
+        """Go on in another frame, in which this one lies at ``moved``."""
+        self._felt = [touch.moved(moved) for touch in self._felt]
 
     def forget(self) -> None:
         """Forget everything."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
+from roomba.clock import RobotTime
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.docking.docking import Docking, DockSenses, DockState
-from roomba.mission.docking.expected_time import RobotTime
 from roomba.mission.docking.undocking import Undocking, UndockState
 from roomba.mission.inputs.senses import EmptyingTold, Senses
 from roomba.mission.phases.job import Job

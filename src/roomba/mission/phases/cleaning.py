@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from typing import Final
 
+from roomba.clock import RobotTime
 from roomba.configuration.mission import ExploringConfig
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.request import CleanOutcome
@@ -36,14 +37,21 @@ class CleanPhase:
     ) -> None:
         """Begin with no path."""
         self._job, self._drives, self._retries, self._config = job, drives, retries, config
-        self._turn = TurnToSee(config)
+        self._begin(None)
+
+    def _begin(self, cleaning: Cleaning | None) -> None:
+        """Begin with a clean, of which nothing was seen."""
+        self._cleaning = cleaning
+        self._turn = TurnToSee(self._config)
         self._seen_all_of: PlanningContext | None = None
-        self._seen_all_at = 0.0
+        self._waited: RobotTime | None = None
 
     def tick(self, senses: Senses, limit: float) -> PhaseStep:
         """Return what is wanted now; ``limit`` is the speed wanted, m/s."""
         cleaning, drives = self._job.cleaning, self._drives
         assert cleaning is not None
+        if cleaning is not self._cleaning:
+            self._begin(cleaning)
         if self._job.ledger.must_go_home(senses, drives.distance_home):
             return PhaseStep(event=Event.LOW)
         if self._job.bin.is_full:
@@ -122,7 +130,7 @@ class CleanPhase:
                 return PhaseStep()
             reason = "no way leads out of where it is"
             return phases.try_home_again(reason, drives, self._retries, senses)
-        self._seen_all_of, self._seen_all_at = drives.context, senses.now
+        self._seen_all_of, self._waited = drives.context, RobotTime(senses.now)
         return PhaseStep(message=_WAITS, wants_whole_map=True)
 
     def _turns_to_see(self, senses: Senses) -> bool:
@@ -130,7 +138,9 @@ class CleanPhase:
         return self._drives.context.is_growing and self._turn.begin(senses)
 
     def _wait_for_whole_map(self, senses: Senses) -> PhaseStep:
-        if 0.0 <= senses.now - self._seen_all_at < self._config.map_wait:
+        assert self._waited is not None
+        self._waited.tick(senses.now)
+        if self._waited.elapsed < self._config.map_wait:
             return PhaseStep(wants_whole_map=True)
         self._seen_all_of = None
         return PhaseStep(failure=Failure(CleanOutcome.FAULT, _NO_WHOLE_MAP))

@@ -136,8 +136,20 @@ class Job:
         can_go_on: bool,
     ) -> None:
         """Make its result, unless that was told before; forget it, unless it can be resumed."""
-        if self._is_told or (self.cleaning is None and self.exploration is None):
-            return
+        if not self._is_told:
+            self._tell(outcome, message, context, obstacles, senses)
+        if not can_go_on:
+            self.forget()
+
+    def _tell(
+        self,
+        outcome: CleanOutcome,
+        message: str,
+        context: PlanningContext,
+        obstacles: Obstacles,
+        senses: Senses,
+    ) -> None:
+        """Make the result of what is under way, if there is something."""
         if self.cleaning is not None:
             self._cleaned = self._clean_result(
                 self.cleaning, outcome, message, context, obstacles, senses
@@ -152,8 +164,6 @@ class Job:
                 self.exploration.still_unseen(context.known),
             )
         self._is_told = True
-        if not can_go_on:
-            self.forget()
 
     def _clean_result(
         self,

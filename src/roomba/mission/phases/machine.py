@@ -150,7 +150,9 @@ def _commanded(state: MissionState, event: Event) -> MissionState | None:
     if event is Event.PAUSE:
         if state.drives:
             return replace(state, phase=Phase.PAUSED, resumes=_again(state.phase))
-        if state.phase is Phase.CHARGING:
+        if state.phase is Phase.CHARGING or (
+            state.phase is Phase.EMPTYING and state.errand in _GOES_ON
+        ):
             return replace(state, phase=Phase.PAUSED, resumes=Phase.UNDOCKING)
         return None
     if event is Event.RESUME:

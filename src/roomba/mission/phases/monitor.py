@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from roomba.clock import RobotTime
 from roomba.configuration.loops import WalkConfig
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
@@ -21,13 +22,13 @@ class Monitor:
         """Begin where the robot stands, knowing its place."""
         self._config, self._drives, self._ledger = config, drives, ledger
         self.was_docked = senses.battery.is_docked
-        self._astray_since: float | None = None
+        self._astray: RobotTime | None = None
         self._known_at = (senses.pose.x, senses.pose.y)
 
     @property
     def is_astray(self) -> bool:
         """Whether it does not know its place."""
-        return self._astray_since is not None
+        return self._astray is not None
 
     def contact_changed(self, senses: Senses) -> bool:
         """Whether the station's contact came or went since it was looked at before."""
@@ -40,7 +41,7 @@ class Monitor:
     ) -> Failure | None:
         """Return what ends a drive; ``last_place``, m, is where it was a tick before."""
         if not state.drives:
-            self._astray_since = None
+            self._astray = None
             return None
         if senses.lifted:
             reason = "a wheel hangs in the air: set it down and resume"
@@ -49,24 +50,25 @@ class Monitor:
             reason = "the battery is empty: carry it to its station"
             return Failure(CleanOutcome.BATTERY, reason)
         # Docking finds its way by the station's beams.
-        return None if state.phase is Phase.DOCKING else self._astray(senses, last_place)
+        return None if state.phase is Phase.DOCKING else self._lost(senses, last_place)
 
-    def _astray(self, senses: Senses, last_place: tuple[float, float]) -> Failure | None:
+    def _lost(self, senses: Senses, last_place: tuple[float, float]) -> Failure | None:
         if senses.knowledge.is_usable:
             if self.is_astray:
                 self._found_again(senses)
             return None
-        if self._astray_since is None or senses.now < self._astray_since:
-            self._astray_since = senses.now
+        if self._astray is None:
+            self._astray = RobotTime(senses.now)
             self._known_at = last_place
-        waited = senses.now - self._astray_since
-        if senses.knowledge is Knowledge.LOST or waited > self._config.astray_timeout:
+        self._astray.tick(senses.now)
+        is_over = self._astray.elapsed > self._config.astray_timeout
+        if senses.knowledge is Knowledge.LOST or is_over:
             reason = f"the robot does not know where it is: {senses.trouble}"
             return Failure(CleanOutcome.LOST, reason)
         return None
 
     def _found_again(self, senses: Senses) -> None:
-        self._astray_since = None
+        self._astray = None
         if senses.pose.distance_to(*self._known_at) > self._config.carried:
             # It was carried, or wrong before.
             self._drives.forget_place()

@@ -17,6 +17,7 @@ _OF_PHASE: Final = {
     Phase.UNDOCKING: "station",
     Phase.RETURNING: "station",
     Phase.DOCKING: "station",
+    Phase.EMPTYING: "station",
     Phase.CHARGING: "charging",
     Phase.BIN_FULL: "waiting",
     Phase.PAUSED: "waiting",

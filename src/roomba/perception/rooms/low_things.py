@@ -12,6 +12,7 @@ from typing import Final
 import shapely
 
 from roomba.configuration.mission import LowThingsConfig
+from roomba.geometry import Pose
 from roomba.perception.rooms.zones import Corners, Zones
 
 MOST_LOW_THINGS: Final = 100
@@ -49,6 +50,12 @@ class LowThing:
             self.times + other.times,
             self.is_ignored or other.is_ignored,
         )
+
+    def moved(self, moved: Pose) -> LowThing:
+        """Return the same in another frame, in which this one lies at ``moved``."""
+        ends = [moved.compose(Pose(x, y)) for x in (self.x0, self.x1) for y in (self.y0, self.y1)]
+        x, y = [end.x for end in ends], [end.y for end in ends]
+        return replace(self, x0=min(x), y0=min(y), x1=max(x), y1=max(y))
 
     @property
     def longest(self) -> float:
@@ -91,6 +98,10 @@ class LowThings:
                 others.append(each)
         others.sort(key=lambda each: (each.is_ignored, each.times), reverse=True)
         return LowThings((*others[: MOST_LOW_THINGS - 1], thing))
+
+    def moved(self, moved: Pose) -> LowThings:
+        """Return the same in another frame, in which this one lies at ``moved``."""
+        return LowThings(tuple(thing.moved(moved) for thing in self.all))
 
     def ignoring(self, x: float, y: float) -> LowThings:
         """Return these with the thing around a point, m, ignored; raises ValueError for none."""

@@ -234,3 +234,23 @@ def test_zones_are_offered_of_what_was_felt_often() -> None:
     assert offer.times == DRIVING.low_things.offered
     zone = Zone("cable", ZoneKind.NO_GO, offer.corners)
     assert known.offered_zones(Zones((zone,))) == ()
+
+
+def test_what_was_felt_stays_where_it_was_when_the_map_is_turned() -> None:
+    known, seen = obstacles()
+    moved = Pose(0.3, -0.2, 0.07)
+    there = moved.compose(HERE)
+    for senses in (bumped(), bumped(), cliff()):
+        known.feel(senses)
+    known.use(seen, moved)
+    turned, _ = obstacles()
+    for senses in (bumped(pose=there), bumped(pose=there), cliff(pose=there)):
+        turned.feel(senses)
+    assert np.array(known.standing(0.0)) == pytest.approx(np.array(turned.standing(0.0)))
+    assert np.array(known.edges()) == pytest.approx(np.array(turned.edges()))
+    low, asked = known.low.all[0], turned.low.all[0]
+    assert (low.x0, low.y1) == pytest.approx((asked.x0, asked.y1))
+    # What is felt there again is felt again.
+    known.feel(bumped(pose=there))
+    turned.feel(bumped(pose=there))
+    assert np.array(known.standing(600.0)) == pytest.approx(np.array(turned.standing(600.0)))

@@ -329,3 +329,19 @@ def test_what_only_the_bumper_finds_time_and_again_ends_the_path() -> None:
     assert "only the bumper feels" in step.reason
     assert rig.states.count(DriveState.BACKING) > 10
     assert rig.pose.x < 1.5 - BODY
+
+
+def test_jammed_it_tries_each_recovery_once_and_the_first_one_first() -> None:
+    rig = Rig()
+    rig.is_held = True
+    tried: list[int] = []
+
+    def meanwhile(tick: int) -> None:
+        if tick == 5:
+            rig.discs.append((HERE.x + BODY + 0.05, HERE.y, 0.05))
+        number = int(rig.driver.progress["recoveries"][0])
+        if number and (not tried or tried[-1] != number):
+            tried.append(number)
+
+    assert rig.run(meanwhile=meanwhile).state is DriveState.STUCK
+    assert tried[: DRIVING.most_recoveries] == list(range(1, DRIVING.most_recoveries + 1))

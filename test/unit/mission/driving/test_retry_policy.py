@@ -60,3 +60,14 @@ def test_while_it_waits_it_looks_now_and_then_and_may_wait_no_longer() -> None:
     retries.end()
     assert not retries.is_waiting(105.0)
     assert retries.has_ended(105.0)
+
+
+def test_a_new_errand_begins_with_nothing_tried() -> None:
+    retries = RetryPolicy(WaitingConfig())
+    while not retries.is_over:
+        retries.found_no_way_home()
+        retries.wait(100.0)
+    retries.renew()
+    told = retries.is_over, retries.must_wait, retries.gets_out, retries.is_pending
+    assert not any(told)
+    assert not retries.is_waiting(100.0)

@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Pose
 from roomba.mission.driving.trail import Trail
 from roomba.planning.path.costmap import Point
 
@@ -89,3 +90,22 @@ def test_standing_and_turning_it_adds_nothing() -> None:
     for _ in range(500):
         trail.add(3.91, 0.01)
     assert (places_of(trail) == before).all()
+
+
+def test_carried_there_is_no_way_back_to_where_it_was() -> None:
+    trail = Trail()
+    for step in range(30):
+        trail.add(0.1 * step, 0.0)
+    for step in range(30):
+        trail.add(6.0, 6.0 + 0.1 * step)
+    assert (places_of(trail)[:, 0] == 6.0).all()
+
+
+def test_in_another_frame_the_way_back_is_the_same() -> None:
+    trail, moved = Trail(), Pose(1.0, -2.0, 0.07)
+    for step in range(30):
+        trail.add(0.1 * step, 0.5)
+    before = places_of(trail)
+    trail.move(moved)
+    there = [moved.compose(Pose(x, y)) for x, y in before.tolist()]
+    assert places_of(trail) == pytest.approx(np.array([(place.x, place.y) for place in there]))

@@ -82,11 +82,20 @@ def test_a_result_is_told_once_and_after_going_on_there_is_another_one() -> None
     end(job, CleanOutcome.STUCK, "a cable", can_go_on=True)
     assert job.cleaning is not None
     assert job.take_result() is not None
-    end(job, CleanOutcome.STOPPED, "told to")
+    end(job, CleanOutcome.STUCK, "a cable", can_go_on=True)
     assert job.take_result() is None
     job.take_up()
     end(job, CleanOutcome.STOPPED, "told to")
     assert job.take_result() is not None
+    assert job.cleaning is None
+
+
+def test_what_was_told_and_is_over_then_is_forgotten() -> None:
+    job = cleaning_job()
+    end(job, CleanOutcome.NOT_DOCKED, "a door is shut", can_go_on=True)
+    assert job.take_result() is not None
+    end(job, CleanOutcome.STOPPED)
+    assert job.take_result() is None
     assert job.cleaning is None
 
 

@@ -145,6 +145,17 @@ def _as_exploration(state: MissionState | None, event: Event) -> MissionState | 
         ((Phase.DOCKING, Errand.EXPLORE), Event.CONTACT, (Phase.CHARGING, Errand.EXPLORE)),
         ((Phase.EXPLORING, Errand.EXPLORE), Event.CLEAN, (Phase.UNDOCKING, Errand.CLEAN)),
         ((Phase.IDLE,), Event.PAUSE, None),
+        (
+            (Phase.CHARGING, Errand.CLEAN),
+            Event.PAUSE,
+            (Phase.PAUSED, Errand.CLEAN, Phase.UNDOCKING),
+        ),
+        (
+            (Phase.EMPTYING, Errand.CLEAN),
+            Event.PAUSE,
+            (Phase.PAUSED, Errand.CLEAN, Phase.UNDOCKING),
+        ),
+        ((Phase.EMPTYING,), Event.PAUSE, None),
         ((Phase.IDLE,), Event.RESUME, None),
         ((Phase.CLEANING, Errand.CLEAN), Event.RESUME, None),
         ((Phase.IDLE,), Event.RELEASE, None),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from fixtures.robots.missions import HOME
 
@@ -81,13 +82,21 @@ def test_what_ends_a_drive_is_no_matter_while_it_stands(
 
 def test_astray_it_is_given_time_and_then_the_reason_is_told() -> None:
     rig, timeout = Rig(), ROBOT.walk.astray_timeout
-    assert rig.failure(SEARCHING) is None
-    assert rig.monitor.is_astray
-    assert rig.failure(replace(SEARCHING, now=timeout - 0.1)) is None
-    failure = rig.failure(replace(SEARCHING, now=timeout + 0.1))
+    for now in np.arange(0.0, timeout, 0.1).tolist():
+        assert rig.failure(replace(SEARCHING, now=now)) is None
+        assert rig.monitor.is_astray
+    failure = rig.failure(replace(SEARCHING, now=timeout + 0.2))
     assert failure is not None
     assert failure.outcome is CleanOutcome.LOST
     assert "too little in sight" in failure.reason
+
+
+@pytest.mark.parametrize("jump", [-1000.0, 1000.0])
+def test_astray_it_is_given_its_time_though_the_clock_is_set(jump: float) -> None:
+    rig = Rig()
+    rig.failure(SEARCHING)
+    assert rig.failure(replace(SEARCHING, now=jump)) is None
+    assert rig.monitor.is_astray
 
 
 def test_standing_or_docking_it_does_not_matter_where_it_is() -> None:

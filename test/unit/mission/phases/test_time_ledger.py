@@ -42,6 +42,7 @@ def test_what_is_slower_than_it_may_be_is_told_apart_from_turns() -> None:
         (Phase.UNDOCKING, "station"),
         (Phase.RETURNING, "station"),
         (Phase.DOCKING, "station"),
+        (Phase.EMPTYING, "station"),
         (Phase.CHARGING, "charging"),
         (Phase.PAUSED, "waiting"),
         (Phase.BIN_FULL, "waiting"),

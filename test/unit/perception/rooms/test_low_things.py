@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roomba.configuration.mission import LowThingsConfig
+from roomba.geometry import Pose
 from roomba.perception.rooms.low_things import MOST_LOW_THINGS, LowThing, LowThings
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 
@@ -90,3 +91,14 @@ def test_of_too_many_those_go_that_were_felt_the_fewest_times() -> None:
         things = things.felt_at(float(number), 0.0, CONFIG)
     assert len(things.all) == MOST_LOW_THINGS
     assert {often, refused} < set(things.all)
+
+
+def test_in_another_frame_a_thing_is_where_it_was() -> None:
+    moved = Pose(1.0, 2.0, 0.05)
+    (thing,) = felt((1.0, 1.0), (1.2, 1.1)).ignoring(1.1, 1.0).moved(moved).all
+    for x, y in ((1.0, 1.0), (1.2, 1.1)):
+        there = moved.compose(Pose(x, y))
+        assert thing.x0 - 1e-9 <= there.x <= thing.x1 + 1e-9
+        assert thing.y0 - 1e-9 <= there.y <= thing.y1 + 1e-9
+    assert thing.longest < 0.22
+    assert (thing.times, thing.is_ignored) == (2, True)
