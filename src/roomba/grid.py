@@ -66,6 +66,19 @@ class GridFrame:
             math.floor((x - self.origin_x) / self.resolution),
         )
 
+    def cells_of(self, x: _Floats, y: _Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return the rows and columns in which points lie; some may be outside the grid."""
+        rows = np.floor((y - self.origin_y) / self.resolution).astype(np.int64)
+        columns = np.floor((x - self.origin_x) / self.resolution).astype(np.int64)
+        return rows, columns
+
+    def holds(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Return which cells are on the grid."""
+        inside: NDArray[np.bool_] = (
+            (rows >= 0) & (rows < self.rows) & (columns >= 0) & (columns < self.columns)
+        )
+        return inside
+
     def centre_of(self, row: float, column: float) -> tuple[float, float]:
         """Return the (x, y) of a cell's centre, m; parts of a cell count as such."""
         return (

@@ -26,6 +26,16 @@ def test_points_beside_the_grid_are_not_on_it() -> None:
     assert FRAME.extent == pytest.approx((-1.0, 2.0, 2.0, 4.0))
 
 
+@given(st.lists(st.tuples(st.floats(-3.0, 5.0), st.floats(0.0, 6.0)), min_size=1))
+def test_many_points_lie_where_each_of_them_lies(points: list[tuple[float, float]]) -> None:
+    x, y = np.array(points).T
+    rows, columns = FRAME.cells_of(x, y)
+    assert list(zip(rows.tolist(), columns.tolist(), strict=True)) == [
+        FRAME.cell_of(*point) for point in points
+    ]
+    assert FRAME.holds(rows, columns).tolist() == [FRAME.contains(*point) for point in points]
+
+
 def test_with_other_cells_it_begins_at_the_same_corner_and_covers_as_much() -> None:
     coarse = FRAME.with_cells(0.3)
     assert coarse == GridFrame(0.3, -1.0, 2.0, rows=7, columns=10)

@@ -94,7 +94,6 @@ def _too_near(points: Floats, things: Floats, keep: float) -> tuple[Floats, NDAr
 def _fits(floor: CoverageFloor, points: Floats) -> NDArray[np.bool_]:
     """Return at which points the body keeps away from walls."""
     frame = floor.frame
-    rows = np.floor((points[:, 1] - frame.origin_y) / frame.resolution).astype(np.int64)
-    columns = np.floor((points[:, 0] - frame.origin_x) / frame.resolution).astype(np.int64)
+    rows, columns = frame.cells_of(points[:, 0], points[:, 1])
     rows, columns = np.clip(rows, 0, frame.rows - 1), np.clip(columns, 0, frame.columns - 1)
     return np.asarray(floor.fits[rows, columns])

@@ -158,8 +158,7 @@ class Rejoin:
     def _near_reachable(self, samples: Floats, reachable: Bools) -> Bools:
         """Return which points have a cell next to them that can be reached."""
         frame = self._planner.frame
-        rows = np.floor((samples[:, 1] - frame.origin_y) / frame.resolution).astype(np.int64)
-        columns = np.floor((samples[:, 0] - frame.origin_x) / frame.resolution).astype(np.int64)
+        rows, columns = frame.cells_of(samples[:, 0], samples[:, 1])
         near = np.zeros(len(samples), np.bool_)
         for down in (-1, 0, 1):
             for right in (-1, 0, 1):

@@ -124,9 +124,8 @@ def _values_at(occupancy: OccupancyMap, points: Floats) -> Floats:
 
 def _at(values: Floats, frame: GridFrame, points: Floats, outside: float) -> Floats:
     """Return the values of the cells that points lie in, [n]."""
-    columns = np.floor((points[:, 0] - frame.origin_x) / frame.resolution).astype(np.int64)
-    rows = np.floor((points[:, 1] - frame.origin_y) / frame.resolution).astype(np.int64)
-    inside = (rows >= 0) & (rows < frame.rows) & (columns >= 0) & (columns < frame.columns)
+    rows, columns = frame.cells_of(points[:, 0], points[:, 1])
+    inside = frame.holds(rows, columns)
     found = np.full(len(points), outside)
     found[inside] = values[rows[inside], columns[inside]]
     return found

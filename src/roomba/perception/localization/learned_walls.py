@@ -6,7 +6,7 @@ from typing import Final
 
 from roomba.geometry import Pose
 from roomba.perception.localization.belief.belief import Rows
-from roomba.perception.localization.search.near_search import matched
+from roomba.perception.localization.search.matched import matched
 from roomba.perception.matching.scan_view import ScanView
 from roomba.perception.matching.surface_field import SurfaceField
 

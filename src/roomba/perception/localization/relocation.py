@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from roomba.configuration.localization import FitConfig, LocalizationConfig
 from roomba.geometry import Pose, wrap_angle
+from roomba.perception.localization.search.matched import FROM_AFAR, FROM_NEAR, matched
 from roomba.perception.localization.search.place_search import PlaceSearch
-from roomba.perception.matching.match_kernels import match
 from roomba.perception.matching.scan_view import Fit, ScanView
 from roomba.perception.matching.surface_field import SurfaceField
 
@@ -26,9 +26,6 @@ _ALIKE_TURN: Final = 0.2
 """m and rad; places nearer to each other than both are the same."""
 _FINE_CELL: Final = 0.05
 """m; size of cells up to which the map itself is as exact as evidence takes it to be."""
-_FROM_AFAR: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05, 0.05])
-_FROM_NEAR: Final = np.array([0.15, 0.10, 0.05, 0.05])
-"""m; beams that end farther off than this lose weight, round by round."""
 
 
 class Verdict(Enum):
@@ -136,7 +133,7 @@ class Relocation:
             return
         self._view, self._reckoned = view, reckoned
         for hypothesis in self.hypotheses:
-            pose, fit = self._matched(hypothesis.frame.compose(reckoned), _FROM_NEAR)
+            pose, fit = self._matched(hypothesis.frame.compose(reckoned), FROM_NEAR)
             hypothesis.frame = pose.compose(reckoned.inverse())
             hypothesis.evidence += fit.evidence
             hypothesis.fit = fit
@@ -146,10 +143,10 @@ class Relocation:
     def _compare(self, starts: NDArray[np.float64]) -> None:
         """Match and judge the places that the search found."""
         back, expected = self._reckoned.inverse(), self._expectation
-        tries = [(Pose(*start), _FROM_AFAR) for start in starts.tolist()]
+        tries = [(Pose(*start), FROM_AFAR) for start in starts.tolist()]
         if expected is not None:
             # Matched from farther away, new furniture would draw it off.
-            tries = [(expected.pose, _FROM_NEAR), (expected.pose, _FROM_AFAR), *tries]
+            tries = [(expected.pose, FROM_NEAR), (expected.pose, FROM_AFAR), *tries]
             # The place where it was gets its prior evidence.
             self._weigh(expected.pose, self._view.fit(self._field, _array(expected.pose)), back)
         for start, scales in tries:
@@ -167,20 +164,7 @@ class Relocation:
         self.hypotheses.append(hypothesis)
 
     def _matched(self, start: Pose, scales: NDArray[np.float64]) -> tuple[Pose, Fit]:
-        prior = np.array([start.x, start.y, start.theta])
-        pose, covariance = prior.copy(), np.diag([0.3**2, 0.3**2, 0.2**2])
-        match(
-            self._field.values,
-            self._field.place,
-            self._view.ends,
-            len(self._view),
-            prior,
-            covariance,
-            scales,
-            self._config.beam_deviation**2,
-            pose,
-        )
-        return Pose(*pose.tolist()), self._view.fit(self._field, pose)
+        return matched(self._view, self._field, start, self._config.beam_deviation, scales)
 
     def _sort(self) -> None:
         """Put the best first; leave out what is the same place, or has no hope."""

@@ -87,10 +87,8 @@ class DirtMap:
         Floor that was swept twice counts with all that was found on it.
         """
         rows, columns = np.nonzero(self.way > LEAST_WAY)
-        x, y = self.frame.centres(rows, columns)
-        row = ((y - frame.origin_y) / frame.resolution).astype(np.int64)
-        column = ((x - frame.origin_x) / frame.resolution).astype(np.int64)
-        inside = (row >= 0) & (row < frame.rows) & (column >= 0) & (column < frame.columns)
+        row, column = frame.cells_of(*self.frame.centres(rows, columns))
+        inside = frame.holds(row, column)
         rows, columns = rows[inside], columns[inside]
         here = mask[row[inside], column[inside]]
         area = np.count_nonzero(here) * CELL**2

@@ -165,8 +165,7 @@ def _values_at(
     values: NDArray[Any], beyond: int, own: GridFrame, x: Floats, y: Floats
 ) -> NDArray[Any]:
     """Return the values of the cells in which places lie."""
-    column = np.floor((x - own.origin_x) / own.resolution).astype(np.int64)
-    row = np.floor((y - own.origin_y) / own.resolution).astype(np.int64)
+    row, column = own.cells_of(x, y)
     padded = np.pad(values, 1, constant_values=beyond)
     found: NDArray[Any] = padded[
         np.clip(row + 1, 0, own.rows + 1), np.clip(column + 1, 0, own.columns + 1)

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.localization import LocalizationConfig
-from roomba.geometry import Pose, wrap_angle
+from roomba.geometry import Pose
+from roomba.perception.localization.search.matched import evenly_chosen, matched
 from roomba.perception.localization.search.search_kernels import score_heading
-from roomba.perception.matching.match_kernels import match
 from roomba.perception.matching.scan_view import Fit, ScanView
 from roomba.perception.matching.surface_field import SurfaceField
 
@@ -22,10 +22,6 @@ _WIDTH: Final = 0.35
 _BEAMS: Final = 48
 _MATCHED: Final = 8
 """Beams that are compared, and poses that are matched."""
-_SCALES: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05])
-"""m; beams that end farther off than this lose weight, round by round."""
-_SPREAD: Final = np.diag([0.3**2, 0.3**2, 0.2**2])
-"""m2, rad2; of a pose that is tried."""
 _LEAST_ROOM: Final = 0.05
 """m; nearer than this to a surface no robot's middle is."""
 
@@ -40,7 +36,7 @@ def best_near(
     spots, turn = _spots(field, pose, config.searching.near_way), config.searching.near_turn
     if not len(spots) or not len(view):
         return None
-    chosen = np.unique(np.linspace(0, len(view) - 1, _BEAMS).astype(np.int64))
+    chosen = evenly_chosen(len(view), _BEAMS)
     scores, headings = np.zeros(len(spots), np.float32), np.zeros(len(spots), np.float32)
     for off in np.arange(-turn, turn + 1e-9, _TURN_STEP):
         score_heading(
@@ -83,32 +79,13 @@ def better_near(
     return found if is_usual and lead >= config.needed_evidence else None
 
 
-def matched(view: ScanView, field: SurfaceField, start: Pose, deviation: float) -> tuple[Pose, Fit]:
-    """Return where a scan fits best from a start on, and how well; ``deviation`` is a beam's, m."""
-    prior = np.array([start.x, start.y, start.theta])
-    pose, covariance = prior.copy(), _SPREAD.copy()
-    match(
-        field.values,
-        field.place,
-        view.ends,
-        len(view),
-        prior,
-        covariance,
-        _SCALES,
-        deviation * deviation,
-        pose,
-    )
-    return Pose(float(pose[0]), float(pose[1]), wrap_angle(float(pose[2]))), view.fit(field, pose)
-
-
 def _spots(field: SurfaceField, pose: Pose, way: float) -> NDArray[np.float64]:
     """Return a lattice of places up to ``way``, m, beside a pose that have room, [n, 2], m."""
     side = np.arange(-way, way + 1e-9, _STEP)
     x, y = (each.ravel() for each in np.meshgrid(pose.x + side, pose.y + side))
     frame = field.frame
-    columns = np.floor((x - frame.origin_x) / frame.resolution).astype(np.int64)
-    rows = np.floor((y - frame.origin_y) / frame.resolution).astype(np.int64)
-    inside = (rows >= 0) & (rows < frame.rows) & (columns >= 0) & (columns < frame.columns)
+    rows, columns = frame.cells_of(x, y)
+    inside = frame.holds(rows, columns)
     x, y, rows, columns = x[inside], y[inside], rows[inside], columns[inside]
     has_room = field.values[rows, columns] >= _LEAST_ROOM
     return np.column_stack((x[has_room], y[has_room]))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose, wrap_angle
+from roomba.perception.localization.search.matched import evenly_chosen
 from roomba.perception.localization.search.particle_kernels import (
     fill_likelihoods,
     leave_walls,
@@ -114,7 +115,7 @@ class ParticleSearch:
                 return
             self._move(step, way)
         beams = _FIRST_BEAMS if self._reckoned is None else _BEAMS
-        chosen = np.unique(np.linspace(0, len(view) - 1, beams).astype(np.int64))
+        chosen = evenly_chosen(len(view), beams)
         weigh_all(
             self._likelihoods,
             self._place,
@@ -176,10 +177,8 @@ class ParticleSearch:
     def _hit_share(self, view: ScanView) -> float:
         """Return the share of beams that end near a surface at the likeliest place."""
         ends = view.ends_at(Pose(*self._middle.tolist())).astype(np.float64)
-        frame = self._field.frame
-        columns = np.floor((ends[:, 0] - frame.origin_x) / frame.resolution).astype(np.int64)
-        rows = np.floor((ends[:, 1] - frame.origin_y) / frame.resolution).astype(np.int64)
-        inside = (rows >= 0) & (rows < frame.rows) & (columns >= 0) & (columns < frame.columns)
+        rows, columns = self._field.frame.cells_of(ends[:, 0], ends[:, 1])
+        inside = self._field.frame.holds(rows, columns)
         off = self._field.values[rows[inside], columns[inside]]
         hit = np.count_nonzero((off < _HIT) & (off > -self._depth - _HIT))
         return hit / max(1, len(ends))

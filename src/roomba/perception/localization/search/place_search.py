@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.perception.localization.search.matched import evenly_chosen
 from roomba.perception.localization.search.search_kernels import cells_with_room, score_heading
 from roomba.perception.matching.surface_field import SurfaceField
 
@@ -38,7 +39,7 @@ class PlaceSearch:
         """
         self._field = field
         self._ends = ends
-        self._chosen = np.unique(np.linspace(0, len(ends) - 1, BEAMS).astype(np.int64))
+        self._chosen = evenly_chosen(len(ends), BEAMS)
         self._spots = places_with_room(field, 0.9 * body_radius)
         self._headings = np.arange(-math.pi, math.pi, TURN)
         self._at = 0
