@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig, TimingConfig
 from roomba.geometry import Pose, Twist
-from roomba.mission.exploring.look_around import SearchDrive
 from roomba.perception.calibration.lidar import CorrectedLidar, lidar_correction
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel, PlacedScan
+from roomba.robot.look_around import SearchDrive
 from roomba.robot.readings import Readings, ScanReading
 
 

@@ -9,7 +9,7 @@ from enum import Enum
 import numpy as np
 
 from roomba.geometry import Twist
-from roomba.mission.exploring.look_around import SearchDrive
+from roomba.robot.look_around import SearchDrive
 from roomba.perception.localization.estimate import Knowledge
 from roomba.world.engine.state.arrays import Fault
 from roomba_bench.localization.drive import Wander

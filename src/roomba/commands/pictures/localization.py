@@ -12,7 +12,6 @@ from roomba.commands.pictures.tours import tour_of
 from roomba.configuration.sensors import EXACT_LIDAR
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
-from roomba.mission.exploring.look_around import LookAround
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.relocation import Relocation, Verdict
 from roomba.perception.matching.scan_view import LidarModel
@@ -29,6 +28,7 @@ from roomba.plots.style import (
     empty_figure,
     show_floor_plan,
 )
+from roomba.robot.look_around import LookAround
 from roomba.world.home.home import Home
 from roomba.world.observation import Observation
 from roomba.world.simulator import Simulator

@@ -286,22 +286,3 @@ def first_blocked(
             if at < ahead + half and at <= end:
                 nearest = min(nearest, stations[leg] + at)
     return nearest if nearest < math.inf else math.nan
-
-
-@entry
-def forget_around(things: Things, place: Place, columns: int, x: float, y: float, r: float) -> None:
-    """Forget all cells whose middle is nearer than ``r`` to a point, m."""
-    layer = things.layer[0]
-    has_gone = False
-    for number in range(layer.count - 1, -1, -1):
-        cell = things.listed[number]
-        off_x = place[0] + (cell % columns) * place[2] - x
-        off_y = place[1] + (cell // columns) * place[2] - y
-        if off_x * off_x + off_y * off_y >= r * r:
-            continue
-        has_gone = has_gone or things.evidence[cell] >= layer.enough
-        things.evidence[cell] = 0
-        layer.count -= 1
-        things.listed[number] = things.listed[layer.count]
-    if has_gone:
-        layer.version += 1

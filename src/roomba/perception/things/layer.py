@@ -13,7 +13,7 @@ from roomba.geometry import Pose
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import look
 from roomba.perception.matching.surface_field import SurfaceField
-from roomba.perception.things.kernels import first_blocked, forget_around, note
+from roomba.perception.things.kernels import first_blocked, note
 from roomba.perception.things.range_kernels import unknown_noises
 from roomba.perception.things.state import LAYER, Things
 
@@ -104,14 +104,6 @@ class ThingLayer:
         at = first_blocked(self.arrays, points, stations, first, last, radius)
         return None if math.isnan(at) else float(at)
 
-    def is_blocked(
-        self, points: NDArray[np.float64], first: float, last: float, radius: float
-    ) -> bool:
-        """Whether a thing is nearer than ``radius``, m, to a stretch of a path, [n, 2]."""
-        legs = np.hypot(*np.diff(points, axis=0).T)
-        stations = np.concatenate(([0.0], np.cumsum(legs)))
-        return self.first_blocked(points, stations, first, last, radius) is not None
-
     def is_mapped(self, x: float, y: float) -> bool:
         """Whether the map shows a surface at a point, m, or next to it."""
         off, _, _ = look(self._field, self._place, x, y)
@@ -123,7 +115,3 @@ class ThingLayer:
         self.arrays.evidence[:] = 0
         self.arrays.layer["count"] = 0
         self.arrays.layer["version"] += had_things
-
-    def forget_around(self, x: float, y: float, radius: float) -> None:
-        """Forget what has its middle nearer than ``radius`` to a point, m."""
-        forget_around(self.arrays, self._place, self._columns, x, y, radius)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from roomba.configuration.loops import WalkConfig
 from roomba.geometry import Pose
-from roomba.mission.driving.path_follower import PathFollower
+from roomba.mission.walking.path_follower import PathFollower
 from roomba.planning.path.polyline import Path
 
 CONFIG = WalkConfig()

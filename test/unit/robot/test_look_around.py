@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose, Twist
-from roomba.mission.exploring.look_around import LookAround, SearchDrive
 from roomba.perception.localization.estimate import Knowledge
+from roomba.robot.look_around import LookAround, SearchDrive
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
 
