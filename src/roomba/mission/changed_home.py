@@ -33,8 +33,11 @@ class ChangedHome:
         if not self._goes_on_looking():
             self._transitions.drop_driver()
         if job.cleaning is not None:
+            was_done = job.cleaning.ledger.stage is None
             job.cleaning.use_context(context, job.dirt)
             job.look_no_more()
+            if was_done and job.cleaning.ledger.stage is not None:
+                self._transitions.clean_on()
 
     def use_map(
         self, context: PlanningContext, things: ThingLayer, dirt: DirtMap, moved: Pose

@@ -58,6 +58,13 @@ class Transitions:
             if before.errand in (Errand.HOME, Errand.CLEAN) and before.phase is not Phase.EMPTYING:
                 self.end_job_at_station(senses)
 
+    def clean_on(self) -> None:
+        """Go on with a clean that was done, on its way home: there is more of it again."""
+        after = next_state(self.state, Event.MORE)
+        if after is not None:
+            self.state, self.reason, self._job.outcome = after, "", None
+            self.drop_driver()
+
     def fail(self, outcome: CleanOutcome, reason: str, senses: Senses) -> None:
         """Go no further, for a reason."""
         self.go(Event.FAILED, senses)

@@ -21,6 +21,7 @@ from roomba.headless.cleaner import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRefusedError, CleanRequest
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Event, Phase
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.vocabulary import CleanMode, EdgeOrder, RoomWay
 
 
@@ -161,3 +162,14 @@ def test_a_newer_clean_knows_nothing_of_the_path_of_the_older_one() -> None:
     robot.mission.clean(CleanRequest(), robot.senses())
     assert robot.mission.cleaning is not None
     assert robot.mission.cleaning.broken_off == 0.0
+
+
+def test_a_zone_over_all_floor_that_is_taken_away_again_ends_no_clean() -> None:
+    robot = begun(HALL, DEN)
+    rooms, corners = robot.context.rooms, ((0.0, 0.0), (3.6, 0.0), (3.6, 2.4), (0.0, 2.4))
+    robot.brain.use_rooms(rooms, Zones((Zone("all", ZoneKind.NO_GO, corners),)))
+    wait(robot, 2.0)
+    assert robot.mission.state.phase is Phase.RETURNING
+    robot.brain.use_rooms(rooms, Zones())
+    assert robot.mission.state.phase is Phase.CLEANING
+    assert_all_clean(robot, robot.run())

@@ -47,7 +47,13 @@ def missed_floor(
     that was missed: a fraction of a cell decides about it. ``edges`` are those of the ``obstacles``
     where the floor ends. ``is_over``: the clean went on to its end.
     """
-    patches = [patch for patch in patches_of(left, context.frame, least) if is_broad(patch.cells)]
+    patches = [
+        part
+        for patch in patches_of(left, context.frame, least)
+        for part in _by_rooms(patch, context, least)
+        if is_broad(part.cells)
+    ]
+    patches.sort(key=lambda patch: -patch.area)
     reachable = _reachable(context, obstacles)
     before_edges = _reachable(context, edges) if edges else None
 
@@ -62,6 +68,22 @@ def missed_floor(
         Missed(patch.area, patch.x, patch.y, context.room_at(patch.x, patch.y), reason(patch))
         for patch in patches
     )
+
+
+def _by_rooms(patch: Patch, context: PlanningContext, least: float) -> list[Patch]:
+    """Return a patch as its parts in one room each, or whole if all of them are below ``least``."""
+    if context.rooms is None:
+        return [patch]
+    rooms = context.fine(context.rooms.labels)
+    labels = np.unique(rooms[patch.cells]).tolist()
+    if len(labels) == 1:
+        return [patch]
+    parts = [
+        part
+        for label in labels
+        for part in patches_of(patch.cells & (rooms == label), context.frame, least)
+    ]
+    return parts or [patch]
 
 
 def is_broad(cells: Mask) -> bool:

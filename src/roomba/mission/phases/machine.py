@@ -72,6 +72,7 @@ class Event(Enum):
     ARRIVED = "before the station"
     CONTACT = "charging current"
     CONTACT_LOST = "no charging current any more"
+    MORE = "there is more to clean: a zone was taken away"
     LOW = "the battery is just enough for the way home"
     BIN_FULL = "the dust bin is full"
     EMPTIED = "the dust bin was emptied"
@@ -177,6 +178,8 @@ def _driving(state: MissionState, event: Event) -> MissionState | None:
         return _after_undocking(errand)
     if event is Event.FINISHED and phase in _WORKING:
         return MissionState(Phase.RETURNING, Errand.HOME)
+    if event is Event.MORE and phase is Phase.RETURNING and errand is Errand.HOME:
+        return MissionState(Phase.CLEANING, Errand.CLEAN)
     if event is Event.LOW and (phase in _WORKING or phase is Phase.UNDOCKING):
         return replace(state, phase=Phase.RETURNING)
     if event is Event.BIN_FULL and phase in _WORKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.robots.missions import DEN, HOME, TWO_ROOMS, WALL_X, two_rooms
+from fixtures.robots.missions import DEN, HALL, HOME, TWO_ROOMS, WALL_X, two_rooms
 from numpy.typing import NDArray
 
 from roomba.configuration.docking import DockingConfig
@@ -136,3 +136,23 @@ def test_of_a_home_without_rooms_patches_have_no_room() -> None:
     )
     (missed,) = missed_floor(context.coverable(), 0.01, context, [], [], is_over=True)
     assert missed.room == ""
+
+
+def test_floor_missed_in_two_rooms_is_told_of_each() -> None:
+    floor = SITE.coverable()
+    told = missed_floor(floor, 0.01, SITE, [], [], is_over=False)
+    area = {room: sum(each.area for each in told if each.room == room) for room in (HALL, DEN)}
+    for room in (HALL, DEN):
+        cells = np.count_nonzero(floor & SITE.in_room(room))
+        assert area[room] == pytest.approx(cells * SITE.frame.resolution**2)
+    assert [each.area for each in told] == sorted((each.area for each in told), reverse=True)
+
+
+def test_a_small_patch_in_a_doorway_is_told_once() -> None:
+    rooms = SITE.fine(SITE.rooms.labels) if SITE.rooms is not None else np.zeros(0)
+    border = int(np.argmax(rooms[SITE.frame.cell_of(0.0, 1.2)[0]] != rooms[0, 40]))
+    left = np.zeros(SITE.frame.shape, np.bool_)
+    row = SITE.frame.cell_of(0.0, 1.2)[0]
+    left[row : row + 10, border - 5 : border + 5] = True
+    (missed,) = missed_floor(left, 0.008, SITE, [], [], is_over=True)
+    assert missed.area == pytest.approx(0.01)

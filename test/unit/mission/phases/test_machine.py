@@ -144,6 +144,10 @@ def _as_exploration(state: MissionState | None, event: Event) -> MissionState | 
         ((Phase.EXPLORING, Errand.EXPLORE), Event.LOW, (Phase.RETURNING, Errand.EXPLORE)),
         ((Phase.DOCKING, Errand.EXPLORE), Event.CONTACT, (Phase.CHARGING, Errand.EXPLORE)),
         ((Phase.EXPLORING, Errand.EXPLORE), Event.CLEAN, (Phase.UNDOCKING, Errand.CLEAN)),
+        ((Phase.RETURNING, Errand.HOME), Event.MORE, (Phase.CLEANING, Errand.CLEAN)),
+        ((Phase.RETURNING, Errand.CLEAN), Event.MORE, None),
+        ((Phase.RETURNING, Errand.DOCK), Event.MORE, None),
+        ((Phase.DOCKING, Errand.HOME), Event.MORE, None),
         ((Phase.IDLE,), Event.PAUSE, None),
         (
             (Phase.CHARGING, Errand.CLEAN),
