@@ -2,7 +2,7 @@
 
 A time that a day does not have, because the clock goes forward over it, counts by the clock as it
 was before (02:30 becomes 03:30); of one that a day has twice the first counts. So each day of a
-plan has each of its times once.
+plan has each of its times once. Quiet hours that end at such a time end with the second.
 """
 
 from __future__ import annotations
@@ -26,6 +26,12 @@ _ASTRAY: Final = 2 * _DAY
 def moment_of(day: dt.date, time: dt.time, zone: zoneinfo.ZoneInfo) -> dt.datetime:
     """Return when a time of a day is, in UTC."""
     return dt.datetime.combine(day, time.replace(fold=0), zone).astimezone(UTC)
+
+
+def _end_of(day: dt.date, time: dt.time, zone: zoneinfo.ZoneInfo) -> dt.datetime:
+    """Return when quiet hours end, in UTC: when the clock has shown that time for the last time."""
+    both = [dt.datetime.combine(day, time.replace(fold=fold), zone) for fold in (0, 1)]
+    return max(moment.astimezone(UTC) for moment in both)
 
 
 def next_after(plan: Plan, zone: zoneinfo.ZoneInfo, moment: dt.datetime) -> dt.datetime | None:
@@ -80,7 +86,7 @@ def _windows(
         for hours in quiet:
             if day.weekday() in hours.days:
                 last = day if hours.begins < hours.ends else day + _DAY
-                yield moment_of(day, hours.begins, zone), moment_of(last, hours.ends, zone)
+                yield moment_of(day, hours.begins, zone), _end_of(last, hours.ends, zone)
 
 
 def _moments(

@@ -53,6 +53,16 @@ def test_a_time_that_is_left_out_comes_an_hour_later_by_the_clock() -> None:
     assert local(at, "Europe/Berlin") == "2026-03-29 03:30"
 
 
+def test_quiet_hours_that_end_at_a_time_that_comes_twice_end_with_the_second() -> None:
+    berlin, ends = ZoneInfo("Europe/Berlin"), dt.time(2, 30)
+    quiet = QuietHours(begins=dt.time(1, 0), ends=ends)
+    over = quiet_until([quiet], berlin, dt.datetime(2026, 10, 24, 23, 30, tzinfo=UTC))
+    assert over == dt.datetime(2026, 10, 25, 1, 30, tzinfo=UTC)
+    # A time that is left out comes an hour later, as ever.
+    over = quiet_until([quiet], berlin, dt.datetime(2026, 3, 29, 0, 30, tzinfo=UTC))
+    assert local(over, "Europe/Berlin") == "2026-03-29 03:30"
+
+
 def test_of_a_time_that_comes_twice_the_first_counts() -> None:
     berlin = ZoneInfo("Europe/Berlin")
     half_past_two = plan("FREQ=DAILY", dt.time(2, 30))
