@@ -172,9 +172,12 @@ class PlanKeeper:
         return ()
 
     def change(self, change: Change) -> None:
-        """Change the plans; raises RequestRefusedError for what makes no sense, OSError."""
+        """Change the plans; raises RequestRefusedError for what makes no sense, OSError.
+
+        What another program changed in their file meanwhile stays.
+        """
         with self._lock:
-            before = self._household
+            before = self._kept.read(self._household)
             try:
                 changed = HouseholdPlans.model_validate(change(before).model_dump())
             except ValidationError as error:

@@ -69,6 +69,8 @@ def _parsed(rule: str, begins: dt.date) -> rrule:
 
 def _part_of(part: str, rule: str) -> tuple[str, str]:
     key, equals, value = part.partition("=")
+    if key == "BYDAY" and not value:
+        raise ValueError("expected a day of the week at least, got none")
     if not (equals and key and value):
         raise ValueError(f"expected a rule such as FREQ=WEEKLY;BYDAY=MO,TH, got {rule!r}")
     return key, value

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import datetime as dt
+import reprlib
 import zoneinfo
 from enum import Enum
-from typing import Annotated, Final
+from typing import Annotated, Any, Final
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import (
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    field_validator,
+    model_validator,
+)
 
 from roomba.configuration.frozen import Frozen
 from roomba.plans.days import require_days
@@ -38,6 +46,22 @@ Weekday = Annotated[int, Field(ge=0, le=6)]
 """0 is Monday."""
 
 
+def _to_the_minute(value: Any, parsed: ValidatorFunctionWrapHandler) -> dt.time:
+    try:
+        time: dt.time | None = parsed(value)
+    except ValidationError:
+        time = None
+    if time is None or time.tzinfo is not None:
+        raise ValueError(
+            f"expected a time of the clock on the wall such as 09:30, got {reprlib.repr(value)}"
+        )
+    return time.replace(second=0, microsecond=0)
+
+
+WallTime = Annotated[dt.time, WrapValidator(_to_the_minute)]
+"""A time of the clock on the wall, to the minute."""
+
+
 class PlannedOrder(Frozen):
     """What is cleaned, and how."""
 
@@ -56,8 +80,10 @@ class PlannedOrder(Frozen):
         if self.mode not in PLANNED_MODES:
             modes = ", ".join(mode.value for mode in PLANNED_MODES)
             raise ValueError(f"expected one of {modes}, got {self.mode.value}")
-        if bool(self.rooms) != (self.mode is CleanMode.ROOMS):
-            raise ValueError("expected rooms for the mode rooms, and for no other")
+        if self.mode is CleanMode.ROOMS and not self.rooms:
+            raise ValueError("expected a room at least, got none")
+        if self.rooms and self.mode is not CleanMode.ROOMS:
+            raise ValueError(f"expected rooms for the mode rooms alone, got {self.mode.value}")
         if self.only_due and self.mode not in (CleanMode.WHOLE, CleanMode.ROOMS):
             raise ValueError("expected all floor or rooms, of which those that are due are cleaned")
         return self
@@ -66,7 +92,7 @@ class PlannedOrder(Frozen):
 class Named(Frozen):
     """What has a name by which it is replaced and removed."""
 
-    name: Name
+    name: str = Field(json_schema_extra={"minLength": 1, "maxLength": LONGEST_NAME})
 
     @field_validator("name")
     @classmethod
@@ -92,13 +118,15 @@ class Plan(Named):
     is_on: bool = True
     begins: dt.date = dt.date(2026, 1, 1)
     rule: str = Field(default="FREQ=DAILY", max_length=_LONGEST_RULE)
-    at: tuple[dt.time, ...] = Field(default=(dt.time(9, 0),), min_length=1, max_length=MOST_TIMES)
+    at: tuple[WallTime, ...] = Field(default=(dt.time(9, 0),), max_length=MOST_TIMES)
     order: PlannedOrder = PlannedOrder()
 
     @field_validator("at")
     @classmethod
     def _times_in_order(cls, at: tuple[dt.time, ...]) -> tuple[dt.time, ...]:
-        return tuple(sorted({_minute(time) for time in at}))
+        if not at:
+            raise ValueError("expected a time at least, got none")
+        return tuple(sorted(set(at)))
 
     @model_validator(mode="after")
     def _has_days(self) -> Plan:
@@ -112,13 +140,13 @@ class QuietHours(Frozen):
     ``days`` are those on which it begins.
     """
 
-    begins: dt.time = dt.time(22, 0)
-    ends: dt.time = dt.time(7, 0)
+    begins: WallTime = dt.time(22, 0)
+    ends: WallTime = dt.time(7, 0)
     days: tuple[Weekday, ...] = (0, 1, 2, 3, 4, 5, 6)
 
     @model_validator(mode="after")
     def _has_length(self) -> QuietHours:
-        if _minute(self.begins) == _minute(self.ends):
+        if self.begins == self.ends:
             raise ValueError("expected quiet hours that end at another time than they begin")
         return self
 
@@ -148,9 +176,10 @@ class HouseholdPlans(Frozen):
     @field_validator("zone")
     @classmethod
     def _is_zone(cls, zone: str) -> str:
-        if not is_zone(zone):
+        spelled = zone if is_zone(zone) else _in_any_case(zone)
+        if spelled is None:
             raise ValueError(f"expected a time zone such as Europe/Berlin, got {zone[:40]!r}")
-        return zone
+        return spelled
 
     @model_validator(mode="after")
     def _names_once(self) -> HouseholdPlans:
@@ -175,7 +204,7 @@ def is_zone(name: str) -> bool:
     return True
 
 
-def _minute(time: dt.time) -> dt.time:
-    if time.tzinfo is not None:
-        raise ValueError(f"expected a time of the clock on the wall such as 09:30, got {time}")
-    return time.replace(second=0, microsecond=0)
+def _in_any_case(name: str) -> str | None:
+    """Return the time zone that is called so but for small and capital letters."""
+    zones = {zone.casefold(): zone for zone in zoneinfo.available_timezones()}
+    return zones.get(name.casefold())

@@ -20,7 +20,7 @@ from roomba_ros.runtime.subscriptions import subscribe
 
 _STOP_REPEATS: Final = 5
 """Ticks for which a stop is repeated before the drive is left to others."""
-_OTHERS: Final = "another program drives the robot (a walk, or cmd_vel); resume when that is done"
+_OTHERS: Final = "it was driven by hand or by another program; resume when that is done"
 _STANDS: Final = (
     "another program wants the robot to stand (change_speed 0); want another speed, and resume"
 )

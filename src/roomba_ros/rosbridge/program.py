@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import time
 import xmlrpc.client
 from collections.abc import Awaitable, Callable
 from typing import Any, Final
@@ -136,7 +135,7 @@ class Program:
             await self._socket.send_text(status_text(level, reason, identity))
 
     async def _authenticate(self, operation: dict[str, Any]) -> None:
-        if not self._guard.is_token(_text(operation, "mac"), time.monotonic()):
+        if not self._guard.is_token(_text(operation, "mac")):
             raise RequestRefusedError("expected the token of the printed address as mac")
         self._may_change = True
 

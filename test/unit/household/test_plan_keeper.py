@@ -152,6 +152,14 @@ def test_a_plan_that_is_changed_makes_up_for_nothing(living: Living) -> None:
     assert living.keeper.view().next_at == dt.datetime(2026, 3, 3, 8, 30, tzinfo=dt.timezone.utc)
 
 
+def test_what_another_program_changed_meanwhile_stays(living: Living) -> None:
+    other = Living(living.folder)
+    other.put(AT_NINE.model_copy(update={"name": "theirs"}))
+    living.put(AT_NINE.model_copy(update={"name": "ours"}))
+    living.again()
+    assert [plan.name for plan in living.keeper.view().plans] == [AT_NINE.name, "theirs", "ours"]
+
+
 def test_another_zone_moves_all_times(living: Living) -> None:
     living.keeper.change(lambda all_: all_.model_copy(update={"zone": "America/New_York"}))
     assert living.keeper.view().next_at == living.now.replace(hour=14)

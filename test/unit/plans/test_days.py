@@ -39,6 +39,7 @@ def test_days_from_a_later_day_on_are_those_of_the_same_rule() -> None:
     [
         ("", "such as FREQ=WEEKLY"),
         ("every day", "such as FREQ=WEEKLY"),
+        ("FREQ=WEEKLY;BYDAY=;INTERVAL=2", "a day of the week at least, got none"),
         ("FREQ=HOURLY", "FREQ to be one of DAILY"),
         ("BYDAY=MO", "FREQ to be one of DAILY"),
         ("FREQ=DAILY;BYHOUR=9", "got BYHOUR"),

@@ -29,21 +29,27 @@ def test_times_are_in_order_once_and_to_the_minute() -> None:
     assert plan.at == (dt.time(9, 30), dt.time(18, 0))
 
 
+def test_a_time_zone_is_found_in_any_case() -> None:
+    for name in ("europe/berlin", "EUROPE/BERLIN", "Europe/Berlin"):
+        assert HouseholdPlans(zone=name).zone == "Europe/Berlin"
+
+
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
         ({"plans": [{"name": " "}]}, "printable"),
-        ({"plans": [{"name": "x", "at": []}]}, "at least 1 item"),
-        ({"plans": [{"name": "x", "at": ["25:00"]}]}, "time"),
+        ({"plans": [{"name": "x", "at": []}]}, "expected a time at least"),
+        ({"plans": [{"name": "x", "at": ["25:00"]}]}, "such as 09:30, got '25:00'"),
         ({"plans": [{"name": "x", "at": ["09:00+02:00"]}]}, "on the wall"),
         ({"plans": [{"name": "x", "rule": "FREQ=MINUTELY"}]}, "FREQ to be one of"),
-        ({"plans": [{"name": "x", "order": {"mode": "rooms"}}]}, "rooms for the mode rooms"),
+        ({"plans": [{"name": "x", "order": {"mode": "rooms"}}]}, "a room at least"),
         ({"plans": [{"name": "x", "order": {"rooms": ["a"]}}]}, "rooms for the mode rooms"),
         ({"plans": [{"name": "x", "order": {"mode": "spot"}}]}, "got spot"),
         ({"plans": [{"name": "x", "order": {"passes": 99}}]}, "less than or equal to 5"),
         ({"plans": [{"name": "x"}, {"name": "x"}]}, "each name once"),
         ({"presets": [{"name": "x"}] * 60}, "at most 50 items"),
         ({"quiet": [{"begins": "09:00", "ends": "09:00:30"}]}, "another time"),
+        ({"quiet": [{"begins": ""}]}, "such as 09:30, got ''"),
         ({"quiet": [{"days": [7]}]}, "less than or equal to 6"),
         ({"zone": "Mars/Olympus"}, "got 'Mars/Olympus'"),
         ({"zone": "../../etc/passwd"}, "Europe/Berlin"),

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from roomba.client.protocol import MissedFloor
+from roomba.history.report import words
 from roomba.history.run import CellLayer, RunRecording
 
 MAP_COLOURS: Final = ((0, 0, 0, 0), (252, 250, 245, 255), (112, 104, 94, 255))
@@ -29,6 +30,8 @@ _MARGIN: Final = 0.2
 """m around what is known."""
 _JUMP: Final = 1.0
 """m between two rows of a trace; a robot that went farther was carried."""
+_BELOW: Final = 0.22
+"""m from the middle of a mark to that of its area."""
 
 
 def floor_svg(recording: RunRecording, missed: Sequence[MissedFloor], title: str) -> str:
@@ -113,10 +116,12 @@ def _station(recording: RunRecording) -> str:
 
 
 def _miss(number: int, miss: MissedFloor) -> str:
-    radius = 100 * max(0.12, math.sqrt(miss.area / math.pi))
+    """Return a mark, the same for any area: which cells were missed is not kept."""
     x, y = 100 * miss.x, -100 * miss.y
-    return f'<circle class="missed" cx="{x:.0f}" cy="{y:.0f}" r="{radius:.0f}"/>' + _text(
-        "number", str(number), miss.x, miss.y
+    return (
+        f'<circle class="missed" cx="{x:.0f}" cy="{y:.0f}" r="12"/>'
+        + _text("number", str(number), miss.x, miss.y)
+        + _text("size", words.area(miss.area), miss.x, miss.y - _BELOW)
     )
 
 

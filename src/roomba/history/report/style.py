@@ -33,7 +33,7 @@ svg.chart{background:none;overflow:visible}
 .missed{fill:#f0a582;fill-opacity:.6;stroke:#b34a00;stroke-width:3}
 svg text{font:22px system-ui,sans-serif;text-anchor:middle;dominant-baseline:middle;fill:#2b2e33;\
 stroke:#fffffe;stroke-opacity:.85;stroke-width:5;paint-order:stroke}
-svg .number{font-weight:700}
+svg .number{font-weight:700}svg .size{font-size:15px}
 svg.chart text{font-size:15px;text-anchor:start;\
 dominant-baseline:auto;fill:var(--quiet);stroke:none}
 svg.chart .end{text-anchor:end}

@@ -8,8 +8,10 @@ from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Final
 
-from fastapi import FastAPI, WebSocket
+from fastapi import FastAPI, HTTPException, Response, WebSocket
+from fastapi.exceptions import RequestValidationError
 from fastapi.staticfiles import StaticFiles
+from starlette.types import Scope
 
 from roomba.client.household import Household
 from roomba.client.observed import MapKeeper, ObservedRobot, Playground
@@ -19,6 +21,7 @@ from roomba.ui.web.bounded.limits import SERVER_LIMITS
 from roomba.ui.web.feed import Feed
 from roomba.ui.web.guard import Guard
 from roomba.ui.web.guarding import GuardedRequests
+from roomba.ui.web.plain_faults import Refusal, refuse_unfit
 from roomba.ui.web.routes.api import api_of
 from roomba.ui.web.routes.examples import DescribedApp
 from roomba.ui.web.routes.household import household_api
@@ -34,7 +37,8 @@ _ABOUT: Final = """What a robot vacuum does, and what it may be asked to do.
 
 All lengths are in m, angles in rad counter-clockwise, times in s, in the frame of the map. Requests
 that change anything need the token: `Authorization: Bearer TOKEN`. A refusal is status 409 with the
-robot's sentence in `detail`, a robot that does not answer 503."""
+robot's sentence in `detail`, a robot that does not answer 503, and a request that does not fit 422
+with what was expected."""
 
 
 def create_app(
@@ -77,6 +81,8 @@ def create_app(
         lifespan=life,
         docs_url=None,
         redoc_url=None,
+        responses={"4XX": {"model": Refusal, "description": "Refused, for the reason told"}},
+        exception_handlers={RequestValidationError: refuse_unfit},
     )
     limits = {"server": SERVER_LIMITS, "rosbridge": None if bridge is None else bridge.limits}
     note = _forget if keeper is None else keeper.note
@@ -98,9 +104,19 @@ def create_app(
     if keeper is not None and replays is not None:
         app.include_router(history_api(keeper.history))
         app.mount("/replay", replays)
-    app.mount("/", StaticFiles(directory=STATIC, html=True), name="page")
+    app.mount("/", _PageFiles(directory=STATIC, html=True), name="page")
     app.add_middleware(GuardedRequests, guard=guard)
     return app
+
+
+class _PageFiles(StaticFiles):
+    """The files of the page; what comes here of the API is there by another method, or not."""
+
+    async def get_response(self, path: str, scope: Scope) -> Response:
+        """Return a file."""
+        if path.startswith("api/") and scope["method"] != "GET":
+            raise HTTPException(405)
+        return await super().get_response(path, scope)
 
 
 def _forget(_: object) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from typing import Protocol
 
@@ -29,7 +28,7 @@ def add_bridge(app: FastAPI, bridge: Bridge, guard: Guard) -> None:
 
     async def speak(socket: WebSocket) -> None:
         given = _token_of(socket)
-        may_change = given is not None and guard.is_token(given, time.monotonic())
+        may_change = given is not None and guard.is_token(given)
         if given is not None and not may_change:
             await socket.close(4401)
             return

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
-import time
 from typing import Final
 
 from fastapi import WebSocket, WebSocketDisconnect
@@ -69,7 +68,7 @@ class Viewers:
                 kind = told.get("type") if isinstance(told, dict) else None
                 if kind == "hello":
                     token = str(told.get("token", ""))
-                    may_drive = self._guard.is_token(token, time.monotonic())
+                    may_drive = self._guard.is_token(token)
                     welcome = {"type": "welcome", "may_change": may_drive, **self._abilities}
                     await socket.send_text(text_of(welcome))
                 elif kind == "drive":

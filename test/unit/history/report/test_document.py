@@ -98,7 +98,9 @@ def test_the_floor_is_drawn_where_it_is(kept: KeptRun, recording: RunRecording) 
     circle = svg.find(f"{space}circle")
     assert circle is not None
     assert (circle.attrib["cx"], circle.attrib["cy"]) == ("350", "-250")
-    assert float(circle.attrib["r"]) == pytest.approx(100 * (1.0 / 3.14159) ** 0.5, abs=1.0)
+    assert circle.attrib["r"] == "12"
+    texts = {text.attrib["class"]: text.text for text in svg.iter(f"{space}text")}
+    assert (texts["number"], texts["size"]) == ("1", "1.00 m²")
     title = svg.find(f"{space}title")
     assert title is not None
     assert title.text == "Floor of box: 91.7 % clean, 1 places missed"

@@ -90,7 +90,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 def routes_of(app: FastAPI) -> list[tuple[str, str]]:
     """Return the method and the path of each route, with the names of what is to be filled in."""
     return sorted(
-        (method, route.path)
+        (method, route.path_format)
         for route in all_routes(app.routes)
         if isinstance(route, APIRoute) and route.path != WITHOUT_END
         for method in route.methods or ()

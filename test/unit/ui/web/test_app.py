@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import pytest
 from fastapi.routing import APIRoute
@@ -115,10 +116,53 @@ def test_bad_wishes_are_refused(
     assert robot.told == []
 
 
+@pytest.mark.parametrize(
+    ("path", "body", "said"),
+    [
+        ("go", b'{"x": NaN, "y": 0}', "x: expected a finite number, got nan"),
+        ("go", b'{"x": 1e999, "y": 0}', "x: expected a finite number, got inf"),
+        ("go", b'{"x": 1}', "y: expected a value, got nothing"),
+        ("go", b"{", "expected JSON, got something else from character 1 on"),
+        ("go", b"[]", "body: expected keys and values, got []"),
+        ("go", b"", "body: expected a value, got nothing"),
+        ("rooms/rename", b'{"name": "\\ud800", "new_name": "x"}', "got '\\ud800'"),
+        ("go", b'{"x": 1, "y": 1, "\\ud800": 1}', "got '\\ud800'"),
+        ("go", b'{"x": 1, "y": 1, "z": 1}', "z: expected no field of that name, got 1"),
+        ("rooms/rename", b'{"name": "", "new_name": "x"}', "expected a name of 1 to 80 printable"),
+        ("clean", b'{"passes": 9}', "passes: expected less than or equal to 5, got 9"),
+        ("clean", b'{"passes": "x"}', "passes: expected a valid integer, got 'x'"),
+        ("clean", b'{"fan": "x"}', "fan: expected 'quiet', 'standard' or 'strong', got 'x'"),
+        ("rooms/join", b'{"names": ["x"]}', "names: expected at least 2 items, got ['x']"),
+    ],
+)
+def test_what_does_not_fit_is_told_in_plain_words(
+    page: TestClient, robot: WrittenRobot, path: str, body: bytes, said: str
+) -> None:
+    headers = {**AUTHORISED, "Content-Type": "application/json"}
+    answer = page.post(f"/api/v1/{path}", content=body, headers=headers)
+    assert answer.status_code == 422
+    assert said in answer.json()["detail"]
+    assert robot.told == []
+
+
 def test_a_refusal_is_the_robots_sentence(page: TestClient, robot: WrittenRobot) -> None:
     robot.refusal = "expected a battery of 20% or more to begin, got 3%"
     answer = page.post("/api/v1/clean", json={}, headers=AUTHORISED)
     assert (answer.status_code, answer.json()["detail"]) == (409, robot.refusal)
+
+
+def test_a_zone_of_any_name_can_be_removed(page: TestClient, robot: WrittenRobot) -> None:
+    for name in ("stairs/hall", "a b", "x/", "50 %"):
+        answer = page.delete(f"/api/v1/zones/{quote(name, safe='')}", headers=AUTHORISED)
+        assert answer.status_code == 200
+        assert robot.told.pop() == ("remove_zone", (name,))
+
+
+def test_what_the_api_has_by_another_method_is_told(page: TestClient) -> None:
+    for path in ("/api/v1/state", "/api/v1/home"):
+        assert page.head(path).status_code == 405
+    assert page.head("/").status_code == 200
+    assert page.get("/api/v1/nowhere").status_code == 404
 
 
 def test_a_robot_that_is_gone_is_said(page: TestClient, robot: WrittenRobot) -> None:

@@ -61,10 +61,8 @@ def test_origins(origin: str | None, is_ours: bool) -> None:
     assert Guard("t").is_origin(origin, "127.0.0.1:8400") is is_ours
 
 
-def test_guessing_ends_after_ten_wrong_tokens_in_a_minute() -> None:
+def test_wrong_tokens_do_not_keep_the_right_one_out() -> None:
     guard = Guard("right")
-    assert guard.is_token("right", 0.0)
-    for second in range(10):
-        assert not guard.is_token("wrong", float(second))
-    assert not guard.is_token("right", 10.0)
-    assert guard.is_token("right", 60.5)
+    for _ in range(100):
+        assert not guard.is_token("wrong")
+    assert guard.is_token("right")

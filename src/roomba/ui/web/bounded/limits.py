@@ -16,8 +16,6 @@ BACKLOG: Final = 256
 """Connections that may wait to be taken, or to be closed because there are too many."""
 MOST_LISTENERS: Final = 50
 """Programs that listen to events at the same time."""
-MOST_GUESSES: Final = 10
-"""Wrong tokens that are answered in a minute; more are refused unseen."""
 SENT_AHEAD: Final = 65536
 """Bytes that wait in the system for a slow reader: more would be a queue of what is out of date."""
 UNSENT: Final = 1 << 20
@@ -35,6 +33,5 @@ SERVER_LIMITS: Final = {
     "event_listeners": MOST_LISTENERS,
     "socket_message_bytes": MOST_BODY,
     "socket_garbage": MOST_GARBAGE,
-    "wrong_tokens_per_minute": MOST_GUESSES,
 }
 """The same by the names under which the API publishes them."""

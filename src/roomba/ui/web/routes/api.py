@@ -138,7 +138,7 @@ def _add_edits(api: APIRouter, robot: ObservedRobot) -> None:
         zone = ZoneView(wish.name, wish.kind, tuple(wish.points))
         return obeyed(lambda: robot.put_zone(zone))
 
-    @api.delete("/zones/{name}", summary="Remove a zone")
+    @api.delete("/zones/{name:path}", summary="Remove a zone")
     def remove_zone(name: str) -> Answer:
         return obeyed(lambda: robot.remove_zone(name))
 
@@ -186,7 +186,7 @@ def _add_maps(api: APIRouter, robot: ObservedRobot) -> None:
     def load(wish: MapName) -> Answer:
         return obeyed(lambda: robot.load_map(wish.name))
 
-    @api.delete("/maps/{name}", summary="Forget a saved map")
+    @api.delete("/maps/{name:path}", summary="Forget a saved map")
     def remove(name: str) -> Answer:
         return obeyed(lambda: robot.remove_map(name))
 

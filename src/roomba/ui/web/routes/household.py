@@ -76,7 +76,7 @@ def _add_plans(api: APIRouter, household: Household) -> None:
     def put_plan(plan: Plan) -> Answer:
         return obeyed(lambda: household.put_plan(plan))
 
-    @api.delete("/plans/{name}", summary="Remove a plan")
+    @api.delete("/plans/{name:path}", summary="Remove a plan")
     def remove_plan(name: str) -> Answer:
         return obeyed(lambda: household.remove_plan(name))
 
@@ -84,11 +84,11 @@ def _add_plans(api: APIRouter, household: Household) -> None:
     def put_preset(preset: Preset) -> Answer:
         return obeyed(lambda: household.put_preset(preset))
 
-    @api.delete("/presets/{name}", summary="Remove a preset")
+    @api.delete("/presets/{name:path}", summary="Remove a preset")
     def remove_preset(name: str) -> Answer:
         return obeyed(lambda: household.remove_preset(name))
 
-    @api.post("/presets/{name}/begin", summary="Begin the clean of a preset now")
+    @api.post("/presets/{name:path}/begin", summary="Begin the clean of a preset now")
     def begin_preset(name: str) -> Answer:
         return obeyed(lambda: household.begin_preset(name))
 

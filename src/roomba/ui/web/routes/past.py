@@ -6,7 +6,7 @@ import contextlib
 import re
 from collections import OrderedDict
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from fastapi import APIRouter, FastAPI, HTTPException, Query
 from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse
@@ -29,15 +29,24 @@ REPORT_POLICY: Final = (
 _MOST_RUNS: Final = 500
 _MOST_OPEN: Final = 4
 """Runs that are played at the same time; of more the one that was opened first ends."""
+_NUMBERED: Final = re.compile(r"/([0-9]{1,19})(/|$)")
+_Value = TypeVar("_Value")
 
 
 def history_api(history: History) -> APIRouter:
     """Return the routes of a history."""
     api = APIRouter(prefix="/api/v1/history")
 
+    def asked(ask: Callable[[], _Value]) -> _Value:
+        """Return what the history answers; what it does not have is 404 with its sentence."""
+        try:
+            return ask()
+        except RoombaError as refusal:
+            raise HTTPException(404, _sentence(refusal, history)) from refusal
+
     @api.get("", summary="The runs, the newest first, and totals by week")
     def runs(limit: int = Query(default=_MOST_RUNS, ge=1, le=_MOST_RUNS)) -> dict[str, Any]:
-        found = _asked(lambda: history.runs(limit))
+        found = asked(lambda: history.runs(limit))
         weeks = totals_by_week(run.figures for run in found)
         return {
             "runs": [_run_values(run) for run in found],
@@ -46,13 +55,13 @@ def history_api(history: History) -> APIRouter:
 
     @api.get("/compare.html", summary="Two runs in one report", response_class=HTMLResponse)
     def compare(one: int, other: int) -> HTMLResponse:
-        first, second = _asked(lambda: (_whole(history, one), _whole(history, other)))
+        first, second = asked(lambda: (_whole(history, one), _whole(history, other)))
         return _document(comparison_of(first, second))
 
     @api.get("/{number}/report.html", summary="The report of a run", response_class=HTMLResponse)
     def report(number: int) -> HTMLResponse:
-        run, recording = _asked(lambda: _whole(history, number))
-        others = _asked(lambda: history.runs(home=run.figures.source.home))
+        run, recording = asked(lambda: _whole(history, number))
+        others = asked(lambda: history.runs(home=run.figures.source.home))
         return _document(report_of(run, recording, others))
 
     return api
@@ -85,12 +94,10 @@ def _document(text: str) -> HTMLResponse:
     return HTMLResponse(text, headers={"content-security-policy": REPORT_POLICY})
 
 
-def _asked(ask: Callable[[], Any]) -> Any:
-    """Return what the history answers; what it does not have is 404 with its sentence."""
-    try:
-        return ask()
-    except RoombaError as refusal:
-        raise HTTPException(404, str(refusal)) from refusal
+def _sentence(refusal: RoombaError, history: History) -> str:
+    """Return what the history says, without where on the disk it is: pages need not know that."""
+    told = str(refusal).removeprefix(f"{history.path}: ")
+    return told.replace(str(history.path.parent), "the history's folder")
 
 
 class Replays:
@@ -104,7 +111,7 @@ class Replays:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on to the run that it names."""
         root = scope.get("root_path", "")
-        named = re.match(r"/(\d{1,9})(/?)", scope["path"].removeprefix(root))
+        named = _NUMBERED.match(scope["path"].removeprefix(root))
         if named is None:
             await JSONResponse({"detail": "expected /replay/NUMBER/"}, 404)(scope, receive, send)
         elif not named[2]:
@@ -113,7 +120,9 @@ class Replays:
             try:
                 app = await self._opened(int(named[1]))
             except RoombaError as refusal:
-                await JSONResponse({"detail": str(refusal)}, 404)(scope, receive, send)
+                await JSONResponse({"detail": _sentence(refusal, self._history)}, 404)(
+                    scope, receive, send
+                )
                 return
             await app({**scope, "root_path": f"{root}/{named[1]}"}, receive, send)
 

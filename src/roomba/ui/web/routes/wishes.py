@@ -5,13 +5,31 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from roomba.client.view import CleanOrder
-from roomba.vocabulary import LONGEST_NAME, MOST_CORNERS, MOST_PASSES, FanLevel, RoomWay
+from roomba.vocabulary import (
+    LONGEST_NAME,
+    MOST_CORNERS,
+    MOST_PASSES,
+    FanLevel,
+    RoomWay,
+    fault_of_name,
+)
+
+
+def _readable(name: str) -> str:
+    if fault := fault_of_name(name):
+        raise ValueError(fault)
+    return name
+
 
 Coordinate = Annotated[float, Field(ge=-1000.0, le=1000.0, allow_inf_nan=False)]
-Name = Annotated[str, Field(min_length=1, max_length=LONGEST_NAME)]
+Name = Annotated[
+    str,
+    AfterValidator(_readable),
+    Field(json_schema_extra={"minLength": 1, "maxLength": LONGEST_NAME}),
+]
 
 
 class Wish(BaseModel):

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import pytest
 from fastapi.testclient import TestClient
@@ -110,7 +111,7 @@ def test_a_plan_is_put_told_carried_out_and_removed(served: Served) -> None:
 def test_quiet_hours_presets_and_the_zone_are_set(served: Served) -> None:
     quiet = {"begins": "22:00", "ends": "07:00", "days": [0, 6]}
     assert served.ask("PUT", "household/quiet", {"quiet": [quiet]}) == 200
-    assert served.ask("PUT", "household/zone", {"zone": "Europe/Berlin"}) == 200
+    assert served.ask("PUT", "household/zone", {"zone": "europe/BERLIN"}) == 200
     assert served.ask("PUT", "household/zone", {"zone": "Atlantis"}) == 409
     assert served.ask("PUT", "presets", {"name": "quick", "order": KITCHEN}) == 200
     assert served.ask("POST", "presets/quick/begin") == 200
@@ -123,13 +124,31 @@ def test_quiet_hours_presets_and_the_zone_are_set(served: Served) -> None:
     assert served.ask("POST", "presets/quick/begin") == 409
 
 
+def test_what_has_a_slash_in_its_name_is_begun_and_removed(served: Served) -> None:
+    for name in ("up/down", "x/begin"):
+        path = quote(name, safe="")
+        assert served.ask("PUT", "plans", {**PLAN, "name": name}) == 200
+        assert served.ask("PUT", "presets", {"name": name, "order": KITCHEN}) == 200
+        assert served.ask("POST", f"presets/{path}/begin") == 200
+        assert served.robot.told.pop()[0] == "clean"
+        assert served.ask("DELETE", f"plans/{path}") == 200
+        assert served.ask("DELETE", f"presets/{path}") == 200
+    told = served.get("plans")
+    assert (told["plans"], told["presets"]) == ([], [])
+
+
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ({"rule": "FREQ=HOURLY"}, "FREQ to be one of DAILY"),
-        ({"at": ["9"]}, "time"),
-        ({"order": {"mode": "rooms"}}, "rooms for the mode rooms"),
-        ({"colour": "red"}, "not permitted"),
+        ({"rule": "FREQ=HOURLY"}, "expected FREQ to be one of DAILY"),
+        ({"rule": "FREQ=WEEKLY;BYDAY="}, "expected a day of the week at least, got none"),
+        ({"at": ["9"]}, "expected a time of the clock on the wall such as 09:30, got '9'"),
+        ({"at": ["09:30+01:00"]}, "expected a time of the clock on the wall such as 09:30"),
+        ({"at": []}, "expected a time at least, got none"),
+        ({"name": ""}, "expected a name of 1 to 80 printable characters, got ''"),
+        ({"order": {"mode": "rooms"}}, "expected a room at least, got none"),
+        ({"order": {"rooms": ["hall"]}}, "expected rooms for the mode rooms alone"),
+        ({"colour": "red"}, "colour: expected no field of that name, got 'red'"),
     ],
 )
 def test_a_plan_that_makes_no_sense_is_refused(
@@ -137,7 +156,7 @@ def test_a_plan_that_makes_no_sense_is_refused(
 ) -> None:
     answer = served.client.put("/api/v1/plans", json={**PLAN, **wrong})
     assert answer.status_code == 422
-    assert said in answer.text
+    assert answer.json()["detail"].startswith(said)
     assert served.get("plans")["plans"] == []
 
 

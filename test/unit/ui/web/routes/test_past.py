@@ -84,12 +84,27 @@ def test_a_report_has_a_policy_of_its_own(client: TestClient) -> None:
     assert "unsafe-inline" not in client.get("/").headers["content-security-policy"]
 
 
-def test_what_there_is_not_is_said(client: TestClient) -> None:
+def test_what_there_is_not_is_said(client: TestClient, history: History) -> None:
     assert client.get("/api/v1/history/9/report.html").status_code == 404
     assert "the newest is 2, got 9" in client.get("/api/v1/history/9/report.html").text
     assert client.get("/replay/9/").status_code == 404
     assert "found none" in client.get("/replay/2/").json()["detail"]
-    assert client.get("/replay/none").status_code == 404
+    for path in ("none", "999999999999/", "9" * 5000, "1abc", "1abc/"):
+        assert client.get(f"/replay/{path}").status_code == 404
+    for path in ("/api/v1/history/9/report.html", "/replay/9/", "/replay/2/"):
+        told = client.get(path).json()["detail"]
+        assert told.startswith("expected ")
+        assert str(history.path.parent) not in told
+
+
+def test_an_empty_history_does_not_tell_its_folder(tmp_path: Path) -> None:
+    keeper = HistoryKeeper(History(tmp_path), RunSource("play", "box"), lambda _: None)
+    app = create_app(WrittenRobot(), Guard("token"), keeper)
+    with TestClient(app, base_url="http://127.0.0.1") as client:
+        answer = client.get("/replay/1/")
+    assert answer.status_code == 404
+    assert "there are no runs yet" in answer.json()["detail"]
+    assert str(tmp_path) not in answer.text
 
 
 def test_a_run_is_played_under_an_address_of_its_own(client: TestClient) -> None:
