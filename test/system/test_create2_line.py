@@ -98,6 +98,15 @@ def test_it_stands_when_nothing_comes_from_it_for_two_seconds(rig: Create2Rig) -
     rig.drive_until(Twist(-0.1, 0.0), lambda: rig.moves, "it was taken over again, and drives")
 
 
+def test_a_robot_that_does_not_hear_its_driver_is_told_of(rig: Create2Rig) -> None:
+    """The wire by which it is told is broken: nothing stops it, but that is known."""
+    rig.drive_until(Twist(-0.1, 0.0), lambda: rig.moves, "it drives")
+    rig.server.is_deaf = True
+    rig.drive_until(Twist(), lambda: bool(rig.errors), "it is noticed")
+    assert rig.moves
+    assert "switch the robot off" in str(rig.errors[0])
+
+
 def test_a_cable_that_is_pulled_while_it_drives_nothing_makes_up_for(tmp_path: Path) -> None:
     """What cannot be held, so that it is known: until the cable is back it drives on."""
     rig = Create2Rig(tmp_path, None, away())

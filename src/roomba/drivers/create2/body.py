@@ -19,6 +19,7 @@ from roomba.drivers.create2 import commands
 from roomba.drivers.create2.dead_man import PADDING as LONG_PADDING
 from roomba.drivers.create2.dead_man import STOP, DeadManSwitch, Switch
 from roomba.drivers.create2.frames import FrameReader
+from roomba.drivers.create2.obedience import Obedience
 from roomba.drivers.create2.odometry import EncoderOdometry
 from roomba.drivers.create2.open_interface import OpenMode, Packet
 from roomba.drivers.create2.telling import ALL, FAST, SLOW, Create2State, state_of
@@ -42,6 +43,10 @@ _GONE: Final = 0.5
 """s without a frame, after which the line counts as gone."""
 _FIRST: Final = 0.5
 """s, for the first frame at each rate."""
+_DISOBEYS: Final = (
+    "the wheels do not turn as they are told: switch the robot off, and look whether the wire "
+    "to it is broken"
+)
 _TURNS: Final = 5
 """Of as many commands on a slow line one is followed by the packets that may be old."""
 
@@ -84,6 +89,8 @@ class Create2Body:
         self._lists: tuple[tuple[Packet, ...], ...] = (ALL,)
         self._reader = FrameReader(self._lists)
         self._odometry = EncoderOdometry(config)
+        self._obedience = Obedience(config.body.wheel_separation)
+        self._twist = STANDSTILL
         self._told: dict[int, int] = {}
         self._state = Create2State()
         self._heard = self._due = -math.inf
@@ -143,6 +150,8 @@ class Create2Body:
                 f"{' or '.join(map(str, self._bauds))} baud. Is it switched on (CLEAN lights up)?"
             )
         self._pin.forget()
+        self._obedience.forget()
+        self._twist = STANDSTILL
         self._switch.start()
         if self._lidar is not None:
             self._lidar.start()
@@ -169,6 +178,8 @@ class Create2Body:
             now = self._wall()
             if now - self._heard > _GONE:
                 raise LineError(f"expected a frame each 15 ms, got none for {_GONE:g} s")
+            if self._obedience.is_lost(now, self._twist, self._odometry.twist):
+                raise LineError(_DISOBEYS)
             if now >= self._due:
                 self._due = now + _PERIOD
                 self._send(self._line, now)
@@ -251,6 +262,7 @@ class Create2Body:
         if sings:
             data += commands.play()
         line.write(data + self._next_list())
+        self._twist = twist
         self._switch.tell(mode is not OpenMode.PASSIVE and twist != STANDSTILL)
 
     def _mode_for(self, twist: Twist, state: Create2State, now: float) -> OpenMode:

@@ -36,8 +36,8 @@ class Create2Server:
     ) -> None:
         """Serve ``robot``, which lives in ``world``, on ``line``."""
         self.robot, self._line, self._world, self._speed = robot, line, world, speed
-        self.is_mute = False
-        """Whether the wire by which it tells is broken; it hears what it is told."""
+        self.is_mute = self.is_deaf = False
+        """Whether the wire by which it tells is broken, and that by which it is told."""
         self._writing = threading.Lock()
         self._is_over = threading.Event()
         self._threads = [
@@ -60,8 +60,8 @@ class Create2Server:
         reader = InstructionReader()
         while not self._is_over.is_set():
             came = self._line.read(_LOOK)
-            if not self._line.set_rate(self.robot.baud):
-                continue  # of another rate: no byte is understood
+            if self.is_deaf or not self._line.set_rate(self.robot.baud):
+                continue  # of another rate no byte is understood
             for told in reader.take(came):
                 with self._world.lock:
                     answer = self.robot.do(told)

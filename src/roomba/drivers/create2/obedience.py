@@ -1,0 +1,47 @@
+"""Whether the wheels do what they are told: of the two wires to a robot one may be broken."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from roomba.geometry import STANDSTILL, Twist
+
+_FASTER: Final = 0.05
+"""m/s; a wheel that turns by so much faster than it is told, or the other way, does not obey."""
+_PATIENCE: Final = 0.5
+"""s; wheels that are told to stand do so much sooner."""
+_LASTING: Final = 3.0
+"""s since it was told to drive, after which wheels that turn are pushed by hand."""
+
+
+class Obedience:
+    """Compares what a robot was told with what its wheels did."""
+
+    def __init__(self, track: float) -> None:
+        """Begin with a robot that stands, whose wheels are ``track`` m apart."""
+        self._track = track
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin anew with a robot that stands."""
+        self._drove = self._obeyed = -math.inf
+
+    def is_lost(self, now: float, told: Twist, measured: Twist) -> bool:
+        """Whether the wheels turned otherwise than they were told for too long, by ``now``, s."""
+        if told != STANDSTILL:
+            self._drove = now
+        pairs = zip(self._wheels(told), self._wheels(measured), strict=True)
+        if now - self._drove > _LASTING or all(_is_obeyed(*pair) for pair in pairs):
+            self._obeyed = now
+        return now - self._obeyed > _PATIENCE
+
+    def _wheels(self, twist: Twist) -> tuple[float, float]:
+        """Return the speeds of the left and of the right wheel, m/s."""
+        apart = 0.5 * self._track * twist.angular
+        return twist.linear - apart, twist.linear + apart
+
+
+def _is_obeyed(told: float, measured: float) -> bool:
+    """Whether a wheel is no faster than it was told, m/s; a slower one is held up by something."""
+    return min(0.0, told) - _FASTER <= measured <= max(0.0, told) + _FASTER
