@@ -1,15 +1,17 @@
 """Reads and writes floor plans in map_server's format: a YAML file beside a picture.
 
-The meaning of every field is that of map_server's ``image_loader.cpp``, with two differences that
-keep unknown floor from being taken for free: a transparent pixel of any colour is unknown (in
-map_server's trinary mode the alpha channel is averaged in as if it were a colour), and raw values
-above 100 are unknown (map_server lets them wrap around).
+The meaning of every field is that of map_server's ``image_loader.cpp``, with three differences
+that keep unknown floor from being taken for free: a transparent pixel of any colour is unknown (in
+map_server's trinary mode the alpha channel is averaged in as if it were a colour), raw values above
+100 are unknown (map_server lets them wrap around), and so is map_saver's grey of 205 in a picture
+of map_saver's greys, whatever ``free_thresh`` is: that of Nav2 writes 0.25 by default, by which its
+own unknown would be free (navigation2, issue 5138).
 """
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +31,7 @@ Threshold = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 MAP_SAVER_PIXELS = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}
 """Grey values that map_saver writes, and that the usual thresholds read back."""
 RAW_UNKNOWN = 255
+_NEARLY_ALL: Final = 0.99
 
 
 class MapDescription(BaseModel):
@@ -127,8 +130,15 @@ def _occupancy(image: Image, description: MapDescription) -> NDArray[np.int8]:
         values[:] = _scaled(occupied_share, description)
     values[occupied] = OCCUPIED
     values[free] = FREE
+    if description.mode == "trinary" and _is_of_map_saver(grey):
+        values[grey == MAP_SAVER_PIXELS[UNKNOWN]] = UNKNOWN
     values[image.transparent] = UNKNOWN
     return values
+
+
+def _is_of_map_saver(grey: NDArray[np.float64]) -> bool:
+    """Whether nearly all of a picture has greys that map_saver writes; a person may edit some."""
+    return bool(np.isin(grey, list(MAP_SAVER_PIXELS.values())).mean() >= _NEARLY_ALL)
 
 
 def _scaled(share: NDArray[np.float64], description: MapDescription) -> NDArray[np.int8]:

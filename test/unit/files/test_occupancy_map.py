@@ -68,6 +68,18 @@ def test_modes(tmp_path: Path, mode: str, grey: tuple[int, ...], expected: tuple
     assert tuple(load_map(path).values[0].tolist()) == expected
 
 
+def test_unknown_of_map_saver_is_unknown_also_by_thresholds_of_nav2(tmp_path: Path) -> None:
+    nav2 = USUAL.replace("free_thresh: 0.196", "free_thresh: 0.25")
+    assert load_map(written(tmp_path, nav2)).values.tolist() == [[100, -1, 0]]
+    # A person edited one pixel of many.
+    pixels = b"\x00\xcd\xfe" * 66 + b"\xcd\x80"
+    edited = load_map(written(tmp_path, nav2, b"P5\n200 1\n255\n" + pixels))
+    assert edited.values[0, -2:].tolist() == [-1, -1]
+    # Greys of another program mean what the thresholds say.
+    drawn = load_map(written(tmp_path, nav2, b"P5\n3 1\n255\n\x0a\xcd\xff"))
+    assert drawn.values.tolist() == [[100, 0, 0]]
+
+
 def test_negate_turns_black_into_free(tmp_path: Path) -> None:
     path = written(tmp_path, USUAL.replace("negate: 0", "negate: 1"))
     assert load_map(path).values.tolist() == [[0, 100, 100]]
