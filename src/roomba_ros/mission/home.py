@@ -135,9 +135,10 @@ class HomeTopics:
 
     @property
     def is_changing(self) -> bool:
-        """Whether another context is being made than the one that there is, but for more map."""
+        """Whether another context is being made than the one in use, but for more map."""
         with self._lock:
-            return self._wanted != self._tried and self._is_edited
+            is_another = self._wanted != self._tried or self._made is not None
+            return is_another and self._is_edited
 
     def take(self) -> KnownHome | None:
         """Return a context that was made since the last call."""

@@ -146,7 +146,8 @@ class MissionNode:
         if self._home is not None:
             self._low_things.tick(now, mission, self._home)
             self._carpets.tick(now, mission, self._home)
-        step, ended = self._round.tick(now, mission, senses)
+        begins = not self._context.is_changing
+        step, ended = self._round.tick(now, mission, senses, begins=begins)
         self._finish_map(ended, is_waited_for=step.wants_whole_map)
         self._remember(mission, senses, has_learned=ended.clean is not None)
         if ended.clean is not None or ended.exploration is not None:

@@ -146,12 +146,18 @@ class MissionOrders:
             elif isinstance(asked, Order | RoomsOrder):
                 asked.answer.put((False, reason))
 
-    def obey(self, mission: Mission, senses: Senses) -> None:
-        """Let the mission do what was ordered since the last call."""
+    def obey(self, mission: Mission, senses: Senses, *, begins: bool = True) -> None:
+        """Let the mission do what was ordered since the last call; unless it ``begins`` goals wait.
+
+        So a clean after an edit of zones finds these in use, and no order waits for that.
+        """
         self._obey_emergency_stop(mission, senses)
+        waiting: list[MissionGoal] = []
         while self._asked:
             asked = self._asked.popleft()
-            if isinstance(asked, MissionGoal):
+            if isinstance(asked, MissionGoal) and not begins:
+                waiting.append(asked)
+            elif isinstance(asked, MissionGoal):
                 self._begin(asked, mission, senses)
             elif isinstance(asked, Order):
                 answer = self._command(asked.event, mission, senses)
@@ -160,6 +166,7 @@ class MissionOrders:
                 self._answers.append(partial(asked.answer.put, _changed(asked, mission)))
             elif self._goal is not None and self._goal.identity == asked.identity:
                 self._command(Event.STOP, mission, senses)
+        self._asked.extendleft(reversed(waiting))
 
     def answer(self) -> None:
         """Tell what came of what was obeyed."""

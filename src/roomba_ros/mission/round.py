@@ -31,9 +31,14 @@ class MissionRound:
         """Take the parts, which the node starts; ``step`` lets a mission go on for one tick."""
         self._orders, self._topics, self._drive, self._step = orders, topics, drive, step
 
-    def tick(self, now: float, mission: Mission, senses: Senses) -> tuple[MissionStep, Ended]:
-        """Obey, answer, act and tell; return what the mission wants, and what ended."""
-        self._orders.obey(mission, senses)
+    def tick(
+        self, now: float, mission: Mission, senses: Senses, *, begins: bool = True
+    ) -> tuple[MissionStep, Ended]:
+        """Obey, answer, act and tell; return what the mission wants, and what ended.
+
+        Unless it ``begins`` new errands wait.
+        """
+        self._orders.obey(mission, senses, begins=begins)
         self._give_way(mission, senses)
         # Before the answers, and before the step: that may take long to plan.
         self._tell(now, mission, senses)

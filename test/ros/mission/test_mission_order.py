@@ -86,11 +86,11 @@ class Rig:
         self.world.handle.get_goal_id.return_value = GoalID(id="1")
         self.world.handle.get_goal_status.return_value = GoalStatus(status=GoalStatus.PENDING)
 
-    def tick(self) -> list[str]:
+    def tick(self, *, begins: bool = True) -> list[str]:
         """Tick once; return what was told, and the phase of each state that was."""
         self.world.mock_calls.clear()
         self.senses = replace(self.senses, now=self.senses.now + 0.05)
-        self.round.tick(self.senses.now, self.mission, self.senses)
+        self.round.tick(self.senses.now, self.mission, self.senses, begins=begins)
         return [
             call.args[0].phase if call[0] == "state.publish" else TELLS[call[0]]
             for call in self.world.mock_calls
@@ -118,6 +118,19 @@ def test_a_state_is_told_before_the_answer_to_the_order_that_led_to_it(
     assert rig.order(Event.STOP) == ["idle", "canceled", "answer"]
     assert rig.order(Event.PAUSE) == ["answer"]
     assert rig.world.answer.put.call_args.args == ((False, "cannot pause now: the robot is idle"),)
+
+
+def test_a_goal_waits_for_zones_that_were_changed_and_no_order_waits_for_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = Rig(monkeypatch)
+    rig.ask(DockingGoal, DockGoal())
+    rig.world.handle.get_goal.return_value = DockGoal()
+    rig.orders.ask(DockingGoal(rig.world.handle))
+    rig.orders.ask(Order(Event.PAUSE, rig.world.answer))
+    assert rig.tick(begins=False) == ["paused", "feedback", "answer"]
+    assert rig.tick(begins=False) == []
+    assert "returning" in rig.tick()
 
 
 def test_other_rooms_are_told_in_the_state_before_the_answer(
