@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
 import pytest
 
 from roomba.drivers.create2.obedience import Obedience
@@ -18,7 +17,8 @@ def lost_after(
 ) -> float | None:
     """Return when it is noticed that a robot does not obey, s; None: within so long it is not."""
     obedience = Obedience(0.235)
-    for now in np.arange(0.0, seconds, 0.05).tolist():
+    for tick in range(round(seconds / 0.05)):
+        now = 0.05 * tick
         if obedience.is_lost(now, told(now), measured(now)):
             return now
     return None
