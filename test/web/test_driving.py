@@ -99,10 +99,28 @@ def test_without_the_token_nothing_is_changed(opened: Opened) -> None:
     other.goto(opened.server.address)
     other.wait_for_selector("body[data-link='live']")
     other.get_by_text("This page may only look").wait_for()
-    other.get_by_role("button", name="Clean all").click()
+    for name in ("Clean all", "Dock", "Stop now", "No-go zone", "New plan …"):
+        assert all(each.is_disabled() for each in other.get_by_role("button", name=name).all())
+    Opened(other, opened.robot, opened.server, opened.guard).tap(
+        *opened.robot.home().rooms[0].anchor
+    )
+    assert other.is_hidden("#offer")
+    other.keyboard.press("Escape")
     other.wait_for_selector("#refusal:not([hidden])")
     assert "token" in other.inner_text("#refusal")
     assert opened.phase() == "docked"
+
+
+def test_a_page_whose_wish_is_obeyed_says_no_more_that_it_may_only_look(opened: Opened) -> None:
+    page = opened.page
+    page.evaluate("async () => (await import('/store.js')).set('mayChange', false)")
+    page.locator("#only-looks").wait_for()
+    assert page.locator("#clean").is_disabled()
+    page.keyboard.press("Escape")
+    opened.wait_for_phase("emergency stop")
+    page.locator("#only-looks").wait_for(state="hidden")
+    page.get_by_role("button", name="Release").click()
+    page.wait_for_selector("body[data-held=no]")
 
 
 def test_keys_alone_do(opened: Opened) -> None:

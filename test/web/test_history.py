@@ -59,6 +59,8 @@ def test_a_run_that_ended_is_looked_back_at(opened: Opened, history: History) ->
         }"""
     )
     assert "m/s" in page.inner_text("#chart-speed-title")
+    began, now = page.locator("#chart-speed text").all_text_contents()[-2:]
+    assert (began[-5:], now) == ("s ago", "now")
     page.get_by_role("button", name="Stop", exact=True).click()
     wait_until(lambda: len(history.runs()) == 3, DEADLINE, "the run in the history")
     page.get_by_role("button", name="History").click()
@@ -69,9 +71,11 @@ def test_a_run_that_ended_is_looked_back_at(opened: Opened, history: History) ->
     assert rows.first.locator("td").nth(1).inner_text() == str(kept.number)
     assert rows.first.locator("td").nth(3).inner_text() == "studio"
     assert page.locator("#history-weeks tr").count() == 2
-    page.get_by_role("link", name=f"Run {kept.number} again").click()
+    page.get_by_role("link", name=f"Replay run {kept.number}").click()
     page.wait_for_selector("#timeline:not([hidden])")
     assert page.inner_text("#headline").startswith("Recorded: ")
+    page.get_by_role("link", name="Back to the robot").click()
+    page.wait_for_selector("body[data-replay=no][data-link=live]")
 
 
 def test_reports_open_and_two_are_compared(opened: Opened) -> None:
@@ -95,6 +99,26 @@ def test_reports_open_and_two_are_compared(opened: Opened) -> None:
     page.get_by_role("button", name="Back to the map").press("Enter")
     assert not page.locator("#history").is_visible()
     assert page.evaluate("() => document.activeElement.id") == "history-open"
+
+
+def test_keys_do_nothing_behind_it(opened: Opened) -> None:
+    page = opened.page
+    opened.show("more")
+    page.get_by_text("Drive by hand", exact=True).click()
+    page.get_by_role("button", name="History").click()
+    page.locator("#history-runs tr").first.wait_for()
+    assert page.locator("#history-runs").get_by_text("1 place", exact=True).count() == 2
+    before = opened.robot.robot().pose
+    page.locator("#history-close").focus()
+    page.keyboard.press("1")
+    page.keyboard.press("?")
+    page.keyboard.down("ArrowUp")
+    assert page.locator("#rooms [aria-pressed=true]").count() == 0
+    assert page.is_hidden("#keys")
+    time = opened.robot.robot().time
+    wait_until(lambda: opened.robot.robot().time > time + 3.0, DEADLINE, "time to pass")
+    page.keyboard.up("ArrowUp")
+    assert opened.robot.robot().pose[:2] == pytest.approx(before[:2], abs=0.05)
 
 
 def test_it_can_be_read_and_touched(opened: Opened) -> None:

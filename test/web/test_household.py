@@ -80,8 +80,14 @@ def test_a_plan_is_made_changed_and_removed(opened: Opened, household: LiveHouse
     page.locator("#plans summary").click()
     page.get_by_role("button", name="New plan …").click()
     form.get_by_label("Name").fill("Mornings")
-    for day in ("Tue", "Wed", "Fri", "Sat", "Sun"):
+    for day in ("Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"):
         form.get_by_label(day).uncheck()
+    form.get_by_role("button", name="Save").click()
+    assert form.get_by_role("alert").inner_text() == "Choose at least one day."
+    form.get_by_label("Or days by a rule").fill("FREQ=MONTHLY;BYDAY=1SA")
+    for day in ("Mon", "Thu"):
+        form.get_by_label(day).check()
+    assert form.get_by_label("Or days by a rule").input_value() == ""
     form.get_by_label("Times").fill("9:30, 18:00")
     form.get_by_label("What").select_option("rooms")
     room = household.robot.home().rooms[0].name

@@ -9,6 +9,7 @@ from fixtures.waiting import wait_until
 from web.conftest import Opened
 from web.test_page import DEADLINE
 
+from roomba.client.view import CleanOrder
 from roomba.headless.embodied import Embodied
 from roomba.vocabulary import CleanMode
 
@@ -65,6 +66,28 @@ def test_it_goes_where_the_floor_was_tapped_and_back_to_be_charged(opened: Opene
     assert "full in" in page.inner_text("#battery")
 
 
+def test_a_clean_under_way_is_given_up_after_a_yes_alone(opened: Opened) -> None:
+    page = opened.page
+    name = opened.robot.home().rooms[0].name
+    opened.robot.clean(CleanOrder(mode="rooms", rooms=(name,)))
+    opened.wait_for_phase("cleaning")
+    page.get_by_role("button", name="Clean all").click()
+    page.locator("#ask").get_by_role("button", name="Cancel").click()
+    assert opened.robot.ask(asked_for) is CleanMode.ROOMS
+    page.get_by_role("button", name="Clean all").click()
+    with page.expect_response("**/api/v1/clean"):
+        page.locator("#ask").get_by_role("button", name="OK").click()
+    assert opened.robot.ask(asked_for) is CleanMode.WHOLE
+    # It cleans no rooms in order now: there is nothing to which one could be added.
+    page.locator("#queue").wait_for(state="hidden")
+    page.keyboard.press("1")
+    assert "first" in (page.locator("#pause").get_attribute("class") or "")
+    page.get_by_role("button", name="Clean 1 room").click()
+    with page.expect_response("**/api/v1/clean"):
+        page.locator("#ask").get_by_role("button", name="OK").click()
+    assert opened.robot.ask(asked_for) is CleanMode.ROOMS
+
+
 def test_the_rooms_of_a_clean_under_way_are_changed(opened: Opened) -> None:
     first, second, third = (room.name for room in opened.robot.home().rooms[:3])
     opened.show("rooms")
@@ -91,6 +114,7 @@ def test_the_rooms_of_a_clean_under_way_are_changed(opened: Opened) -> None:
     are(second, first)
     queue.get_by_text(f"{second}, now").wait_for()
     opened.page.locator(f"#rooms [data-room='{third}']").click()
+    assert "first" in (opened.page.locator("#pause").get_attribute("class") or "")
     opened.page.get_by_role("button", name="Add what is chosen").click()
     are(second, first, third)
     queue.get_by_role("button", name=f"Leave {first} out").click()

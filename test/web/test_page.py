@@ -169,6 +169,19 @@ def test_a_room_gets_another_name_and_a_cut_that_is_none_is_refused(opened: Open
     assert page.inner_text("#refusal")
 
 
+def test_a_choice_outlives_another_name_and_what_is_gone_is_told(opened: Opened) -> None:
+    page, robot = opened.page, opened.robot
+    page.keyboard.press("1")
+    page.keyboard.press("2")
+    before = robot.home().rooms[0].name, robot.home().rooms[1].name
+    robot.rename_room(before[0], "den")
+    page.locator("#rooms [data-room=den][aria-pressed=true]").wait_for(state="attached")
+    assert page.inner_text("#clean") == "Clean 2 rooms"
+    robot.join_rooms(("den", before[1]))
+    page.get_by_text("no longer a room, and not chosen any more").wait_for()
+    assert page.inner_text("#clean") != "Clean 2 rooms"
+
+
 def test_rooms_that_were_joined_or_split_become_as_they_were(opened: Opened) -> None:
     page, before = opened.page, opened.robot.home().rooms
 

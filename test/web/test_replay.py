@@ -100,6 +100,19 @@ def test_dragging_shows_another_time(replayed: Replayed) -> None:
     replayed.wait_for_swept(0, 40)
 
 
+def test_the_time_line_is_whole_on_the_smallest_phone(replayed: Replayed) -> None:
+    page = replayed.page
+    page.set_viewport_size({"width": 320, "height": 640})
+    bottom = page.evaluate("() => document.querySelector('.map').getBoundingClientRect().bottom")
+    for part in ("#replay-play", "#replay-at", "#replay-speed"):
+        box = page.locator(part).bounding_box()
+        assert box is not None
+        assert box["x"] + box["width"] <= 320
+        assert box["y"] + box["height"] <= bottom
+    # It is no part of the page of a robot.
+    assert page.is_hidden("#replay-back")
+
+
 def test_the_keyboard_plays_and_drags(replayed: Replayed) -> None:
     page = replayed.page
     page.locator("#floor").focus()

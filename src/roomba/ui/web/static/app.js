@@ -18,6 +18,7 @@ import * as replay from "./panels/replay.js";
 import * as rooms from "./panels/rooms.js";
 import * as sheet from "./panels/sheet.js";
 import * as status from "./panels/status.js";
+import * as stop from "./panels/stop.js";
 import * as tools from "./panels/view.js";
 import * as upkeep from "./panels/upkeep.js";
 import * as zones from "./panels/zones.js";
@@ -25,5 +26,5 @@ import { connect } from "./link.js";
 
 draw.begin();
 gestures.begin({ tapped, drawn: zones.drawn, changed: zones.change, mayCarry: play.mayCarry, carried: play.carried });
-for (const panel of [status, card, actions, rooms, queue, zones, drive, play, tools, keys, replay, maps, lowThings, plans, upkeep, camera, charts, history, sheet]) panel.begin();
+for (const panel of [status, stop, card, actions, rooms, queue, zones, drive, play, tools, keys, replay, maps, lowThings, plans, upkeep, camera, charts, history, sheet]) panel.begin();
 connect();

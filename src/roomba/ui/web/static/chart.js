@@ -1,10 +1,10 @@
 /** A line over time, as SVG. */
 
 const SPACE = "http://www.w3.org/2000/svg";
-const WIDTH = 280, HEIGHT = 72, LEFT = 36, TOP = 6, BOTTOM = 6; // units of the picture
+const WIDTH = 280, HEIGHT = 84, LEFT = 36, TOP = 6, BOTTOM = 18; // units of the picture
 
-/** Draw `points`, [time, value], from 0 to `highest` (by default the highest value); say what it is. */
-export function chart(svg, points, title, highest) {
+/** Draw `points`, [time, value], from 0 to `highest` (by default the highest value); say what it is, and when it `begins` and `ends`. */
+export function chart(svg, points, title, [begins, ends], highest) {
   const top = highest ?? niceAbove(Math.max(...points.map(([, value]) => value), 0));
   const [first, last] = [points[0]?.[0] ?? 0, points.at(-1)?.[0] ?? 1], span = Math.max(last - first, 1e-9);
   const base = HEIGHT - BOTTOM;
@@ -23,6 +23,8 @@ export function chart(svg, points, title, highest) {
     part("path", { class: "axis", d: `M${LEFT} ${TOP}V${base}H${WIDTH - 4}` }),
     part("text", { x: LEFT - 4, y: TOP + 8 }, String(top)),
     part("text", { x: LEFT - 4, y: base }, "0"),
+    part("text", { x: LEFT, y: HEIGHT - 4, class: "begins" }, begins),
+    part("text", { x: WIDTH - 4, y: HEIGHT - 4 }, ends),
     part("polyline", { class: "line", points: points.map(place).join(" ") }),
     ...marks,
   );

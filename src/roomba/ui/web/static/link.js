@@ -4,6 +4,7 @@ import { takeTiles } from "./map/grids.js";
 import { sentence } from "./words.js";
 
 const STALE = 1500; // ms without news after which what is shown is told to be old
+const PATIENCE = 10_000; // ms until an answer counts as lost
 const RETRY = [300, 1000, 2000, 4000]; // ms before another attempt
 
 const timers = {};
@@ -104,7 +105,9 @@ export async function wish(path, body, method = "POST") {
       method,
       headers: { "Content-Type": "application/json", Authorization: `Bearer ${TOKEN}` },
       body: JSON.stringify(body ?? {}),
+      signal: AbortSignal.timeout(PATIENCE),
     });
+    set("mayChange", answer.status !== 401);
     if (answer.ok) return true;
     if (answer.status === 401) { refuse(ONLY_LOOKS); return false; }
     const told = await answer.json();

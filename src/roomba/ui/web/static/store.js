@@ -26,5 +26,8 @@ export function on(names, listener) {
   listener();
 }
 
+/** Whether this page may ask the robot for something: it has the token, and shows no recording. */
+export function mayAsk() { return get("mayChange") !== false && !get("state")?.replay; }
+
 /** Whether the robot offers a way to play with its home. */
 export function offers(act) { return Boolean(get("limits")?.play.includes(act)); }

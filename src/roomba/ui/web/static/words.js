@@ -4,6 +4,7 @@ const SOON = 90; // s
 const LATER = 7200; // s from which minutes do not matter
 const MOVES = 0.02; // m/s
 const FULL = 0.995; // of a battery
+const NOTHING = 0.01; // of the floor that was wanted
 const UNREACHED = /^the robot cannot be reached/; // a robot on a line
 
 /** Return the headline for a state. */
@@ -19,20 +20,28 @@ export function headline(link, state) {
   switch (vacuum.phase) {
     case "docked": return vacuum.charges && vacuum.battery < FULL ? "On its station, charging" : "On its station, ready";
     case "charging": return "Charging, then it goes on";
-    case "idle": return state.speed > MOVES ? `On its way${room}` : `Standing${room}`;
+    case "idle": return moves(state) ? `On its way${room}` : `Standing${room}`;
     case "undocking": return "Leaving its station";
-    case "cleaning": return `Cleaning${room}${togo}`;
+    case "cleaning": return `${isElsewhere(vacuum) ? `On its way to ${title(vacuum.queue[0])}` : `Cleaning${room}`}${togo}`;
     case "exploring": return "Looking at what it does not know yet";
     case "returning": return "On its way home";
     case "docking": return "Docking";
     case "emptying": return "Its station empties its bin";
     case "bin full": return "Its dust bin is full";
-    case "paused": return `Paused${room}`;
+    case "paused": return moves(state) ? `On its way${room}` : `Paused${room}`;
     case "error": return "It needs help";
     case "emergency stop": return "Stopped by the emergency stop";
     default: return vacuum.phase;
   }
 }
+
+function moves(state) { return state.speed > MOVES; }
+
+/** Whether the robot stands, and waits for what it is told. */
+export function stands(state) { return Boolean(state) && ["docked", "idle", "paused"].includes(state.vacuum.phase) && !moves(state); }
+
+/** Whether it is not yet in the room that it cleans next. */
+function isElsewhere({ queue, room }) { return queue?.length > 0 && queue[0] !== room; }
 
 /** Return why it does not do what was asked, and what helps; empty when all is well. */
 export function explanation(link, state, reason, age, heardAt) {
@@ -72,6 +81,13 @@ export function lastRun(report) {
   if (report.wanted && report.rate) parts.push(`${report.rate.toFixed(2)} m² a minute`);
   if (report.dirt) parts.push(`${report.dirt.toFixed(1)} g of dirt`);
   return parts.join(" · ") + (report.message ? `. ${sentence(report.message)}` : "");
+}
+
+/** Return why a clean achieved nothing; empty when it was told to stop, or achieved something. */
+export function nothingDone({ outcome, covered, wanted, message, missed }) {
+  if (outcome === "stopped" || !wanted || covered > NOTHING * wanted) return "";
+  const reason = message || missed[0]?.reason;
+  return reason ? sentence(`Nothing was cleaned: ${reason}`) : "";
 }
 
 /** What is said of ways to clean that need no more than their name. */

@@ -1,5 +1,5 @@
 /** Pointer, touch and wheel on the map: pan, pinch, zoom, tap, long press, and dragging things. */
-import { get, set } from "../store.js";
+import { get, mayAsk, set } from "../store.js";
 import { pan, toFloor, toScreen, zoom } from "./view.js";
 import { cornerAt, isHit, shifted, withCorner } from "./zones.js";
 
@@ -57,6 +57,7 @@ export function begin({ tapped, drawn, changed, mayCarry, carried }) {
 
 /** Return what is dragged from now on. */
 function grasp([px, py], { mayCarry, carried }) {
+  if (!mayAsk()) return "pan";
   const [x, y] = toFloor(px, py), drawing = get("drawing"), zone = get("zone"), state = get("state");
   if (drawing) {
     set("drawing", { ...drawing, from: [x, y], to: [x, y] });

@@ -43,6 +43,14 @@ export function repaint() {
 /** Return a grid by its name, or nothing. */
 export function grid(name) { return grids.get(name); }
 
+/** Whether a place, m, lies on the map: floor, wall or furniture. */
+export function isKnown(x, y) {
+  const map = grids.get("map");
+  if (!map) return false;
+  const row = Math.floor((y - map.origin[1]) / map.resolution), column = Math.floor((x - map.origin[0]) / map.resolution);
+  return row >= 0 && row < map.rows && column >= 0 && column < map.columns && map.cells[row * map.columns + column] > 0;
+}
+
 /** Return what colours the cells of a grid, as red, green, blue and opacity. */
 function colours(name) {
   const { free, wall, furniture, swept, sweptAlpha, dirt } = palette().cells, none = [0, 0, 0, 0];

@@ -8,6 +8,7 @@ import { dashed, trace, traceAll, write } from "./trace.js";
 import { toScreen, view } from "./view.js";
 
 const WIDE = 45; // pixels per metre from which rooms tell their area as well
+const LABEL = 96; // pixels that a name has at least
 const CORNER = 6; // pixels; half the side of a zone's corner
 
 /** Draw a grid; soft where its cells are shares of floor and not walls. */
@@ -110,7 +111,8 @@ function breadth(ring) {
 function drawName(context, room) {
   const colours = palette(), order = get("chosen").indexOf(room.name), [px, py] = toScreen(...room.anchor);
   const tells = view.scale > WIDE;
-  write(context, title(room.name), px, py, { isBold: true, size: tells ? 16 : 14 });
+  const most = Math.max(LABEL, 2 * view.scale * toSide(room));
+  write(context, title(room.name), px, py, { isBold: true, size: tells ? 16 : 14, most });
   if (tells) write(context, `${room.area.toFixed(1)} m²`, px, py + 18, { size: 13 });
   if (order < 0) return;
   context.beginPath();
@@ -120,6 +122,12 @@ function drawName(context, room) {
   context.fillStyle = colours.onAccent;
   context.font = "700 15px system-ui, sans-serif";
   context.fillText(String(order + 1), px, py - 23);
+}
+
+/** Return how far the middle of a room's name is from the nearer side of the room, m. */
+function toSide({ anchor: [x], rings }) {
+  const xs = rings.flat().map(([at]) => at);
+  return Math.min(x - Math.min(...xs), Math.max(...xs) - x);
 }
 
 function drawZone(context, zone) {

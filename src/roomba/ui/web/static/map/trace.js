@@ -31,15 +31,22 @@ export function dashed(context, colour, width = 2, dashes = [6, 4]) {
   context.setLineDash([]);
 }
 
-/** Write a text with a halo, its middle at pixels. */
-export function write(context, text, px, py, { colour = palette().ink, size = 14, isBold = false } = {}) {
+/** Write a text with a halo, its middle at pixels; one that is wider than `most` pixels ends in an ellipsis. */
+export function write(context, text, px, py, { colour = palette().ink, size = 14, isBold = false, most = Infinity } = {}) {
   context.font = `${isBold ? "600 " : ""}${size}px system-ui, sans-serif`;
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.lineJoin = "round";
   context.lineWidth = 4;
   context.strokeStyle = palette().halo;
-  context.strokeText(text, px, py);
+  const shown = clipped(context, text, most);
+  context.strokeText(shown, px, py);
   context.fillStyle = colour;
-  context.fillText(text, px, py);
+  context.fillText(shown, px, py);
+}
+
+function clipped(context, text, most) {
+  let shown = text;
+  for (let end = text.length; end > 0 && context.measureText(shown).width > most; end--) shown = `${text.slice(0, end).trimEnd()}…`;
+  return shown;
 }

@@ -1,34 +1,50 @@
-/** The buttons: clean, pause, dock, stop, explore, emergency stop; and how is cleaned. */
+/** The buttons: clean, pause, dock, stop, explore; and how is cleaned. */
 import { $, offer, put } from "../dom.js";
 import { wish } from "../link.js";
 import { get, on, set } from "../store.js";
 import { CARPETS, EDGES, MODES } from "../words.js";
+import { askYes } from "./ask.js";
+import * as queue from "./queue.js";
 
 const STANDS = ["docked", "idle"];
 const STEP = 0.1; // m/s between two top speeds that can be chosen
 
+let isAsked = false; // whether a wish to pause or go on is under way
+
 /** Connect the buttons. */
 export function begin() {
-  $("clean").onclick = clean;
-  $("pause").onclick = pauseOrResume;
+  $("clean").onclick = () => (adds() ? queue.add() : clean());
+  $("pause").onclick = (event) => { if (event.detail < 2) pauseOrResume(); }; // a double click means one
   $("dock").onclick = () => wish("dock");
   $("stop").onclick = () => wish("stop");
   $("explore").onclick = () => wish("explore");
   $("bin").onclick = () => wish("empty_bin");
   $("locate").onclick = () => wish("locate");
-  $("emergency").onclick = () => (get("state")?.held ? wish("release") : emergency());
   $("top-speed").onchange = () => wish("speed", { speed: Number($("top-speed").value) });
   on("limits", showLimits);
   on("state chosen home mayChange link limits", show);
 }
 
-/** Hold the drive at once. */
-export function emergency() { return wish("emergency_stop", {}); }
-
 /** Pause, or go on. */
-export function pauseOrResume() {
-  const phase = get("state")?.vacuum.phase;
-  return wish(phase === "paused" || phase === "error" ? "resume" : "pause");
+export async function pauseOrResume() {
+  if (isAsked) return;
+  isAsked = true;
+  await wish(isPaused() ? "resume" : "pause");
+  isAsked = false;
+}
+
+function isPaused() { return ["paused", "error"].includes(get("state")?.vacuum.phase); }
+
+/** Whether the rooms that are chosen are added to a clean of rooms under way. */
+function adds() { return get("chosen").length > 0 && queue.rooms().length > 0; }
+
+/** Begin a clean; what is under way is given up for it only after a yes. Returns whether the robot obeys. */
+export async function beginClean(order) { return await mayEnd() && wish("clean", { ...order, ...how() }); }
+
+/** Return whether what is under way, if anything is, may be given up. */
+export async function mayEnd() {
+  const vacuum = get("state")?.vacuum, isBusy = vacuum?.wanted > 0 || vacuum?.phase === "exploring";
+  return !isBusy || askYes("It has not finished what it does now. End that, and begin this?");
 }
 
 /** What of a clean is the same for all ways to begin one; before the limits came, what is usual. */
@@ -44,7 +60,7 @@ async function clean() {
   const order = chosen.length ? { mode: "rooms", rooms: chosen, in_order: true } : { mode: $("mode").value || "whole" };
   if (chosen.some((name) => hows[name]))
     order.each = chosen.map((name) => ({ passes: usual.passes, fan: usual.fan, ...hows[name] }));
-  if (await wish("clean", { ...order, ...usual })) set("chosen", []);
+  if (await beginClean(order)) set("chosen", []);
 }
 
 function showLimits() {
@@ -69,20 +85,19 @@ function show() {
   const stands = STANDS.includes(phase), isHeld = Boolean(state?.held), home = get("home");
   const isHeard = ["live", "stale"].includes(get("link")), hasNoMap = Boolean(home) && !home.furniture.length && !home.rooms.length;
   const isFull = phase === "bin full" || /bin/.test(state?.vacuum.message ?? "");
-  const isPaused = phase === "paused" || phase === "error";
-  put($("clean"), chosen.length ? `Clean ${chosen.length} room${chosen.length > 1 ? "s" : ""}` : "Clean all");
-  put($("pause"), isPaused ? "Go on" : "Pause");
-  const isUnderWay = !stands && !isHeld && phase !== "" && chosen.length === 0 && !isFull;
+  put($("clean"), adds() ? "Add what is chosen" : chosen.length ? `Clean ${chosen.length} room${chosen.length > 1 ? "s" : ""}` : "Clean all");
+  put($("pause"), isPaused() ? "Go on" : "Pause");
+  const isUnderWay = !stands && !isHeld && phase !== "" && !isFull;
   $("pause").classList.toggle("first", isUnderWay);
   $("clean").classList.toggle("first", !isUnderWay && !isFull && !(hasNoMap && stands));
   $("pause").disabled = stands || isHeld || !isHeard;
   $("stop").disabled = (stands && !state?.speed) || isHeld || !isHeard;
-  $("clean").disabled = isHeld || !isHeard;
+  $("clean").disabled = isHeld || !isHeard || (adds() && queue.more().length === 0);
   $("dock").disabled = phase === "docked" || isHeld || !isHeard;
   $("mode").disabled = chosen.length > 0;
   if (state?.top_speed && document.activeElement !== $("top-speed")) $("top-speed").value = state.top_speed.toFixed(1);
   $("no-map").hidden = !hasNoMap || !stands || isHeld || !isHeard || Boolean(state?.replay);
   $("bin").hidden = !isFull;
-  put($("emergency"), isHeld ? "Release" : "Stop now");
   $("only-looks").hidden = get("mayChange") !== false || Boolean(state?.replay);
+  for (const controls of document.querySelectorAll(".asks, #explore")) controls.disabled = get("mayChange") === false;
 }

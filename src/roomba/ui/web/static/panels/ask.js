@@ -12,6 +12,7 @@ function ask(title, text) {
   $("ask-title").textContent = title;
   $("ask-label").hidden = text === null;
   $("ask-text").value = text ?? "";
+  $("ask-text").required = text !== null;
   dialog.returnValue = "";
   dialog.showModal();
   return new Promise((resolve) => {

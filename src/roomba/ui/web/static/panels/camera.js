@@ -10,7 +10,7 @@ let timer = null, keptAt = -Infinity, isAsking = false;
 
 /** Take pictures while the camera is open. */
 export function begin() {
-  on("hasCamera", () => { $("camera").hidden = !get("hasCamera"); });
+  on("hasCamera mayChange", () => { $("camera").hidden = !get("hasCamera") || get("mayChange") === false; });
   on("limits", () => offer($("camera-angle"), (get("limits")?.camera_angles ?? []).map((angle) => [angle, side(angle)]), $("camera-angle").value || 0));
   $("camera").ontoggle = again;
   $("camera-angle").onchange = again;
@@ -19,7 +19,7 @@ export function begin() {
   on("link", () => { if (get("link") !== link) { link = get("link"); again(); } });
 }
 
-function isSeen() { return $("camera").open && !document.hidden && get("link") === "live"; }
+function isSeen() { return $("camera").open && !$("camera").hidden && !document.hidden && get("link") === "live"; }
 
 function again() {
   clearTimeout(timer);

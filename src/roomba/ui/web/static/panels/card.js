@@ -24,13 +24,19 @@ export function open(words, acts, at, otherwise = null) {
   const above = py - BESIDE - offsetHeight, below = py + BESIDE;
   place.style.left = `${between(px - offsetWidth / 2, MARGIN, width - offsetWidth - MARGIN)}px`;
   place.style.top = `${between(below + offsetHeight > height - MARGIN ? above : below, MARGIN, height - offsetHeight - MARGIN)}px`;
-  $("offer-acts").firstElementChild.focus({ preventScroll: true });
 }
+
+/** Give the card the focus: it was opened by keys. */
+export function focus() { $("offer-acts").firstElementChild.focus({ preventScroll: true }); }
+
+/** Whether a card is open. */
+export function isOpen() { return !$("offer").hidden; }
 
 function between(value, least, most) { return Math.max(least, Math.min(value, most)); }
 
 /** Take the card away. */
 export function close() {
+  if ($("offer").contains(document.activeElement)) $("floor").focus();
   $("offer").hidden = true;
   dismiss?.();
   dismiss = null;

@@ -2,6 +2,7 @@
 import { chart } from "../chart.js";
 import { $, put } from "../dom.js";
 import { get, on } from "../store.js";
+import { duration } from "../words.js";
 
 const KEPT = 600, STEP = 1; // s of the robot's clock that are shown, and between two points
 const WINDOW = 20; // s over which the rate of dirt is the mean
@@ -42,5 +43,6 @@ function rate(point) {
 
 function line(name, values, title, highest) {
   put($(`chart-${name}-title`), title);
-  chart($(`chart-${name}`), values, `${title}, the last ten minutes`, highest);
+  const ago = `${duration(values.at(-1)[0] - values[0][0])} ago`;
+  chart($(`chart-${name}`), values, `${title}, the last ten minutes`, [ago, "now"], highest);
 }

@@ -1,4 +1,4 @@
-/** The history: every run with its report, two compared, each again, totals by week, the home's dirt. */
+/** The history: every run with its report, two compared, each replayed, totals by week, the home's dirt. */
 import { chart } from "../chart.js";
 import { $ } from "../dom.js";
 import { BASE, ask } from "../link.js";
@@ -45,7 +45,8 @@ function show() {
   $("history-runs").replaceChildren(...runs.map(row));
   $("history-few").hidden = cleans.length > 1;
   $("history-dirt").toggleAttribute("hidden", cleans.length < 2);
-  chart($("history-dirt"), cleans.map((run) => [run.began, run.dirt]).reverse(), `Dirt of ${home}: g that each of ${cleans.length} cleans picked up`);
+  const points = cleans.map((run) => [run.began, run.dirt]).reverse(), days = [points[0], points.at(-1)].map((point) => (point ? day(point[0]) : ""));
+  chart($("history-dirt"), points, `Dirt of ${home}: g that each of ${cleans.length} cleans picked up`, days);
   showCompared();
 }
 
@@ -66,10 +67,10 @@ function row(run) {
   const links = document.createElement("span");
   links.className = "links";
   links.append(link("Report", `${BASE}api/v1/history/${run.number}/report.html`, `Report of run ${run.number}`, true));
-  if (run.is_recorded) links.append(link("Again", `${BASE}replay/${run.number}/`, `Run ${run.number} again`, false));
+  if (run.is_recorded) links.append(link("Replay", `${BASE}replay/${run.number}/`, `Replay run ${run.number}`, false));
   const share = run.fraction === null ? "–" : `${(100 * run.fraction).toFixed(1)} %`;
   const cells = [box, run.number, new Date(1000 * run.began).toLocaleString([], { dateStyle: "short", timeStyle: "short" }),
-    run.home, title(run.outcome), share, `${run.missed}`, known(run.duration, duration),
+    run.home, title(run.outcome), share, places(run.missed), known(run.duration, duration),
     known(run.kind === "clean" ? run.rate : null, (rate) => rate.toFixed(2)), known(run.dirt, (dirt) => `${dirt.toFixed(1)} g`), links];
   return filled(line, cells);
 }
@@ -79,6 +80,10 @@ function week(totals) {
   return filled(line, [totals.week, totals.runs, `${totals.covered.toFixed(1)} m²`, duration(totals.duration),
     `${totals.distance.toFixed(0)} m`, `${totals.dirt.toFixed(1)} g`, `${totals.energy.toFixed(1)} Wh`], "#history-week-heads");
 }
+
+function day(seconds) { return new Date(1000 * seconds).toLocaleDateString([], { dateStyle: "short" }); }
+
+function places(count) { return count ? `${count} ${count === 1 ? "place" : "places"}` : "nothing"; }
 
 function known(value, say) { return value === null ? "–" : say(value); }
 

@@ -1,12 +1,12 @@
 /** What can be done at a place that was tapped, and only that. */
 import { $ } from "../dom.js";
 import { wish } from "../link.js";
+import { isKnown } from "../map/grids.js";
 import { isInside, zoneAt } from "../map/zones.js";
-import { get, offers, set } from "../store.js";
+import { get, mayAsk, offers, set } from "../store.js";
 import { title } from "../words.js";
-import { how } from "./actions.js";
+import { beginClean } from "./actions.js";
 import { open } from "./card.js";
-import { isShown } from "./replay.js";
 import { toggle } from "./rooms.js";
 import { offerZone } from "./zones.js";
 
@@ -14,23 +14,28 @@ const NEAR = 0.4; // m from a door's middle that still mean it
 
 /** Choose the room at (x, y), m, or the zone, and offer what else can be done at these pixels. */
 export function tapped(x, y, px, py) {
-  const room = get("home")?.rooms.find((one) => isInside(one.rings, x, y));
-  if (isShown()) return;
+  if (!mayAsk()) return;
   const zone = zoneAt(x, y, px, py);
   set("zone", null);
   if (zone) { offerZone(zone); return; }
-  const before = get("chosen");
+  const before = get("chosen"), room = roomAt(x, y);
   if (room) toggle(room.name);
-  offerPlace(x, y, room, before);
+  const order = get("chosen").indexOf(room?.name);
+  const choice = order >= 0 ? ` is number ${order + 1}` : " is left out";
+  offerPlace(x, y, room ? title(room.name) + choice : "Here", before);
 }
 
-/** Offer what can be done at a place; rooms are chosen as `before` when it was the place that was meant. */
-export function offerPlace(x, y, room, before = get("chosen")) {
-  const order = room ? get("chosen").indexOf(room.name) : -1;
-  const name = !room ? "Here" : order >= 0 ? `${title(room.name)} is number ${order + 1}` : `${title(room.name)} is left out`;
+/** Offer what can be done at a place, without choosing a room. */
+export function offerAt(x, y) { offerPlace(x, y, title(roomAt(x, y)?.name ?? "here"), get("chosen")); }
+
+function roomAt(x, y) { return get("home")?.rooms.find((one) => isInside(one.rings, x, y)); }
+
+/** Offer what can be done at a place of the map; rooms are chosen as `before` when it was the place that was meant. */
+function offerPlace(x, y, name, before) {
+  if (!isKnown(x, y)) return;
   open(name, [
     ["Go here", () => wish("go", { x, y })],
-    ["Clean here", () => wish("clean", { mode: "spot", spot: [x, y], ...how() })],
+    ["Clean here", () => beginClean({ mode: "spot", spot: [x, y] })],
     ...playful(x, y),
   ].map(([words, act]) => [words, () => { set("chosen", before); act(); }]), [x, y]);
 }

@@ -20,8 +20,6 @@ export function askPlan(title, given, presets, isPlan, isNew, fault) {
   const dialog = $("plan-form");
   $("plan-form-title").textContent = title;
   $("plan-when").hidden = !isPlan;
-  $("plan-fault").textContent = fault;
-  $("plan-fault").hidden = !fault;
   $("plan-name").value = given.name;
   $("plan-name").readOnly = !isNew;
   if (isPlan) showWhen(given);
@@ -32,17 +30,29 @@ export function askPlan(title, given, presets, isPlan, isNew, fault) {
     if (preset) showOrder(preset.order);
   };
   $("plan-mode").onchange = showRooms;
+  dialog.querySelector("form").onsubmit = (event) => {
+    if (event.submitter?.value !== "yes" || !isPlan || $("plan-rule").value.trim() || checked("plan-days").length) return;
+    event.preventDefault();
+    showFault("Choose at least one day.");
+  };
   showOrder(given.order);
   dialog.returnValue = "";
   dialog.showModal();
-  if (fault) dialog.scrollTop = 0; // the first field has the focus, and the fault stands above it
+  showFault(fault);
   return new Promise((resolve) => {
     dialog.onclose = () => resolve(dialog.returnValue === "yes" ? entered(given, isPlan) : null);
   });
 }
 
+function showFault(fault) {
+  $("plan-fault").textContent = fault;
+  $("plan-fault").hidden = !fault;
+  if (fault) $("plan-fault").scrollIntoView(); // it stands above the first field
+}
+
 function showWhen(plan) {
   const parts = parsed(plan.rule);
+  $("plan-days").onchange = () => { $("plan-rule").value = ""; }; // else it would overrule them
   $("plan-days").replaceChildren(...Object.entries(DAYS).map(([day, name]) => box(day, name, parts?.days.includes(day))));
   $("plan-weeks").value = String(parts?.weeks ?? 1);
   $("plan-rule").value = parts ? "" : plan.rule;

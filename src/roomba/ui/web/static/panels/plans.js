@@ -3,6 +3,7 @@ import { $, button, put, span } from "../dom.js";
 import { ask, note, wish } from "../link.js";
 import { get, on } from "../store.js";
 import { title } from "../words.js";
+import { mayEnd } from "./actions.js";
 import { askName, askYes } from "./ask.js";
 import { askPlan, daysInWords } from "./plan_form.js";
 
@@ -86,7 +87,7 @@ function planLine(plan) {
 function presetLine(preset) {
   const made = entry(preset.name, orderInWords(preset.order));
   made.append(
-    button("Begin", () => wish(`presets/${encodeURIComponent(preset.name)}/begin`), `Begin ${preset.name}`),
+    button("Begin", async () => await mayEnd() && wish(`presets/${encodeURIComponent(preset.name)}/begin`), `Begin ${preset.name}`),
     button("Edit", () => edit("Preset", preset, false), `Edit ${preset.name}`),
     remover("presets", preset.name, preset),
   );

@@ -8,12 +8,14 @@ let shown = "";
 
 /** Keep the list up to date. */
 export function begin() {
-  $("queue-add").onclick = add;
-  on("state chosen mayChange", show);
+  on("state", show);
 }
 
 /** Return the rooms that are still to be cleaned, the present one first. */
-function rooms() { return get("state")?.vacuum.queue ?? []; }
+export function rooms() { return get("state")?.vacuum.queue ?? []; }
+
+/** Return the rooms that are chosen, and not yet among them. */
+export function more() { return get("chosen").filter((name) => !rooms().includes(name)); }
 
 /** Let the robot go on with these; what was so before can be had back. */
 async function change(names, text) {
@@ -23,9 +25,10 @@ async function change(names, text) {
   return true;
 }
 
-async function add() {
-  const queue = rooms(), more = get("chosen").filter((name) => !queue.includes(name));
-  if (await change([...queue, ...more], `${more.map(title).join(", ")}: to be cleaned as well.`)) set("chosen", []);
+/** Let the robot clean the chosen ones as well. */
+export async function add() {
+  const added = more();
+  if (await change([...rooms(), ...added], `${added.map(title).join(", ")}: to be cleaned as well.`)) set("chosen", []);
 }
 
 function moved(names, from, to) {
@@ -35,9 +38,8 @@ function moved(names, from, to) {
 }
 
 function show() {
-  const queue = rooms(), more = get("chosen").filter((name) => !queue.includes(name));
+  const queue = rooms();
   $("queue").hidden = queue.length === 0 || Boolean(get("state")?.replay);
-  $("queue-add").hidden = more.length === 0;
   const key = queue.join("\n");
   if (key === shown) return;
   shown = key;

@@ -1,6 +1,6 @@
 /** The time line of a recorded run: play, pause, drag, speed. */
 import { $, put } from "../dom.js";
-import { wish } from "../link.js";
+import { BASE, wish } from "../link.js";
 import { get, on } from "../store.js";
 import { duration } from "../words.js";
 
@@ -14,6 +14,7 @@ export function begin() {
   $("replay-play").onclick = playOrPause;
   $("replay-at").oninput = () => { dragged = Number($("replay-at").value); send(); };
   $("replay-speed").onchange = () => wish("replay", { speed: Number($("replay-speed").value) });
+  $("replay-back").hidden = !/\/replay\/\d+\/$/.test(BASE); // it lies within the page of a robot
   on("state", show);
 }
 

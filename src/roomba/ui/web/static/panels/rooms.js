@@ -6,12 +6,24 @@ import { title } from "../words.js";
 import { how, numbers } from "./actions.js";
 import { askName } from "./ask.js";
 
+let known = []; // the rooms as they were before
+
 /** Keep the list up to date. */
 export function begin() {
   $("rename").onclick = rename;
   $("join").onclick = join;
-  $("split").onclick = () => set("drawing", { kind: "split", room: get("chosen")[0] });
+  on("home", follow);
   on("home chosen limits", show);
+}
+
+/** Keep the choice when rooms become others: one of the same outline has another name, else say that it is gone. */
+function follow() {
+  const rooms = get("home")?.rooms ?? [], before = new Map(known.map((room) => [room.name, JSON.stringify(room.rings)]));
+  known = rooms;
+  const nowOf = (name) => rooms.find((room) => room.name === name) ?? rooms.find((room) => JSON.stringify(room.rings) === before.get(name));
+  const chosen = get("chosen"), gone = chosen.filter((name) => !nowOf(name));
+  if (chosen.length) set("chosen", chosen.map((name) => nowOf(name)?.name).filter(Boolean));
+  if (gone.length) note(`${gone.map(title).join(", ")}: no longer a room, and not chosen any more.`);
 }
 
 /** Choose a room as the next one, or leave it out again. */
@@ -45,9 +57,7 @@ async function join() {
 export function undo() { return wish("rooms/undo"); }
 
 function show() {
-  const rooms = get("home")?.rooms ?? [], names = rooms.map((room) => room.name);
-  const chosen = get("chosen").filter((name) => names.includes(name));
-  if (chosen.length !== get("chosen").length) { set("chosen", chosen); return; }
+  const rooms = get("home")?.rooms ?? [], chosen = get("chosen");
   $("rooms-hint").textContent = !get("home") ? "" : rooms.length
     ? "Tap them, here or on the map, in the order in which they shall be cleaned."
     : "There are no rooms yet: the robot finds them when its map is whole.";

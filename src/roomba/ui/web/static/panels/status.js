@@ -1,9 +1,13 @@
 /** The state line: headline, explanation, figures, progress, and how the last run ended. */
 import { $, put, span } from "../dom.js";
 import { get, on } from "../store.js";
-import { duration, explanation, headline, lastRun, title } from "../words.js";
+import { duration, explanation, headline, lastRun, nothingDone, stands, title } from "../words.js";
 
 const WORKS = ["cleaning", "undocking", "returning", "docking", "exploring"];
+const TOLD = 300_000; // ms for which it is told that a run achieved nothing
+
+let last; // how the last run ended, in words; nothing before the first state
+let failure = "", failedAt = 0; // why it achieved nothing, and when that was heard, ms
 
 /** Keep it up to date. */
 export function begin() {
@@ -12,7 +16,9 @@ export function begin() {
 
 function show() {
   const link = get("link"), state = get("state"), { body } = document;
-  const told = explanation(link, state, get("reason"), get("age"), get("seenAt"));
+  if (state) follow(state.last);
+  const failed = stands(state) && performance.now() < failedAt + TOLD ? failure : "";
+  const told = explanation(link, state, get("reason"), get("age"), get("seenAt")) || failed;
   put($("headline"), headline(link, state));
   put($("explanation"), told);
   body.dataset.link = link;
@@ -31,6 +37,15 @@ function show() {
   $("progress").firstElementChild.style.width = `${share ?? 0}%`;
   $("last").hidden = !state.last;
   if (state.last) showLast(state.last);
+}
+
+function follow(report) {
+  const text = report ? lastRun(report) : "";
+  if (last !== undefined && last !== text) {
+    failure = report ? nothingDone(report) : "";
+    failedAt = performance.now();
+  }
+  last = text;
 }
 
 function batteryTime({ battery_seconds: seconds, charges }) {

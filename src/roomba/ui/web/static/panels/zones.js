@@ -5,7 +5,7 @@ import { toFloor, view } from "../map/view.js";
 import { shifted, withCorner } from "../map/zones.js";
 import { get, on, set } from "../store.js";
 import { title, ZONES } from "../words.js";
-import { how } from "./actions.js";
+import { beginClean } from "./actions.js";
 import * as card from "./card.js";
 import { undo } from "./rooms.js";
 import * as sheet from "./sheet.js";
@@ -18,14 +18,17 @@ const FIRST = 0.5; // m; half the side of what is drawn with keys
 /** Connect the buttons, and keep the list up to date. */
 export function begin() {
   for (const [id, kind] of Object.entries(DRAWS))
-    $(id).onclick = (event) => {
-      set("zone", null);
-      set("drawing", get("drawing")?.kind === kind ? null : { kind });
-      if (event.detail === 0) $("floor").focus(); // with keys it is drawn on the map
-    };
+    $(id).onclick = (event) => draw(get("drawing")?.kind === kind ? null : { kind }, event);
+  $("split").onclick = (event) => draw({ kind: "split", room: get("chosen")[0] }, event);
   $("hint-cancel").onclick = () => set("drawing", null);
   on("home zone", showZones);
   on("drawing", showDrawing);
+}
+
+function draw(drawing, event) {
+  if (event.detail === 0) $("floor").focus(); // with keys it is drawn on the map
+  set("zone", null);
+  set("drawing", drawing);
 }
 
 /** Ask for what a draft on the map stands for. */
@@ -44,12 +47,14 @@ function offerKinds(draft) {
 
 async function make({ kind, room, from, to }) {
   if (kind === "split") {
-    if (await wish("rooms/split", { name: room, start: from, end: to })) note(`${title(room)} is split.`, undo);
+    if (!await wish("rooms/split", { name: room, start: from, end: to })) return;
+    set("chosen", []);
+    note(`${title(room)} is split.`, undo);
     return;
   }
   const [left, right] = [Math.min(from[0], to[0]), Math.max(from[0], to[0])];
   const [low, high] = [Math.min(from[1], to[1]), Math.max(from[1], to[1])];
-  if (kind === "clean") return wish("clean", { mode: "zones", zones: [[left, low, right, high]], ...how() });
+  if (kind === "clean") return beginClean({ mode: "zones", zones: [[left, low, right, high]] });
   const points = kind === "wall" ? [from, to] : [[left, low], [right, low], [right, high], [left, high]];
   const name = newName(kind);
   if (await change({ name, kind, points })) note(`${name} is drawn. Tap it to move it.`, () => wish(path(name), {}, "DELETE"));
