@@ -20,6 +20,7 @@ PNG_BEGIN = b"\x89PNG\r\n\x1a\n"
 FORMATS = ("PNG", "PPM", "BMP", "GIF", "JPEG", "TIFF", "WEBP")
 """What Pillow may read: other formats run programs, or describe what is to be drawn."""
 PNG_END = b"IEND\xaeB`\x82"
+_LFS_BEGIN: Final = b"version https://git-lfs"
 _CUT_SHORT: Final = ("truncated", "not enough image data", "Reached EOF")
 """What Pillow says of a picture whose end is missing."""
 
@@ -57,6 +58,10 @@ def _read_with_pillow(path: Path, content: bytes) -> Image:
         raise HomeError(f"{path}: expected a whole PNG, got one that is cut short; copy it again")
     if not content:
         raise HomeError(f"{path}: expected a picture, got an empty file")
+    if content.startswith(_LFS_BEGIN):
+        raise HomeError(
+            f"{path}: expected a picture, got a pointer of Git LFS to one; fetch it by git lfs pull"
+        )
     try:
         picture = PIL.Image.open(io.BytesIO(content), formats=FORMATS)
         _require_size(path, *picture.size)
@@ -65,6 +70,10 @@ def _read_with_pillow(path: Path, content: bytes) -> Image:
         raise HomeError(
             f"{path}: expected at most {MOST_CELLS} pixels, got a larger picture ({error}); cut it "
             "to the home, or make its cells larger"
+        ) from error
+    except PIL.UnidentifiedImageError as error:
+        raise HomeError(
+            f"{path}: expected a PGM or PNG picture, got something else; convert it"
         ) from error
     except (OSError, SyntaxError, ValueError) as error:
         if any(words in str(error) for words in _CUT_SHORT):

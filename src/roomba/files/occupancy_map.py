@@ -15,7 +15,7 @@ from typing import Annotated, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator
 
 from roomba.errors import HomeError
 from roomba.files.image import Image, read_image
@@ -23,8 +23,8 @@ from roomba.files.kept import write_kept
 from roomba.files.strict_yaml import YamlFile, read_yaml
 from roomba.grid import COARSEST_CELL, FINEST_CELL, FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 
-Resolution = Annotated[float, Field(ge=FINEST_CELL, le=COARSEST_CELL)]
-Origin = Annotated[float, Field(ge=-1e6, le=1e6)]
+Resolution = Annotated[float, Field(ge=FINEST_CELL, le=COARSEST_CELL, allow_inf_nan=False)]
+Origin = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
 """m; farther off the cells of a map are no longer told apart."""
 Threshold = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 
@@ -44,17 +44,16 @@ class MapDescription(BaseModel):
     origin: Annotated[list[Origin], Field(min_length=3, max_length=3)]
     negate: Annotated[int, Field(ge=0, le=1)] = 0
     occupied_thresh: Threshold = 0.65
-    free_thresh: Threshold = 0.196
+    free_thresh: Annotated[Threshold, Field(validate_default=True)] = 0.196
     mode: Literal["trinary", "scale", "raw"] = "trinary"
 
-    @model_validator(mode="after")
-    def _thresholds_in_order(self) -> MapDescription:
-        if self.free_thresh > self.occupied_thresh:
-            raise ValueError(
-                f"free_thresh ({self.free_thresh}) must not be above occupied_thresh "
-                f"({self.occupied_thresh})"
-            )
-        return self
+    @field_validator("free_thresh")
+    @classmethod
+    def _is_not_above_occupied(cls, free: float, info: ValidationInfo) -> float:
+        occupied = info.data.get("occupied_thresh", 1.0)
+        if free > occupied:
+            raise ValueError(f"expected no more than occupied_thresh, {occupied}")
+        return free
 
 
 def load_map(path: Path) -> OccupancyMap:

@@ -41,6 +41,7 @@ from roomba.recordings.readings import (
     Refused,
     Value,
 )
+from roomba.recordings.stamps import gone_on
 from roomba.recordings.untimed import spread_times, tell_nothing
 
 BASE: Final = "base_link"
@@ -112,6 +113,7 @@ class CarmenLog:
             )
         if self._broken:
             self.notes.append(f"{self._broken} lines of {path.name} cannot be read: left out")
+        self._go_on()
         self._tell_apart()
         largest = max((_largest(line.ranges) for line in self._lines), default=0.0)
         self._farthest = _ECHO * largest
@@ -197,6 +199,21 @@ class CarmenLog:
         except (ValueError, IndexError):
             self._broken += 1
         return None
+
+    def _go_on(self) -> None:
+        """Let times go on where the clock was set back, as between two drives in a file."""
+        arrivals = np.array([line.arrival for line in self._lines])
+        if tell_nothing(arrivals):
+            # Some writers have the stamp alone.
+            arrivals = np.array([line.stamp for line in self._lines])
+        went_on = gone_on(arrivals, [line.word for line in self._lines])
+        if np.array_equal(went_on, arrivals):
+            return
+        self._lines = [
+            line._replace(arrival=arrival)
+            for line, arrival in zip(self._lines, went_on.tolist(), strict=True)
+        ]
+        self.notes.append("the recorder's clock was set back on the way: the time goes on there")
 
     def _tell_apart(self) -> None:
         """Give lines times by their order if those of the scans are nearly all the same."""

@@ -7,6 +7,8 @@ recorded by the clock of the recorder. Stamps are better as long as they go on a
 from __future__ import annotations
 
 import itertools
+import math
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, fields
 from typing import Final
 
@@ -31,6 +33,10 @@ of messages that came late.
 """
 _SHORT_STEP, _LONG_STEP = 0.1, 0.9
 """Quantiles of the steps: drivers may send at once what came while they were busy."""
+_SET_BACK: Final = 1.0
+"""s; a recorder's clock that is set back by more begins another run."""
+_LASTING: Final = 10
+"""Messages; if so many are earlier than what was recorded before, the clock was set back."""
 _INFORMATIVE: Final = 0.5
 """Arrivals tell something if there are so many different ones, as a share of the stamps."""
 
@@ -68,6 +74,28 @@ class StampCounts:
         )
         wrong = ", ".join(f"{count} {what}" for count, what in told if count)
         return f"{self.messages} messages: {wrong or 'all in order'}"
+
+
+def gone_on(times: Floats, kinds: Sequence[Hashable]) -> Floats:
+    """Return times of recording, s, that go on where the clock of the recorder was set back.
+
+    They are in the order of recording, of messages of some ``kinds``. Only beside others of its own
+    kind a message is an earlier one: some logs are written kind by kind.
+    """
+    usual = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+    told = times.tolist()
+    newest: dict[Hashable, float] = {}
+    shift = 0.0
+    went_on = []
+    for first in range(len(told)):
+        next_ones = range(first, min(first + _LASTING, len(told)))
+        if len(next_ones) == _LASTING and all(
+            told[at] + shift < newest.get(kinds[at], -math.inf) - _SET_BACK for at in next_ones
+        ):
+            shift = max(newest.values()) + usual - told[first]
+        went_on.append(told[first] + shift)
+        newest[kinds[first]] = max(newest.get(kinds[first], -math.inf), went_on[-1])
+    return np.array(went_on, np.float64)
 
 
 def delay_of(stamps: Floats, arrivals: Floats) -> float | None:

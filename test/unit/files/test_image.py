@@ -51,3 +51,20 @@ def test_broken_pixels_are_refused(tmp_path: Path) -> None:
     path.write_bytes(content)
     with pytest.raises(HomeError, match="PGM or PNG"):
         read_image(path)
+
+
+def test_a_pointer_of_git_lfs_is_told_by_its_name(tmp_path: Path) -> None:
+    path = tmp_path / "plan.pgm"
+    path.write_text("version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n")
+    with pytest.raises(HomeError, match=r"got a pointer of Git LFS.*git lfs pull"):
+        read_image(path)
+
+
+def test_what_is_no_picture_is_refused_without_words_of_the_program(tmp_path: Path) -> None:
+    path = tmp_path / "plan.pgm"
+    path.write_text("Once upon a time")
+    with pytest.raises(HomeError) as refused:
+        read_image(path)
+    assert str(refused.value) == (
+        f"{path}: expected a PGM or PNG picture, got something else; convert it"
+    )

@@ -113,7 +113,7 @@ def test_png_colours_are_averaged_and_clear_is_unknown(tmp_path: Path) -> None:
     [
         (HEADER.replace("0.0]", "0.5]"), 3, "yaw"),
         (HEADER.replace("0.05", "-0.05"), 2, "resolution"),
-        (HEADER.replace("0.05", ".nan"), 2, "resolution"),
+        (HEADER.replace("0.05", ".nan"), 2, "finite"),
         (HEADER.replace("0.05", "1e6"), 2, "1e6"),
         (HEADER.replace("0.05", "1.0e-9"), 2, "1e-09"),
         (HEADER.replace("0.05", "1.0e+300"), 2, "1e+300"),
@@ -124,7 +124,7 @@ def test_png_colours_are_averaged_and_clear_is_unknown(tmp_path: Path) -> None:
         (HEADER.replace("map.pgm", "none.pgm"), 1, "none.pgm"),
         (HEADER + "mode: trinry\n", 4, "trinry"),
         (HEADER + "negate: 7\n", 4, "negate"),
-        (HEADER + "free_thresh: 0.7\n", 1, "free_thresh"),
+        (HEADER + "free_thresh: 0.7\n", 4, "no more than occupied_thresh"),
         (HEADER + "resolution: 0.1\n", 4, "again"),
         (HEADER + "negate: [\n", 5, "YAML"),
         ("- a\n- b\n", 1, "keys and values"),

@@ -12,6 +12,7 @@ from fixtures.drives.made_logs import LASER, NO_ECHO, drive, write_carmen
 from roomba.geometry import Pose
 from roomba.perception.matching.mounts import Mount, Mounts
 from roomba.recordings.carmen import BASE, CarmenLog
+from roomba.recordings.drive import LoggedDrive
 from roomba.recordings.log import Channel
 from roomba.recordings.readings import Kind, LidarScan, LogError, Odometry, Refused, Value
 
@@ -210,3 +211,22 @@ def test_stamps_that_differ_count_even_if_no_time_of_recording_does(tmp_path: Pa
     entries = list(log.entries([channel(log, "FLASER", Kind.SCAN)]))
     assert [entry.stamp for entry in entries] == [12.5 + x for x in range(5)]
     assert not log.notes
+
+
+@pytest.mark.parametrize("has_arrivals", [True, False], ids=["recorded", "stamps alone"])
+@pytest.mark.parametrize("begin", [0.5, 1000.0], ids=["the same times", "from long before"])
+def test_of_two_drives_in_a_file_the_second_goes_on_after_the_first(
+    tmp_path: Path, begin: float, has_arrivals: bool
+) -> None:
+    times = [1000.0 + 0.5 * at for at in range(40)] + [begin + 0.5 * at for at in range(40)]
+    made = "FLASER 3 1.0 2.0 81.83 0 0 0 0 0 0 {stamp} made {arrival}"
+    lines = [made.format(stamp=time, arrival=time if has_arrivals else 0.0) for time in times]
+    (tmp_path / "made.log").write_text("\n".join(lines), "utf-8")
+    with LoggedDrive([tmp_path / "made.log"]) as both:
+        read = [each.stamp for each in both.readings() if isinstance(each.value, LidarScan)]
+        assert read == sorted(read)
+        assert np.diff(read) == pytest.approx(np.full(79, 0.5))
+        assert both.counts.out_of_order == 0
+        assert both.notes == [
+            "the recorder's clock was set back on the way: the time goes on there"
+        ]

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.recordings.stamps import StampCounts, delay_of, in_order, mended
+from roomba.recordings.stamps import StampCounts, delay_of, gone_on, in_order, mended
 
 Floats = NDArray[np.float64]
 
@@ -201,3 +201,28 @@ def test_counts_are_told_in_a_line() -> None:
         "(shifted back), 3 of a coarse clock (by the time of recording), 4 out of order (sorted), "
         "6 of a time that another one has (left out)"
     )
+
+
+def test_times_go_on_where_a_recorders_clock_was_set_back() -> None:
+    once = 3.0 + PERIOD * np.arange(50)
+    times = np.concatenate((once, once, once - 20.0))
+    kinds = ["odometry", "scan"] * 75
+    went_on = 3.0 + PERIOD * np.arange(150)
+    assert gone_on(times, kinds) == pytest.approx(went_on)
+
+
+def test_a_kind_that_comes_first_after_a_clock_was_set_back_begins_the_other_run() -> None:
+    times = np.concatenate((np.arange(30.0), np.arange(30.0)))
+    kinds = ["odometry"] * 29 + ["scan", "scan"] + ["odometry"] * 29
+    assert gone_on(times, kinds) == pytest.approx(np.arange(60.0))
+
+
+@pytest.mark.parametrize("late", [1, 9])
+def test_what_comes_late_sets_no_clock_back(late: int) -> None:
+    times = np.concatenate((np.arange(20.0, 40.0), np.arange(20.0 - late, 20.0), [40.0]))
+    assert np.array_equal(gone_on(times, ["scan"] * len(times)), times)
+
+
+def test_kinds_that_are_written_one_after_the_other_set_no_clock_back() -> None:
+    times = np.concatenate((np.arange(50.0), np.arange(50.0)))
+    assert np.array_equal(gone_on(times, ["odometry"] * 50 + ["scan"] * 50), times)

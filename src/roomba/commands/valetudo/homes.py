@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import shapely
 import yaml
 
 from roomba.commands.trials.homes import rooms_of
+from roomba.commands.trials.unreached import Unreached, unreached_of
 from roomba.commands.trials.zones import ZONES_NAME, zones_of_home
 from roomba.configuration.body import BodyConfig
 from roomba.files.atomic import write_whole
@@ -17,12 +18,19 @@ from roomba.files.home_layer import LAYER_NAME, MAP_NAME
 from roomba.files.occupancy_map import save_map
 from roomba.files.shipped import HOMES
 from roomba.files.valetudo import ValetudoHome
+from roomba.geometry import Pose
+from roomba.grid import OccupancyMap
 from roomba.perception.rooms.outlines import outline_of
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.storage.zones import save_zones
 from roomba.world.home.home import Home
+from roomba.world.home.raster import Mask, largest_component, where_body_fits
+from roomba.world.layers.automatic_station import automatic_station
+from roomba.world.layers.definite_map import definite_map
 from roomba.world.layers.layer import load_home
 
+_LEAST_PART: Final = 0.5
+"""m²; no robot lives on less floor: it is a pocket between furniture."""
 _COMMENT = "# Imported from a map of Valetudo. Lengths in m, map frame, directions in rad.\n"
 
 
@@ -35,12 +43,22 @@ def write_home(found: ValetudoHome, folder: Path) -> Home:
     zones = _zones_of(found)
     folder.mkdir(parents=True, exist_ok=True)
     save_map(found.occupancy, folder / MAP_NAME)
+    body = BodyConfig()
     layer = yaml.safe_dump(
-        _layer_of(found), sort_keys=False, allow_unicode=True, default_flow_style=None, width=110
+        _layer_of(found, body),
+        sort_keys=False,
+        allow_unicode=True,
+        default_flow_style=None,
+        width=110,
     )
     write_whole(folder / LAYER_NAME, f"{_COMMENT}{layer}".encode())
     save_zones(zones, found.occupancy, folder / ZONES_NAME)
-    return load_home(str(folder), HOMES, BodyConfig())
+    return load_home(str(folder), HOMES, body)
+
+
+def unreached_in(home: Home, found: ValetudoHome) -> Unreached:
+    """Return the floor of an imported home to which no way leads from its station."""
+    return unreached_of(home, _zones_of(found))
 
 
 def read_home(name: str) -> ValetudoHome:
@@ -57,10 +75,12 @@ def read_home(name: str) -> ValetudoHome:
     )
 
 
-def _layer_of(found: ValetudoHome) -> dict[str, Any]:
+def _layer_of(found: ValetudoHome, body: BodyConfig) -> dict[str, Any]:
     layer: dict[str, Any] = {}
-    if found.station is not None and found.has_own_frame:
-        at = found.station
+    at = found.station
+    if at is not None and not found.has_own_frame:
+        at = _station_by_charger(found.occupancy, body.radius)
+    if at is not None:
         layer["station"] = {"x": round(at.x, 4), "y": round(at.y, 4), "facing": round(at.theta, 6)}
     rooms = []
     for name, mask in found.rooms:
@@ -73,6 +93,28 @@ def _layer_of(found: ValetudoHome) -> dict[str, Any]:
     if rooms:
         layer["rooms"] = rooms
     return layer
+
+
+def _station_by_charger(occupancy: OccupancyMap, radius: float) -> Pose | None:
+    """Return where to dock in the part of the floor by the charger, which is at (0, 0).
+
+    None where that is the largest part: there each body finds a place of its own.
+    """
+    floor = definite_map(occupancy)
+    fits = where_body_fits(floor.frame, floor.solid, radius)
+    least = _LEAST_PART / floor.frame.resolution**2
+    parts: list[Mask] = []
+    left = fits
+    while np.count_nonzero(part := largest_component(left)) >= least:
+        parts.append(part)
+        left = left & ~part
+    if not parts:
+        return None
+    away = [np.hypot(*floor.frame.centres(*np.nonzero(part))).min() for part in parts]
+    nearest = int(np.argmin(away))
+    if nearest == 0:
+        return None
+    return automatic_station(floor, floor.solid | (fits & ~parts[nearest]), radius)
 
 
 def _zones_of(found: ValetudoHome) -> Zones:

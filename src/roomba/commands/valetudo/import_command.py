@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from roomba.commands.spelling import spelled
-from roomba.commands.valetudo.homes import write_home
+from roomba.commands.valetudo.homes import unreached_in, write_home
 from roomba.commands.valetudo.options import parser_of, reason_of
 from roomba.errors import RoombaError
 from roomba.files.bounded import read_text
@@ -37,7 +37,9 @@ def main(arguments: list[str] | None = None) -> int:
     zones = len(found.no_go) + len(found.walls)
     print(
         f"{folder}: {home.map.free_area:.1f} m² of floor, {len(home.rooms)} rooms, {zones} zones, "
-        f"station at ({home.station.x:.2f}, {home.station.y:.2f})\n"
-        f"to clean it: {spelled('sim')} --home {folder}"
+        f"station at ({home.station.x:.2f}, {home.station.y:.2f})"
     )
+    if words := unreached_in(home, found).words:
+        print(words)
+    print(f"to clean it: {spelled('sim')} --home {folder}")
     return 0

@@ -1,8 +1,9 @@
 """What the map of a file says of a floor, for certain: each cell is floor or keeps the body out.
 
 Maps of map_server tell how likely a cell is occupied, or how much of it is, leave specks unknown
-that no beam went through, and may end in the middle of free floor. A world has none of this, and
-the robot in it is given the very map of which its world is made.
+that no beam went through, may end in the middle of free floor, and may be pictures many times as
+large as what they show. A world has none of this, and the robot in it is given the very map of
+which its world is made.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import math
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.raster.regions import dilated, numbered_regions
@@ -19,6 +21,8 @@ SPECK: Final = 0.01
 """m²; no larger unknown spot with free floor all around it is floor as well."""
 FENCE: Final = 0.1
 """m; thickness of a wall where a map ends: what a lidar sees a little too far lies in it."""
+MARGIN: Final = 1.0
+"""m; so much of what is not known is kept around what is: it is as solid as what lies outside."""
 _HARDLY: Final = 10
 """%; what is less likely solid, or less of it, is as good as not known."""
 _AROUND: Final = np.ones((3, 3), np.bool_)
@@ -27,7 +31,30 @@ _AROUND: Final = np.ones((3, 3), np.bool_)
 
 def definite_map(map: OccupancyMap) -> OccupancyMap:
     """Return a map of free, occupied and unknown cells whose floor has an end on every side."""
-    return _decided(_without_specks(_fenced(map)))
+    return _decided(_without_specks(_fenced(_cropped(map))))
+
+
+def _cropped(map: OccupancyMap) -> OccupancyMap:
+    """Return what is known of a map, and a margin."""
+    known, frame = map.values != UNKNOWN, map.frame
+    if not known.any():
+        return map
+    margin = math.ceil(MARGIN / frame.resolution - 1e-9)
+    rows, columns = (_around(known.any(axis=axis), margin) for axis in (1, 0))
+    values = np.ascontiguousarray(map.values[rows, columns])
+    around = GridFrame(
+        frame.resolution,
+        frame.origin_x + columns.start * frame.resolution,
+        frame.origin_y + rows.start * frame.resolution,
+        *values.shape,
+    )
+    return OccupancyMap(around, values)
+
+
+def _around(known: NDArray[np.bool_], margin: int) -> slice:
+    """Return where a row of cells is known, and a margin at both ends."""
+    cells = np.flatnonzero(known)
+    return slice(max(int(cells[0]) - margin, 0), int(cells[-1]) + 1 + margin)
 
 
 def _decided(map: OccupancyMap) -> OccupancyMap:

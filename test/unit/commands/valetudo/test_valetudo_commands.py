@@ -14,9 +14,11 @@ from roomba.commands.trials.trial import Trial
 from roomba.commands.valetudo.export_command import main as export
 from roomba.commands.valetudo.homes import read_home, write_home
 from roomba.commands.valetudo.import_command import main as bring
+from roomba.files.shipped import HOMES
 from roomba.files.valetudo import ValetudoHome, parse
 from roomba.geometry import Pose
 from roomba.grid import FREE
+from roomba.world.layers.layer import load_home
 
 ROOM = 400
 """cm; the side of a room, walls included."""
@@ -77,6 +79,23 @@ def test_a_foreign_home_is_cleaned_in_simulation(
     x, y = 6.9 - 0.25, 2.0 - 0.6
     away = np.hypot(run.trajectory[:, 1] - x, run.trajectory[:, 2] - y)
     assert away.min() > 0.4 + run.robot.body.radius - 0.05
+
+
+def test_a_home_whose_door_is_shut_is_that_of_the_charger_and_the_rest_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = foreign(tmp_path / "map.json")
+    told = json.loads(file.read_text("utf-8"))
+    side = ROOM // 5
+    # Shut are the door and half of the room of the charger, which is the smallest part.
+    shut = [at for x in (side // 2, side) for y in range(side) for at in (x, y)]
+    told["layers"].append({"type": "wall", "pixels": shut})
+    file.write_text(json.dumps(told), "utf-8")
+    folder = tmp_path / "home"
+    assert bring(["valetudo", str(file), "--out", str(folder)]) == 0
+    assert "cannot be reached from the station" in capsys.readouterr().out
+    station = load_home(str(folder), HOMES).station
+    assert station.x < 0.5 * ROOM / 100.0 - 0.25
 
 
 def test_a_home_comes_back_as_it_was_exported(tmp_path: Path) -> None:

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from roomba.commands.trials.runs import run_trial
 from roomba.commands.trials.trial import Trial
+from roomba.files.occupancy_map import save_map
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
-from roomba.world.layers.definite_map import FENCE, SPECK, definite_map
+from roomba.world.layers.definite_map import FENCE, MARGIN, SPECK, definite_map
 from roomba.world.layers.layer import load_home
 
 SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
@@ -164,3 +165,37 @@ def test_small_unknown_spots_are_floor_where_only_floor_is_beside_them(inside: V
         if len(spot) * CELL**2 <= SPECK + 1e-9 and OCCUPIED not in beside:
             wanted[tuple(np.transpose(spot))] = FREE
     assert np.array_equal(definite_map(map_of(values)).values, wanted)
+
+
+@pytest.mark.parametrize("rim", [5, 300])
+def test_of_what_is_not_known_around_a_home_a_metre_is_kept(rim: int) -> None:
+    """A picture may be many times as large as the home, and each cell of it costs memory."""
+    inside = room()[3:-3, 3:-3]
+    large = map_of(np.pad(inside, ((rim, 2 * rim), (3 * rim, rim)), constant_values=UNKNOWN))
+    found = definite_map(large)
+    rows, columns = inside.shape
+    kept = [min(times * rim, round(MARGIN / CELL)) for times in (1, 2, 3, 1)]
+    assert found.frame.shape == (rows + kept[0] + kept[1], columns + kept[2] + kept[3])
+    # Each place has what it had before.
+    for row, column in np.argwhere(large.values != UNKNOWN)[::17].tolist():
+        here = found.frame.cell_of(*large.frame.centre_of(row, column))
+        assert found.values[here] == large.values[row, column]
+    assert np.count_nonzero(found.values != UNKNOWN) == inside.size
+
+
+def test_a_home_in_a_large_picture_is_the_same_home(tmp_path: Path) -> None:
+    homes = []
+    for rim in (20, 200):
+        folder = tmp_path / str(rim)
+        folder.mkdir()
+        values = np.pad(room()[3:-3, 3:-3], rim, constant_values=UNKNOWN)
+        frame = GridFrame(CELL, -1.0 - rim * CELL, 2.0 - rim * CELL, *values.shape)
+        save_map(OccupancyMap(frame, values), folder / "map.yaml")
+        homes.append(load_home(str(folder), tmp_path))
+    small, large = homes
+    assert (large.frame.rows, large.frame.columns) == (small.frame.rows, small.frame.columns)
+    assert large.frame.extent == pytest.approx(small.frame.extent)
+    assert np.array_equal(large.map.values, small.map.values)
+    assert (large.station.x, large.station.y, large.station.theta) == pytest.approx(
+        (small.station.x, small.station.y, small.station.theta)
+    )

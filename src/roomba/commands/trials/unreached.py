@@ -1,0 +1,72 @@
+"""Floor that no way leads to from the station: it is neither cleaned nor missed, but told."""
+
+from __future__ import annotations
+
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from roomba.commands.trials.homes import rooms_of
+from roomba.commands.trials.runs import docking_config, mission_config, robot_config_of
+from roomba.commands.trials.trial import Trial
+from roomba.mission.inputs.planning_context import PlanningContext
+from roomba.perception.rooms.zones import Zones
+from roomba.world.home.home import Home
+from roomba.world.home.raster import largest_component
+
+LEAST_PIECE: Final = 1.0
+"""m²; no room is smaller, and what is lies between or behind furniture: it is not told."""
+
+
+class Unreached(NamedTuple):
+    """How much floor that is, m², and in which rooms, if the home has any."""
+
+    area: float = 0.0
+    rooms: tuple[str, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """It in a line; nothing if there is none."""
+        if not self.area:
+            return ""
+        count = len(self.rooms)
+        where = f" in {self.rooms[0] if count == 1 else f'{count} rooms'}" if count else ""
+        return f"{self.area:.1f} m² of floor{where} cannot be reached from the station"
+
+    def as_json(self) -> dict[str, Any]:
+        """Return plain values; the area to 1 cm2."""
+        return {"area_m2": round(self.area, 4), "rooms": list(self.rooms)}
+
+
+NOTHING: Final = Unreached()
+
+
+def unreached_of(home: Home, zones: Zones) -> Unreached:
+    """Return that of a home with zones for the shipped robot, as of :func:`unreached_in`."""
+    robot = robot_config_of(Trial())
+    mission, docking = mission_config(robot), docking_config()
+    rooms = rooms_of(home)
+    return unreached_in(
+        PlanningContext(home.map, home.station, robot, mission, docking, rooms, zones)
+    )
+
+
+def unreached_in(context: PlanningContext) -> Unreached:
+    """Return what the tool could sweep from anywhere on the robot's map, but not from its station.
+
+    What lies in a zone that is to be kept out of does not count, what lies behind it does.
+    """
+    floor = context.floor
+    cell = floor.frame.resolution**2
+    left = floor.swept_from(floor.fits) & ~context.coverable()
+    unreached = np.zeros_like(left)
+    while np.count_nonzero(piece := largest_component(left)) * cell >= LEAST_PIECE:
+        unreached |= piece
+        left &= ~piece
+    area = float(np.count_nonzero(unreached)) * cell
+    if context.rooms is None or not area:
+        return Unreached(area)
+    names = np.array(context.rooms.names)
+    labels = context.fine(context.rooms.labels)[unreached]
+    counts = np.bincount(labels, minlength=len(names) + 1)[1:]
+    return Unreached(area, tuple(names[counts * cell >= LEAST_PIECE].tolist()))
