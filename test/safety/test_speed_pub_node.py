@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -18,6 +19,7 @@ from roomba_robot.msg import BodyState, Bumper, Cliff, WheelDrop
 from roomba_robot.srv import EmergencyStop, EmergencyStopRequest
 from std_msgs.msg import Float32, String
 
+from roomba.files.kept import sealed, unsealed
 from roomba.geometry import STANDSTILL, Twist
 from roomba_ros.convert.common import twist_message, twist_of
 from roomba_ros.speed import speed_pub_node
@@ -69,9 +71,16 @@ class Rig:
 
 
 @pytest.fixture
-def rig() -> Iterator[Rig]:
+def rig(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Rig]:
+    monkeypatch.setenv("ROS_HOME", str(tmp_path))
     with Lockstep().installed() as graph:
         yield Rig(graph)
+
+
+@pytest.fixture
+def stop_file(tmp_path: Path) -> Path:
+    """Where the robot keeps its emergency stop."""
+    return tmp_path / "roomba_robot" / "emergency_stop" / "robot.txt"
 
 
 def test_a_command_is_passed_on_at_once_and_then_at_ticks_until_it_is_old(rig: Rig) -> None:
@@ -385,6 +394,111 @@ def test_a_master_that_is_gone_does_not_keep_it_from_holding(
     assert "refused" in answer
     rig.told("cmd_vel", twist_message(AHEAD))
     assert rig.ticked() == [STANDSTILL]
+
+
+def test_the_stop_is_on_the_disk_before_the_answer_and_gone_before_that_of_its_release(
+    rig: Rig, stop_file: Path
+) -> None:
+    rig.start()
+    assert not stop_file.exists()
+    request = EmergencyStopRequest(True, "smoke")
+    assert rig.graph.call("/emergency_stop", request).message == "the drive is held: smoke"
+    assert unsealed(stop_file.read_bytes()) == b"smoke"
+    rig.stop(engage=False)
+    assert not stop_file.exists()
+
+
+def test_a_robot_that_was_killed_holds_again(rig: Rig, stop_file: Path) -> None:
+    stop_file.parent.mkdir(parents=True)
+    stop_file.write_bytes(sealed(b"smoke"))
+    rig.start()
+    assert rig.held == ["smoke"]
+    assert rig.graph.logged == ["the emergency stop still holds the drive: smoke"]
+    assert rospy.get_param(EMERGENCY_PARAMETER) == "smoke"
+    rig.told("cmd_vel", twist_message(AHEAD))
+    assert rig.ticked() == [STANDSTILL]
+    assert rig.stop(engage=False) == "the drive is free again"
+    assert not stop_file.exists()
+
+
+def test_what_the_disk_says_comes_before_what_the_master_says(rig: Rig, stop_file: Path) -> None:
+    stop_file.parent.mkdir(parents=True)
+    stop_file.write_bytes(sealed(b"fire"))
+    rig.start(emergency_stop="smoke")
+    assert rig.held == ["fire"]
+
+
+def test_what_the_master_alone_has_is_kept_on_the_disk(rig: Rig, stop_file: Path) -> None:
+    rig.start(emergency_stop="smoke")
+    assert unsealed(stop_file.read_bytes()) == b"smoke"
+
+
+def test_a_damaged_file_holds_and_says_so(rig: Rig, stop_file: Path) -> None:
+    stop_file.parent.mkdir(parents=True)
+    stop_file.write_bytes(b"")
+    rig.start()
+    (held,) = rig.held
+    assert held.startswith(f"it counts as held, as {stop_file} is damaged: ")
+    assert rig.graph.logged == [f"the emergency stop still holds the drive: {held}"]
+    rig.told("cmd_vel", twist_message(AHEAD))
+    assert rig.ticked() == [STANDSTILL]
+
+
+def test_robots_in_namespaces_keep_their_own(
+    rig: Rig, stop_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rospy, "get_namespace", lambda: "/home/X/")
+    rig.start()
+    rig.stop("smoke")
+    assert unsealed((stop_file.parent / "home" / "X.txt").read_bytes()) == b"smoke"
+
+
+def test_a_disk_that_refuses_does_not_keep_it_from_holding_and_is_told(
+    rig: Rig, stop_file: Path
+) -> None:
+    stop_file.parent.parent.mkdir()
+    stop_file.parent.write_bytes(b"no folder")
+    rig.start()
+    assert rig.held == [""]
+    rig.told("cmd_vel", twist_message(AHEAD))
+    forgotten = "it is forgotten if the robot is killed, as the disk refused: "
+    answer = rig.stop("smoke")
+    assert answer.startswith(f"the drive is held: smoke; but {forgotten}")
+    assert rig.held == ["", "smoke", answer.removeprefix("the drive is held: ")]
+    assert rig.graph.logged[0] == "emergency stop: smoke"
+    assert rig.graph.logged[1].startswith(f"emergency stop: {forgotten}")
+    assert rospy.get_param(EMERGENCY_PARAMETER) == "smoke"
+    assert rig.ticked() == [STANDSTILL]
+    assert rig.stop(engage=False) == "the drive is free again"
+
+
+def test_disk_and_master_that_both_refuse_are_both_told(
+    rig: Rig, stop_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stop_file.parent.parent.mkdir()
+    stop_file.parent.write_bytes(b"no folder")
+    rig.start()
+
+    def gone(*_: object) -> None:
+        raise ConnectionRefusedError(111, "refused")
+
+    monkeypatch.setattr(rospy, "set_param", gone)
+    answer = rig.stop("smoke")
+    assert answer.startswith("the drive is held: smoke; but it is forgotten if the robot is killed")
+    assert "; but the master does not keep that, should this node end: " in answer
+
+
+def test_a_file_that_cannot_be_removed_does_not_keep_it_from_being_released(
+    rig: Rig, stop_file: Path
+) -> None:
+    stop_file.mkdir(parents=True)
+    rig.start()
+    before = len(rig.held)
+    answer = rig.stop(engage=False)
+    again = "it holds again if the robot is killed, as the disk refused: "
+    assert answer.startswith(f"the drive is free again; but {again}")
+    assert rig.held[before:] == [""]
+    assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
 
 
 def odometry(linear: float) -> Odometry:

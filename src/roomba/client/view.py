@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.client.protocol import CleanReport, ErrandOutcome, RequestRefusedError, VacuumSnapshot
+from roomba.geometry import Twist
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.vocabulary import (
     LONGEST_NAME,
@@ -234,6 +235,20 @@ class PageLimits:
     camera_angles: tuple[float, ...] = ()
     play: tuple[str, ...] = ()
 
+    def clamped(self, linear: float, angular: float) -> Twist:
+        """Return the twist of a hand, m/s and rad/s, as fast as the robot can drive at most."""
+        return Twist(
+            min(max(linear, -self.max_speed), self.max_speed),
+            min(max(angular, -self.max_angular_speed), self.max_angular_speed),
+        )
+
+    def require_speed(self, speed: float) -> None:
+        """Raise RequestRefusedError for a top speed, m/s, that cannot be set."""
+        if not self.min_speed <= speed <= self.max_speed:
+            raise RequestRefusedError(
+                f"expected a speed from {self.min_speed:g} to {self.max_speed:g} m/s, got {speed:g}"
+            )
+
 
 @dataclass(frozen=True, slots=True)
 class CleanOrder:
@@ -267,6 +282,11 @@ def battery_seconds(level: float, rate: float) -> float:
     if rate < 0.0:
         return level / -rate
     return (1.0 - level) / rate if rate > 0.0 and level < 1.0 else math.nan
+
+
+def battery_fills(level: float, *, is_docked: bool) -> bool:
+    """Return whether current comes into a battery of a level, 0..1: on the station, until full."""
+    return is_docked and level < 1.0
 
 
 def camera_angles(max_pan: float) -> tuple[float, ...]:

@@ -11,6 +11,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from roomba.geometry import Pose
+
 STANDARD_OUTPUT: Final = "-"
 """In place of a file's name."""
 _WIDTH: Final = 120
@@ -49,6 +51,11 @@ def tell_tables(tables: Iterable[Table], figures: str | None, *, quiet: bool) ->
 def told_width(console: Console) -> int:
     """Return how many columns a table may take: those of the terminal, if it goes to one."""
     return console.width if console.is_terminal else _WIDTH
+
+
+def pose_as_json(pose: Pose) -> dict[str, float]:
+    """Return a pose as figures: x and y, m, and theta, rad."""
+    return {"x": round(pose.x, 4), "y": round(pose.y, 4), "theta": round(pose.theta, 6)}
 
 
 def write_json(target: str, values: dict[str, Any]) -> None:

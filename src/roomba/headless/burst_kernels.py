@@ -17,7 +17,7 @@ from roomba.compilation import entry, inner_part
 from roomba.control.tracking_kernels import along_of, off_path, track
 from roomba.headless.burst_place_kernels import believed, follow
 from roomba.headless.burst_state import Drive, Floats, Floor, PlaceParts, Rows, Sight, World
-from roomba.headless.rows import GYRO, TIME
+from roomba.headless.rows import BELIEVED, GYRO, ODOMETRY, TIME, TRUE
 from roomba.mission.cleaning.dirty.watch_kernels import may_be_dirty
 from roomba.mission.driving.progress_kernels import mark_progress
 from roomba.mission.driving.way_ahead_kernels import is_blocked
@@ -199,7 +199,7 @@ def write_down(
 ) -> None:
     """Fill a row with what is so after a tick."""
     row[TIME] = now
-    row[1], row[2], row[3] = true
-    row[4], row[5], row[6] = x, y, theta
-    row[7], row[8], row[9] = robot.odometry_x, robot.odometry_y, robot.odometry_theta
+    row[TRUE] = true
+    row[BELIEVED] = x, y, theta
+    row[ODOMETRY] = robot.odometry_x, robot.odometry_y, robot.odometry_theta
     row[GYRO] = robot.gyro

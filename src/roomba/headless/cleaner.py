@@ -21,6 +21,7 @@ from roomba.grid import OccupancyMap
 from roomba.headless.body import SimulatedBody
 from roomba.headless.burst import LONGEST_BURST, Burst
 from roomba.headless.embodied import Embodied
+from roomba.headless.plan_watch import PlanWatch
 from roomba.headless.records import (
     CleanRecord,
     ExploreRecord,
@@ -87,6 +88,7 @@ class HeadlessMission(Embodied):
         robot, self.config = robot or SimulatedRobotConfig(), mission or MissionConfig()
         known = known or home.map
         body = SimulatedBody(home, robot, seed, max_speed, start)
+        self._planned = PlanWatch()
         brain = Brain(
             known,
             home.station,
@@ -98,6 +100,7 @@ class HeadlessMission(Embodied):
             start=start,
             max_speed=max_speed,
             stages=stages,
+            plan_watch=self._planned,
         )
         super().__init__(body, brain, robot)
         self.whole_at: float | None = None
@@ -121,6 +124,7 @@ class HeadlessMission(Embodied):
         """Let time pass until the clean under way has a result."""
         began, hits = self.seen.time, self._hits
         distance, turning = self._driven
+        plans, planning = self._planned.plans, self._planned.seconds
         while (result := self.mission.take_result()) is None:
             require_end(self.seen.time - began, self._longest)
             self.advance()
@@ -132,8 +136,8 @@ class HeadlessMission(Embodied):
             self._hits - hits,
             now_distance - distance,
             now_turning - turning,
-            self.context.planning_time,
-            self.context.plans,
+            self._planned.seconds - planning,
+            self._planned.plans - plans,
             self.mission.context.occupancy,
             self.seen.time if self.whole_at is None else self.whole_at,
         )

@@ -32,6 +32,7 @@ _OPTIONS: Final = {Kind.SCAN: "--scan", Kind.ODOMETRY: "--odom", Kind.GYRO: "--i
 class Wanted:
     """What is to be read: names of channels, and where the lidar is on the robot; None: see.
 
+    ``laser_is_upside_down`` says how it hangs where ``laser`` says where; None: as recorded.
     ``beside`` are the kinds that are read, too, where they are there. A drive without odometry is
     refused if it ``needs_odometry``.
     """
@@ -40,6 +41,7 @@ class Wanted:
     odometry: str | None = None
     gyro: str | None = None
     laser: Pose | None = None
+    laser_is_upside_down: bool | None = None
     beside: frozenset[Kind] = frozenset({Kind.TRUTH})
     needs_odometry: bool = True
 

@@ -11,11 +11,19 @@ from typing import Final
 
 import numpy as np
 
-from roomba.perception.matching.mounts import Mount, Mounts
+from roomba.perception.matching.mounts import Mount
 from roomba.recordings.choice import Chosen, Wanted, chosen
 from roomba.recordings.log import Channel, Frames, Log
+from roomba.recordings.mounting import BODIES, Mounting
 from roomba.recordings.opening import open_log
-from roomba.recordings.readings import UNUSABLE_SCANS, Kind, Reading, Refused, Value
+from roomba.recordings.readings import (
+    UNUSABLE_SCANS,
+    Kind,
+    LidarScan,
+    Reading,
+    Refused,
+    Value,
+)
 from roomba.recordings.stamps import (
     CLOCKS,
     Floats,
@@ -25,12 +33,11 @@ from roomba.recordings.stamps import (
     in_order,
     mended,
 )
+from roomba.recordings.sweeps import Sweep, SweptScans
 
 _GAP: Final = 1.0
 """s between two logs from which it is told."""
 _ODOMETRY: Final = "odom"
-_BODIES: Final = ("base_link", "base_footprint", "base")
-"""Frames of a robot's body that lie on each other as seen from above."""
 
 
 class LoggedDrive:
@@ -48,7 +55,7 @@ class LoggedDrive:
         """How many messages of what could not be used."""
         self._reasons: dict[str, str] = {}
         self._remarks: list[str] = []
-        self._laser = wanted.laser
+        self._sweep: Sweep | None = None
         with contextlib.ExitStack() as stack:
             self._logs = [_entered(stack, path) for path in paths]
             channels = _together(self._logs)
@@ -56,8 +63,7 @@ class LoggedDrive:
             """Of all channels, also of those that are not read."""
             self._chosen = chosen(paths, channels, wanted)
             self._frames = self._told_frames()
-            self._mounts = self._known_mounts()
-            self._found: dict[str, Mount] = {}
+            self._mounting = Mounting(self._logs, self._frames.body, wanted)
             self._times, self._arrivals, self._owners, self._order = self._timed()
             self._stack = stack.pop_all()
 
@@ -87,7 +93,25 @@ class LoggedDrive:
             for what, count in self.refused.items()
         ]
         of_logs = [note for log in self._logs for note in log.notes]
-        return [*self._chosen.notes, *self._remarks, *of_logs, *left_out]
+        own = [*self._remarks, *self._mounting.notes]
+        return [*self._chosen.notes, *own, *of_logs, *left_out]
+
+    @property
+    def is_mount_told(self) -> bool:
+        """Whether ``--laser`` or a recorded transform told where each lidar is that was read."""
+        return self._mounting.is_told
+
+    def take_mount(self, shown: Mount) -> None:
+        """From now on read scans as of a lidar that is so mounted, where nothing tells."""
+        self._mounting.take(shown)
+
+    def take_sweep(self, sweep: Sweep) -> None:
+        """From now on read scans as of a lidar that sweeps so, whatever its driver tells."""
+        self._sweep = sweep
+
+    def remark(self, remark: str) -> None:
+        """Add a note."""
+        self._remarks.append(remark)
 
     @property
     def refused_scans(self) -> dict[str, int]:
@@ -104,11 +128,13 @@ class LoggedDrive:
 
     def readings(self) -> Iterator[Reading]:
         """Yield what was measured, in the order of time; of a time odometry before scans."""
+        self.refused.clear()
+        swept = None if self._sweep is None else SweptScans(self._sweep)
         wanted = np.zeros(len(self._times), np.bool_)
         wanted[self._order] = True
         first = np.searchsorted(self._owners, np.arange(len(self._logs) + 1))
         streams = [
-            log.values(self._channels_of(log), wanted[begin:end], self._mount_of)
+            log.values(self._channels_of(log), wanted[begin:end], self._mounting.of)
             for log, (begin, end) in zip(self._logs, pairwise(first.tolist()), strict=True)
         ]
         positions = first[:-1].tolist()
@@ -125,6 +151,8 @@ class LoggedDrive:
                 self.refused[reading.what] += 1
                 self._reasons.setdefault(reading.what, reading.reason)
             else:
+                if swept is not None and isinstance(reading, LidarScan):
+                    reading = swept.of(reading)
                 times = (self._times[number], self._arrivals[number])
                 yield Reading(float(times[0]), reading, float(times[1]))
 
@@ -147,43 +175,7 @@ class LoggedDrive:
         ]
         worlds = (each.odometry for each in told if each.odometry)
         bodies = (each.body for each in told if each.body)
-        return Frames(next(worlds, _ODOMETRY), next(bodies, _BODIES[0]))
-
-    def _known_mounts(self) -> Mounts:
-        mounts = Mounts()
-        for log in self._logs:
-            mounts.add(log.transforms())
-        return mounts
-
-    def _mount_of(self, frame: str, kind: Kind) -> Mount:
-        """Return where a sensor is: in the middle, and looking ahead, if nothing tells."""
-        if frame not in self._found:
-            self._found[frame] = self._searched(frame, kind)
-        mount = self._found[frame]
-        if kind is Kind.SCAN and self._laser is not None:
-            return Mount(self._laser, mount.is_upside_down)
-        return mount
-
-    def _searched(self, frame: str, kind: Kind) -> Mount:
-        base = self._frames.body
-        mount = self._mounts.mount(base, frame)
-        if mount is not None:
-            return mount
-        for body in _BODIES if base in _BODIES else ():
-            mount = self._mounts.mount(body, frame)
-            if mount is not None:
-                self._remark(f"{frame!r} is where it is on {body!r}, not on {base!r}", kind)
-                return mount
-        self._remark(
-            f"no transform from {base!r} to {frame!r} was recorded: the lidar is taken to be "
-            "in the middle of the robot, and to look ahead; --laser X,Y,YAW says where it is",
-            kind,
-        )
-        return Mount()
-
-    def _remark(self, remark: str, kind: Kind) -> None:
-        if kind is Kind.SCAN and self._laser is None:
-            self._remarks.append(remark)
+        return Frames(next(worlds, _ODOMETRY), next(bodies, BODIES[0]))
 
     def _timed(self) -> tuple[Floats, Floats, Ints, Ints]:
         """Return times and arrivals, s, numbers of logs of all messages, the order to read them."""

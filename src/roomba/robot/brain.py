@@ -6,6 +6,7 @@ that body. The body may be simulated, on a serial line, or played back.
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from typing import Final
 
 from roomba.configuration.docking import DockingConfig
@@ -17,7 +18,7 @@ from roomba.control.speed_loop import Hazards, SpeedLoop
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap
-from roomba.mission.inputs.planning_context import PlanningContext
+from roomba.mission.inputs.planning_context import UNWATCHED, PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event, Phase, next_state
@@ -66,17 +67,18 @@ class Brain:
         start: Pose | None = None,
         max_speed: float | None = None,
         stages: CoverageStages = OUR_STAGES,
+        plan_watch: AbstractContextManager[object] = UNWATCHED,
     ) -> None:
         """Begin at ``start``, map frame, or docked at ``station``.
 
         ``known`` is the map, or says how one is made. ``max_speed`` is the robot's top speed, m/s:
-        by default the body's. ``stages`` are those of planning coverage. Raises ConfigError for
-        speeds that the robot cannot do.
+        by default the body's. ``stages`` are those of planning coverage. ``plan_watch`` is entered
+        for each plan of coverage. Raises ConfigError for speeds that the robot cannot do.
         """
         mission.require_possible(robot.body)
         self.robot, self.config, self._docking = robot, mission, docking
         self._known, self._station, self._rooms, self._zones = known, station, rooms, zones
-        self._stages = stages
+        self._stages, self._plan_watch = stages, plan_watch
         self._max_speed = robot.body.max_speed if max_speed is None else max_speed
         self.localizer: Localizer | None = None
         self.mapper: Mapper | None = None
@@ -301,6 +303,7 @@ class Brain:
             self._zones,
             is_growing=is_growing,
             stages=self._stages,
+            plan_watch=self._plan_watch,
         )
 
     def _surfaces(self, context: PlanningContext) -> SurfaceField:

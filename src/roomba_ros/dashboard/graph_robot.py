@@ -262,12 +262,7 @@ class GraphRobot(GraphMaps):
 
     def set_top_speed(self, speed: float) -> None:
         """Set the report's parameter, which all nodes look at."""
-        limits = self.limits()
-        if not limits.min_speed <= speed <= limits.max_speed:
-            raise RequestRefusedError(
-                f"expected a speed from {limits.min_speed:g} to {limits.max_speed:g} m/s, "
-                f"got {speed:g}"
-            )
+        self.limits().require_speed(speed)
         key = rospy.search_param("robot_max_speed") or "/robot_max_speed"
         rospy.set_param(key, speed)
 

@@ -10,7 +10,6 @@ import rospy
 from std_srvs.srv import Trigger
 
 from roomba.geometry import STANDSTILL
-from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Phase
@@ -276,8 +275,7 @@ class MissionNode:
 
     def _finish_map(self, ended: Ended, *, is_waited_for: bool) -> None:
         """Tell the map's maker to finish it when all was seen."""
-        explored = ended.exploration
-        is_explored = explored is not None and explored.outcome is CleanOutcome.COMPLETED
+        is_explored = ended.exploration is not None and ended.exploration.is_completed
         since = time.monotonic() - self._finished
         if is_explored or (is_waited_for and since > self._nodes.periods.finish):
             self._finished = time.monotonic()

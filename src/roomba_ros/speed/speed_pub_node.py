@@ -20,6 +20,7 @@ from std_msgs.msg import Float32, String
 from roomba import geometry
 from roomba.control.speed_loop import Hazards, Hold, Source, SpeedLoop
 from roomba.robot.readings import CliffReading
+from roomba.storage.kept_stop import FOLDER, NO_REASON, KeptStop
 from roomba_ros.convert.common import twist_message, twist_of
 from roomba_ros.convert.readings import (
     OdometryReading,
@@ -33,6 +34,7 @@ from roomba_ros.convert.values import speed_of
 from roomba_ros.runtime.node import run_node
 from roomba_ros.runtime.parameters import (
     LiveSeedParameters,
+    folder_for,
     read_nodes_config,
     read_robot_config,
 )
@@ -40,8 +42,7 @@ from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender
 from roomba_ros.runtime.subscriptions import subscribe
 
 EMERGENCY_PARAMETER: Final = "emergency_stop"
-"""Why the drive is held; kept by the master, so that a node that was killed holds it again."""
-_NO_REASON: Final = "no reason was given"
+"""Why the drive is held; the master keeps it, too, for when the disk does not."""
 _LONGEST_REASON: Final = 200
 
 
@@ -56,7 +57,8 @@ class SpeedPubNode:
     ``bumper`` (Bumper), ``cliff`` (Cliff), ``wheel_drop`` (WheelDrop): a hazard is obeyed at once;
     of two nodes that tell the same of the body, the first counts until it is silent. It does not
     hear ``body``: no number of that can get a hazard refused, and no tick changes a connection.
-    Services: ``emergency_stop`` (EmergencyStop): the drive is held until it is released.
+    Services: ``emergency_stop`` (EmergencyStop): the drive is held until it is released, also by
+    a node that takes this one's place: why is kept in a file of the robot's, and by the master.
     Parameters: ``robot_max_speed``; a bad value is refused and set back. ``emergency_stop``: kept.
     """
 
@@ -67,6 +69,8 @@ class SpeedPubNode:
         self._parameters = LiveSeedParameters(guardian=True)
         self._lock, self._keeping = threading.Lock(), threading.Lock()
         self._reason = ""
+        robot = rospy.get_namespace().strip("/") or "robot"
+        self._kept = KeptStop(folder_for("", FOLDER), robot)
         config, self._told_every = read_robot_config(), read_nodes_config().periods.speed
         body, self.period = config.body, config.timing.tick
         self._loop = SpeedLoop(body, self._parameters.values.robot_max_speed)
@@ -153,10 +157,13 @@ class SpeedPubNode:
     def _engage_again(self) -> None:
         """Hold the drive if it was held when this node's predecessor ended."""
         reason = rospy.get_param(EMERGENCY_PARAMETER, "")
-        if isinstance(reason, str) and reason:
+        reason = self._kept.reason() or (reason if isinstance(reason, str) else "")
+        if reason:
             rospy.logwarn("the emergency stop still holds the drive: %s", reason)
             self._reason, self._loop.emergency = reason, True
         self._emergency.publish(self._reason)
+        if reason:
+            self._keep()
 
     def _on_emergency_stop(self, request: EmergencyStopRequest) -> EmergencyStopResponse:
         reason = _shown(request.reason) if request.engage else ""
@@ -166,16 +173,25 @@ class SpeedPubNode:
             self._emergency.publish(reason)
         self._tell_drive(rospy.get_time())
         rospy.logwarn(f"emergency stop: {reason}" if reason else "emergency stop released")
+        # Only now: a disk may take long, or refuse.
         return EmergencyStopResponse(True, _answer(reason, was_held) + self._keep())
 
     def _keep(self) -> str:
-        """Let the master keep the newest state; return what is to be said when it does not."""
+        """Keep the newest state; return what is to be said where that is refused."""
+        said = ""
+        refused = self._kept.keep(lambda: self._reason)
+        if refused:
+            said = f"; but {refused}"
+            rospy.logwarn(f"emergency stop: {refused}")
+            with self._lock:
+                if self._loop.emergency:
+                    self._emergency.publish(self._reason + said)
         try:
             with self._keeping:
                 rospy.set_param(EMERGENCY_PARAMETER, self._reason)
         except (OSError, http.client.HTTPException, xmlrpc.client.Error) as error:
-            return f"; but the master does not keep that, should this node end: {error}"
-        return ""
+            said += f"; but the master does not keep that, should this node end: {error}"
+        return said
 
     def _on_command(self, source: Source, twist: geometry.Twist) -> None:
         now = rospy.get_time()
@@ -202,7 +218,7 @@ class SpeedPubNode:
 def _shown(reason: str) -> str:
     """Return a reason as one line of bounded length: no text of it may keep the robot from it."""
     text = "".join(letter if letter.isprintable() else " " for letter in reason[:_LONGEST_REASON])
-    return text.strip() or _NO_REASON
+    return text.strip() or NO_REASON
 
 
 def _answer(reason: str, was_held: bool) -> str:

@@ -79,7 +79,8 @@ def _run(launch: Launch, scripts: Path) -> int:
         try:
             if not rosgraph.is_master_online():
                 port = urlparse(rosgraph.get_master_uri()).port or 11311
-                supervisor.add("master", partial(be_master, port, Path(folder) / "master.xml"))
+                memory = Path(folder) / "master.xml"
+                supervisor.add("master", partial(be_master, port, memory), is_master=True)
             if not wait_for_master(_MASTER_WITHIN, lambda: supervisor.is_ending):
                 print("./roomba run: the master does not answer", file=sys.stderr)
                 return 1

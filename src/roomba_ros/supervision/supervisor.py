@@ -47,6 +47,7 @@ class Supervisor:
         """Start nothing yet; from now on a signal only says that it is to end."""
         self._config = config
         self._processes: list[_Process] = []
+        self._master: Watch | None = None
         self._selector = selectors.DefaultSelector()
         self._told: dict[str, str] = {}
         self._face: tuple[int, int] | None = None
@@ -66,12 +67,16 @@ class Supervisor:
         *,
         is_required: bool = False,
         is_kept: bool = True,
+        is_master: bool = False,
     ) -> None:
         """Start a process, unless it is to end, and watch it; all end with one that is required.
 
-        One that is not ``is_kept`` may end, as a window that is closed, and is forgotten then.
+        One that is not ``is_kept`` may end, as a window that is closed, and is forgotten then. No
+        process is given up for lives in which the one that ``is_master`` was not up.
         """
         process = _Process(run, Watch(name, self._config), is_required, is_kept)
+        if is_master:
+            self._master = process.watch
         self._processes.append(process)
         if not self.is_ending:
             self._start(process)
@@ -164,7 +169,7 @@ class Supervisor:
             if not pid:
                 continue
             how = told_end(status)
-            process.watch.ended(now, how)
+            process.watch.ended(now, how, counts=self._had_master(process.watch))
             _say(f"{process.watch.name} {how}")
             if not process.is_kept:
                 self._forget_heart(process)
@@ -172,6 +177,11 @@ class Supervisor:
             if process.is_required or (process.watch.is_given_up and process is self._processes[0]):
                 _say(f"{process.watch.name} is needed by all others: they end")
                 self._end(max(1, os.waitstatus_to_exitcode(status)))
+
+    def _had_master(self, watch: Watch) -> bool:
+        """Whether the master was up all the time that a process lived, or is that process."""
+        master = self._master
+        return master is None or master is watch or master.up_since <= watch.started_at
 
     def _look_after(self, process: _Process, now: float) -> None:
         watch = process.watch

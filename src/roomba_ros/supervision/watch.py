@@ -15,8 +15,10 @@ class Watch:
         self.name, self._config = name, config
         self._start_at = -math.inf
         self._beaten = math.inf
+        self.up_since = math.inf
+        """Since when it works, which its first sign of life tells; infinite while it does not."""
         self._stopped_since: float | None = None
-        self._started, self._short_lives = -math.inf, 0
+        self.started_at, self._short_lives = -math.inf, 0
         self._last_end = ""
         self.is_running = False
         self.is_given_up = False
@@ -24,11 +26,11 @@ class Watch:
     def started(self, now: float) -> None:
         """Note that it was started; until its first sign of life it may take long."""
         self.is_running, self._beaten, self._stopped_since = True, math.inf, None
-        self._started = now
+        self.started_at = now
 
     def beat(self, now: float) -> None:
         """Note a sign of life."""
-        self._beaten = now
+        self._beaten, self.up_since = now, min(self.up_since, now)
 
     def has_no_heart(self) -> None:
         """Note that it gives no signs of life: a program of another package, or one that ends."""
@@ -41,12 +43,18 @@ class Watch:
         elif self._stopped_since is None:
             self._stopped_since = now
 
-    def ended(self, now: float, how: str) -> None:
-        """Note that it ended, and how: it is started anew soon, unless that happens too often."""
+    def ended(self, now: float, how: str, *, counts: bool = True) -> None:
+        """Note that it ended, and how: it is started anew soon, unless that happens too often.
+
+        A short life that does not count is none of those in a row after which it is given up.
+        """
         config = self._config
         self.is_running, self._stopped_since, self._last_end = False, None, how
-        is_short = now - self._started < config.short_life
-        self._short_lives = self._short_lives + 1 if is_short else 0
+        self.up_since = math.inf
+        if now - self.started_at >= config.short_life:
+            self._short_lives = 0
+        elif counts:
+            self._short_lives += 1
         self.is_given_up = self._short_lives >= config.most_short_lives
         self._start_at = now + config.back_after
 

@@ -12,6 +12,7 @@ from fixtures.graph import RosGraph
 from fixtures.probe import Probe
 from fixtures.processes.programs import Program
 from fixtures.waiting import wait_until
+from roomba_robot.srv import EmergencyStop
 from std_msgs.msg import String
 from std_srvs.srv import Trigger, TriggerResponse
 
@@ -77,6 +78,26 @@ def test_a_node_that_ended_meanwhile_is_forgotten(own: RosGraph) -> None:
     speaker.ends(20.0)
     started(own)
     assert "/said" not in own.system_state()[0]
+
+
+def test_the_emergency_stop_outlives_master_and_node_that_are_killed_together(
+    own: RosGraph,
+) -> None:
+    """Right after the answer: the master looks five times a second at what it is to keep."""
+    master = started(own)
+    node = own.rosrun("speed_pub_node.py")
+    wait_until(lambda: "/emergency_stop" in own.system_state()[2], 40.0, "the node is up")
+    probe = Probe(own)
+    call = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
+    assert call(True, "a child came in").success
+    for program in (master, node):
+        os.kill(program.process.pid, signal.SIGKILL)
+    for program in (master, node):
+        program.ends(20.0)
+    started(own)
+    own.rosrun("speed_pub_node.py")
+    wait_until(lambda: own.answers("speed_pub_node"), 40.0, "the node is back")
+    assert probe.next("/emergency_stop", String).data == "a child came in"
 
 
 def test_what_a_damaged_file_says_is_lost_and_the_master_works(own: RosGraph) -> None:

@@ -110,6 +110,25 @@ def test_a_process_that_keeps_ending_is_given_up_and_the_others_go_on(run: Run) 
     assert robot.program.status is None
 
 
+def test_lives_without_a_master_do_not_count(run: Run, tmp_path: Path) -> None:
+    up = tmp_path / "up"
+    robot = run(
+        "def be_master():",
+        "    time.sleep(1.5)",
+        f"    open({str(up)!r}, 'w').close()",
+        "    live()",
+        "supervisor.add('master', be_master, is_master=True)",
+        f"supervisor.add('one', lambda: live() if os.path.exists({str(up)!r}) else sys.exit(1))",
+        "supervisor.add('two', lambda: sys.exit(7))",
+    )
+    robot.starts("one", 8)
+    wait_until(up.exists, 20.0, "the master is up")
+    robot.program.says("two keeps ending (ended with status 7) and is not started any more", 20.0)
+    assert len(robot.pids("two")) > 8
+    wait_until(lambda: is_running(robot.pids("one")[-1]), 20.0, "it lives")
+    assert "one keeps ending" not in robot.program.output
+
+
 def test_all_end_with_a_required_one_and_with_its_status(run: Run) -> None:
     robot = run(
         "supervisor.add('one', live)",

@@ -1,5 +1,7 @@
 """When a process is started anew, ended, told of or given up."""
 
+import math
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -93,6 +95,40 @@ def test_a_long_life_makes_up_for_short_ones() -> None:
     watch.started(now)
     watch.ended(now, "ended with status 1")
     assert watch.is_given_up
+
+
+def test_short_lives_that_do_not_count_are_not_given_up_for() -> None:
+    watch = running()
+    for number in range(10):
+        watch.started(100.0 * number)
+        watch.ended(100.0 * number + 1.0, "ended with status 1", counts=number % 5 == 4)
+    assert not watch.is_given_up
+    watch.started(2000.0)
+    watch.ended(2001.0, "ended with status 1")
+    assert watch.is_given_up
+
+
+def test_a_long_life_makes_up_for_short_ones_whether_it_counts_or_not() -> None:
+    watch, now = running(), 0.0
+    for life in (1.0, 1.0, 15.0, 1.0, 1.0):
+        watch.started(now)
+        now += life
+        watch.ended(now, "ended with status 1", counts=life < 15.0)
+    assert not watch.is_given_up
+
+
+def test_it_is_up_from_its_first_sign_of_life_until_it_ends() -> None:
+    watch = Watch("master", CONFIG)
+    assert math.isinf(watch.up_since)
+    watch.started(1.0)
+    assert math.isinf(watch.up_since)
+    watch.beat(2.0)
+    watch.beat(3.0)
+    assert watch.up_since == 2.0
+    watch.ended(4.0, "was ended by SIGKILL")
+    assert math.isinf(watch.up_since)
+    watch.started(5.0)
+    assert math.isinf(watch.up_since)
 
 
 @given(st.lists(st.tuples(st.sampled_from(["beat", "end", "stop", "go"]), st.floats(0.0, 5.0))))

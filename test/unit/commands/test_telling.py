@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from roomba.commands.telling import clock, named_table, write_json
+from roomba.commands.telling import clock, named_table, pose_as_json, write_json
+from roomba.geometry import Pose
 
 
 @pytest.mark.parametrize(
@@ -27,6 +28,11 @@ def test_a_table_has_a_line_for_each_name_and_shows_brackets_as_they_are() -> No
         ["way", "5", "m"],
         ["missed", "[red]"],
     ]
+
+
+def test_a_pose_is_told_to_a_tenth_of_a_millimetre() -> None:
+    told = pose_as_json(Pose(1.00004, -2.00006, 0.1234567))
+    assert told == {"x": 1.0, "y": -2.0001, "theta": 0.123457}
 
 
 def test_figures_are_written_as_one_line_and_never_as_what_json_does_not_have(

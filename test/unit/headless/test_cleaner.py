@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -38,7 +39,9 @@ from roomba.mission.cleaning.request import (
     CleanRequest,
     MissReason,
 )
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.phases.machine import Event, Phase
+from roomba.planning.coverage.plan import CoveragePlan
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba.world.engine.state.arrays import Fault
 
@@ -80,6 +83,22 @@ def test_the_same_seed_gives_the_same_trace_and_another_one_another() -> None:
 
     assert trace(3) == trace(3)
     assert trace(3) != trace(4)
+
+
+def test_of_each_clean_its_own_plans_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[int] = []
+    plan_coverage = PlanningContext.plan_coverage
+
+    def counted(*given: Any, **named: Any) -> CoveragePlan:
+        made.append(1)
+        return plan_coverage(*given, **named)
+
+    monkeypatch.setattr(PlanningContext, "plan_coverage", counted)
+    robot = HeadlessMission(HOME)
+    for _ in range(2):
+        made.clear()
+        record = robot.clean()
+        assert record.plans == len(made) >= 1
 
 
 def test_it_may_begin_off_its_station() -> None:

@@ -59,6 +59,14 @@ def test_it_cleans_before_the_map_is_whole() -> None:
     assert share_cleaned(before, TWO_ROOMS) > 0.3
 
 
+def test_plans_are_counted_on_every_map_that_it_made() -> None:
+    robot = newcomer(HOME, 3)
+    record = robot.clean()
+    assert robot.mission.context is not robot.context
+    assert record.plans >= 1
+    assert 0.0 < record.planning < 60.0
+
+
 def test_two_passes_sweep_all_twice() -> None:
     once, twice = (newcomer(HOME, 1).clean(CleanRequest(passes=passes)) for passes in (1, 2))
     assert twice.result.outcome is CleanOutcome.COMPLETED

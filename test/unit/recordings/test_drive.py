@@ -23,9 +23,12 @@ from fixtures.drives.made_logs import (
 )
 
 from roomba.geometry import Pose
+from roomba.perception.matching.mounts import Mount
+from roomba.perception.matching.scan_view import LidarModel
 from roomba.recordings.choice import Wanted
 from roomba.recordings.drive import LoggedDrive
 from roomba.recordings.readings import LidarScan, Odometry, Reading
+from roomba.recordings.sweeps import Sweep
 
 SECONDS = 6.0
 
@@ -193,6 +196,53 @@ def test_without_transforms_the_lidar_is_in_the_middle_and_that_is_told(tmp_path
     told, recorded = read([path], Wanted(laser=Pose(0.2)))
     assert mount_of(told) == [0.2, 0.0, 0.0]
     assert recorded.notes == []
+
+
+def lidar_of(readings: Sequence[Reading]) -> LidarModel:
+    return next(value.lidar for _, value, _ in readings if isinstance(value, LidarScan))
+
+
+def test_a_lidar_that_is_said_to_hang_upside_down_does(tmp_path: Path) -> None:
+    """Whatever was recorded; it looks the way that was said."""
+    path = write_bag(tmp_path / "made.bag", drive(1.0))
+    steps = [
+        lidar_of(read([path], Wanted(laser=LASER, laser_is_upside_down=hangs))[0]).step
+        for hangs in (None, False, True)
+    ]
+    assert steps == pytest.approx([steps[0], steps[0], -steps[0]])
+
+
+def test_what_a_drive_shows_of_its_lidar_is_taken_where_nothing_tells(tmp_path: Path) -> None:
+    path = write_bag(tmp_path / "made.bag", drive(1.0), with_mount=False)
+    with LoggedDrive([path]) as recorded:
+        before = lidar_of(list(recorded.readings()))
+        assert not recorded.is_mount_told
+        recorded.take_mount(Mount(Pose(theta=-1.0), is_upside_down=True))
+        recorded.take_sweep(Sweep(is_backwards=True, turn=0.2))
+        after = lidar_of(list(recorded.readings()))
+        [note] = recorded.notes
+    assert after.mount.tolist() == [0.0, 0.0, -1.0]
+    # turned over, and listed from the other end
+    assert after.step == pytest.approx(before.step)
+    assert after.time_increment == pytest.approx(0.2 * before.step / math.tau)
+    assert "to look 57 degrees to the right and to hang upside down, as its scans show" in note
+
+
+def test_where_a_lidar_was_told_to_be_it_stays(tmp_path: Path) -> None:
+    path = write_bag(tmp_path / "made.bag", drive(1.0))
+    with LoggedDrive([path]) as recorded:
+        list(recorded.readings())
+        assert recorded.is_mount_told
+        recorded.take_mount(Mount(Pose(theta=1.0)))
+        assert mount_of(list(recorded.readings())) == [LASER.x, LASER.y, LASER.theta]
+
+
+def test_what_is_refused_is_counted_once_though_a_drive_is_read_twice(tmp_path: Path) -> None:
+    items = changed(drive(SECONDS), "/scan", lambda n, item: replace(item, value=np.empty(0)))
+    with LoggedDrive([write_bag(tmp_path / "made.bag", items)]) as recorded:
+        for _ in range(2):
+            list(recorded.readings())
+        assert list(recorded.refused_scans.values()) == [30]
 
 
 def test_a_log_and_a_bag_of_the_same_drive_say_the_same(tmp_path: Path) -> None:

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-import cv2
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
@@ -19,6 +18,7 @@ from roomba.commands.localize.replay import Row
 from roomba.commands.localize.tally import Loss
 from roomba.grid import FREE, UNKNOWN, OccupancyMap
 from roomba.perception.localization.estimate import Knowledge
+from roomba.plots.png import write_png
 from roomba.plots.style import BLUE, INK, ORANGE, PINK, RED, drawn, empty_figure
 
 COLOURS: Final = {
@@ -42,9 +42,7 @@ def write_plot(
     path: Path, occupancy: OccupancyMap, rows: Sequence[Row], losses: Sequence[Loss], title: str
 ) -> None:
     """Draw a drive into a PNG file; raises OSError."""
-    picture = _picture(occupancy, rows, losses, title)
-    if not cv2.imwrite(str(path), picture[:, :, ::-1]):
-        raise OSError(f"{path}: cannot be written")
+    write_png(path, _picture(occupancy, rows, losses, title))
 
 
 @drawn

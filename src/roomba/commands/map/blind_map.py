@@ -45,7 +45,10 @@ class BlindMap:
         self._reckoning.move(stamp, odometry, turning)
 
     def see(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
-        """Take a scan, float32 [beams], m, and draw it if the robot moved on since the last one."""
+        """Take a scan, float32 [beams], m, and draw it if the robot moved on since the last one.
+
+        ``stamp`` is when its first beam was measured, s.
+        """
         reckoned = self._reckoning.at(stamp)
         if reckoned is None:
             return
@@ -57,7 +60,8 @@ class BlindMap:
             self._lidar, self._beams = lidar, lidar.arrays()
             self._sums = room_for_sums(lidar.beams)
         beams, points = self._beams, np.empty((lidar.beams, POINT))
-        count = surface_points(ranges, beams, 0.0, points, self._sums)
+        still = lidar.at_once(stamp, ranges, self._reckoning.path)
+        count = surface_points(still, beams, 0.0, points, self._sums)
         pose = np.array([here.x, here.y, here.theta])
         self._sheet.draw(points[:count].astype(np.float32), beams.mount[:2], pose)
 

@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from roomba.commands.map.runs import Drawn, MapRun
-from roomba.geometry import Pose
+from roomba.commands.telling import pose_as_json
 
 VERSION: Final = 1
 TIMES: Final = ("wall_s", "times_real_time")
@@ -44,7 +44,7 @@ def run_as_json(run: MapRun) -> dict[str, Any]:
         "times_real_time": round(run.times_real_time, 1),
         "error": drawn_as_json(run.made),
         "by_odometry": drawn_as_json(run.by_odometry),
-        "station": _pose(run.station),
+        "station": pose_as_json(run.station),
         "grid": {
             "resolution_m": frame.resolution,
             "origin_m": [round(frame.origin_x, 6), round(frame.origin_y, 6)],
@@ -72,7 +72,3 @@ def drawn_as_json(drawn: Drawn) -> dict[str, Any]:
         "largest_pose_error_m": round(drawn.largest, 6),
         "last_pose_error_m": round(drawn.last, 6),
     }
-
-
-def _pose(pose: Pose) -> dict[str, float]:
-    return {"x": round(pose.x, 4), "y": round(pose.y, 4), "theta": round(pose.theta, 6)}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Final
 
-import cv2
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
@@ -19,6 +18,7 @@ from roomba.commands.map.runs import Drawn, MapRun
 from roomba.commands.telling import clock
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
+from roomba.plots.png import write_png
 from roomba.plots.style import BLUE, GREEN, INK, PINK, RED, Area, drawn, empty_figure
 
 _WIDTH: Final = 1200
@@ -32,13 +32,7 @@ _PAPER, _FLOOR, _WALL = 0.86, 1.0, 0.2
 
 def write_plot(path: Path, run: MapRun) -> None:
     """Draw a run into a PNG file; raises OSError."""
-    write_picture(path, picture_of(run))
-
-
-def write_picture(path: Path, picture: NDArray[np.uint8]) -> None:
-    """Write pixels, RGB, into a PNG file; raises OSError."""
-    if not cv2.imwrite(str(path), picture[:, :, ::-1]):
-        raise OSError(f"{path}: cannot be written")
+    write_png(path, picture_of(run))
 
 
 @drawn
@@ -126,10 +120,9 @@ def _free_at(occupancy: OccupancyMap, run: MapRun) -> NDArray[np.bool_]:
     """Return where a map is free at the middles of the home's cells, bool over its grid."""
     true, own = run.home.frame, occupancy.frame
     x, y = true.centres()
-    columns = np.floor((x - own.origin_x) / own.resolution).astype(int) + 1
-    rows = np.floor((y - own.origin_y) / own.resolution).astype(int) + 1
+    rows, columns = own.cells_of(x, y)
     free = np.pad(occupancy.values == FREE, 1)
-    inside = np.ix_(np.clip(rows, 0, own.rows + 1), np.clip(columns, 0, own.columns + 1))
+    inside = np.ix_(np.clip(rows + 1, 0, own.rows + 1), np.clip(columns + 1, 0, own.columns + 1))
     at: NDArray[np.bool_] = free[inside]
     return at
 

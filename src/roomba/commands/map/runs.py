@@ -24,7 +24,6 @@ from roomba.grid import OccupancyMap
 from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.records import ExploreRecord
 from roomba.headless.rows import GYRO, ODOMETRY, TIME, TRUE
-from roomba.mission.cleaning.request import CleanOutcome
 from roomba.world.home.home import Home
 
 Floats = NDArray[np.float64]
@@ -65,7 +64,7 @@ class MapRun:
     @property
     def is_completed(self) -> bool:
         """Whether the robot saw all that it could get to see, and docked."""
-        return self.record.result.outcome is CleanOutcome.COMPLETED
+        return self.record.result.is_completed
 
     @property
     def times_real_time(self) -> float:
@@ -109,14 +108,15 @@ class ObservedExplorer(HeadlessMission):
 
     def _hear(self, rows: Floats) -> None:
         """Let the other map go on by ticks that passed, float64 [n, PASSED]."""
-        seen, blind = self.seen, self.blind
+        blind = self.blind
         for row in rows.tolist():
             blind.move(row[TIME], Pose(*row[ODOMETRY]), row[GYRO])
             x, y, _ = row[TRUE]
             self.largest_blind = max(self.largest_blind, blind.pose.distance_to(x, y))
-        if seen.scans != self._seen_scans:
-            self._seen_scans = seen.scans
-            blind.see(seen.time, self.simulator.ranges, self.lidar)
+        if self.seen.scans != self._seen_scans:
+            self._seen_scans = self.seen.scans
+            scan = self.body.newest_scan()
+            blind.see(scan.stamp, scan.ranges, scan.lidar)
 
 
 class MapScene:

@@ -55,6 +55,7 @@ from roomba.commands.spelling import spelled
 from roomba.errors import RoombaError
 from roomba.files.shipped import HOMES
 from roomba.plots.canvas import Picture
+from roomba.plots.png import write_png
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
 
@@ -147,8 +148,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _write(path: Path, picture: Picture) -> None:
-    if not cv2.imwrite(str(path), picture[:, :, ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9]):
-        raise OSError(f"{path}: cannot be written")
+    write_png(path, picture, [cv2.IMWRITE_PNG_COMPRESSION, 9])
     print(path)
 
 

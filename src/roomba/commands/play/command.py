@@ -34,6 +34,7 @@ from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
 from roomba.household.folder import household_folder
 from roomba.household.household import LiveHousehold
+from roomba.storage.kept_stop import FOLDER
 from roomba.ui.smart_home.switch import Switched, switched_on
 
 PROGRAM: Final = spelled("play")
@@ -97,6 +98,7 @@ def _live(
         _warn,
         keeper.totals,
     )
+    client.keep_stop(household_folder() / FOLDER)
     client.start()
     try:
         household.start()

@@ -26,12 +26,15 @@ if TYPE_CHECKING:
     from roomba.commands.trials.many import Outcome
     from roomba.commands.trials.runs import Run, RunObserver, TrialSetup
     from roomba.headless.cleaner import HeadlessMission
+    from roomba.mission.inputs.planning_context import PlanningContext
 
 BagOpener = Callable[[Path, "TrialSetup"], AbstractContextManager["RunObserver"]]
 """Opens a bag; what it gives is shown the robot again and again."""
 
 BAG_BURST: Final = 2
 """Ticks between two looks for a bag: its fastest topics have 10 Hz."""
+_SHOWN: Final = 0.1
+"""s between two updates of the progress: its words cost more than some ticks of the robot."""
 
 
 def main(arguments: list[str] | None = None, open_bag: BagOpener | None = None) -> int:
@@ -69,7 +72,7 @@ def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) 
         if options.bag is not None and open_bag is not None:
             observers.append(stack.enter_context(open_bag(options.bag, setup)))
         run = setup.run(observers)
-    _tell_run(options, run)
+    _tell_run(options, run, setup.robot.context)
     if options.keep:
         # What keeps it is loaded once the table stands.
         from roomba.commands.sim.kept_run import keep_run
@@ -84,14 +87,13 @@ def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) 
 def _shown_by(show: Show) -> RunObserver:
     from roomba.commands.telling import clock
 
-    began, share = time.monotonic(), 0.0
+    looked, share = time.monotonic(), 0.0
 
     def observe(robot: HeadlessMission) -> None:
-        nonlocal began, share
-        # The words cost more than some ticks of the robot: seldom is enough.
-        if time.monotonic() - began < 0.1:
+        nonlocal looked, share
+        if time.monotonic() - looked < _SHOWN:
             return
-        began = time.monotonic()
+        looked = time.monotonic()
         passed, left = robot.seen.time, robot.mission.seconds_to_go()
         if left > 0.0:  # before there is a plan nothing is known of it
             share = passed / (passed + left)
@@ -100,17 +102,19 @@ def _shown_by(show: Show) -> RunObserver:
     return observe
 
 
-def _tell_run(options: SimOptions, run: Run) -> None:
+def _tell_run(options: SimOptions, run: Run, context: PlanningContext) -> None:
     from roomba.commands.sim.json_file import run_as_json
     from roomba.commands.sim.report import table_of
+    from roomba.commands.trials.unreached import unreached_in
 
     if options.plot is not None:
         from roomba.commands.sim.plot import write_plot
 
         write_plot(options.plot, run)
-    tell_tables([table_of(run.figures)], options.json, quiet=options.quiet)
+    unreached = unreached_in(context)
+    tell_tables([table_of(run.figures, unreached)], options.json, quiet=options.quiet)
     if options.json is not None:
-        write_json(options.json, run_as_json(run))
+        write_json(options.json, run_as_json(run, unreached))
 
 
 def _run_homes(options: SimOptions, homes: int) -> int:
@@ -166,7 +170,7 @@ def _tell_homes(
 
 def _again(trial: Trial) -> str:
     """Return the command that repeats one of many runs, but for its seed."""
-    words = [PROGRAM, "--home", RANDOM]
+    words = [*PROGRAM.split(), "--home", RANDOM]
     usual = Trial(home=RANDOM)
     if trial.sensors is not None:
         words += ["--sensors", trial.sensors]
@@ -199,4 +203,4 @@ def _again(trial: Trial) -> str:
         words += ["--carpets", request.carpets.value.replace(" ", "-")]
     if request.edges is not usual.request.edges:
         words += ["--edges", request.edges.value]
-    return " ".join(words)
+    return shlex.join(words)

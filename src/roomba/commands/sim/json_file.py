@@ -8,9 +8,11 @@ grid of about 1 cm. ``path_ratio`` is ``distance_m * tool_width_m / coverable_m2
 ``rate_m2_a_minute`` is ``covered_m2`` by ``duration_s``, and ``times_s`` where that time went: its
 ``least`` is what no robot of that width can undercut at that speed, and ``times_least`` what it was
 under way, without charging and waiting, by that. ``missed`` is what the robot itself says that it
-left. ``trajectory`` has rows t, x, y, theta: true poses, ten a second, the first and the last one
-included. ``wall_s`` is what the clean took on the clock, and ``planning_s`` what of it went into
-``plans`` coverage plans; all else is the same for the same trial, bit for bit.
+left; ``unreached`` is floor that its map shows, but to which no way leads from its station:
+``area_m2``, in pieces of 1 m2 and more, and the ``rooms`` of which it is so much. ``trajectory``
+has rows t, x, y, theta: true poses, ten a second, the first and the last one included. ``wall_s``
+is what the clean took on the clock, and ``planning_s`` what of it went into ``plans`` coverage
+plans; all else is the same for the same trial, bit for bit.
 """
 
 from __future__ import annotations
@@ -19,11 +21,12 @@ from typing import Any, Final
 
 import numpy as np
 
+from roomba.commands.telling import pose_as_json
 from roomba.commands.trials.figures import Figures
 from roomba.commands.trials.runs import Run
 from roomba.commands.trials.trial import Trial
+from roomba.commands.trials.unreached import NOTHING, Unreached
 from roomba.configuration.simulation import SimulatedRobotConfig
-from roomba.geometry import Pose
 from roomba.mission.cleaning.checkpoint import request_values
 
 VERSION: Final = 1
@@ -31,11 +34,12 @@ TIMES: Final = ("wall_s", "planning_s", "times_real_time")
 """What differs between two runs of the same trial."""
 
 
-def run_as_json(run: Run) -> dict[str, Any]:
+def run_as_json(run: Run, unreached: Unreached = NOTHING) -> dict[str, Any]:
     """Return all of a run."""
     return {
         **_about(run.trial, run.home.name),
         **run.figures.as_json(),
+        "unreached": unreached.as_json(),
         "sensors": run.robot.simulation.sensors,
         "wheels": run.robot.simulation.condition,
         "robot": {
@@ -43,7 +47,7 @@ def run_as_json(run: Run) -> dict[str, Any]:
             "reach_m": round(run.reach, 6),
             "tool_width_m": run.figures.tool_width_m,
         },
-        "station": _pose(run.home.station),
+        "station": pose_as_json(run.home.station),
         "things": [[round(value, 4) for value in thing] for thing in run.things],
         "trajectory": (np.round(run.trajectory, 4) + 0.0).tolist(),
     }
@@ -82,7 +86,3 @@ def _about(trial: Trial, home: str) -> dict[str, Any]:
         "turned_degrees": trial.turned,
         "battery": trial.battery,
     }
-
-
-def _pose(pose: Pose) -> dict[str, float]:
-    return {"x": round(pose.x, 4), "y": round(pose.y, 4), "theta": round(pose.theta, 6)}

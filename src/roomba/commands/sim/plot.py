@@ -6,7 +6,6 @@ import math
 from pathlib import Path
 from typing import Any, Final
 
-import cv2
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
@@ -23,6 +22,7 @@ from roomba.commands.trials.figures import Figures
 from roomba.commands.trials.runs import Run
 from roomba.grid import FREE
 from roomba.mission.cleaning.request import MissReason
+from roomba.plots.png import write_png
 from roomba.plots.style import INK, RED, drawn, empty_figure, show_floor_plan
 
 _WIDTH: Final = 1200
@@ -51,8 +51,7 @@ _SHORT: Final = {
 
 def write_plot(path: Path, run: Run) -> None:
     """Draw a run into a PNG file; raises OSError."""
-    if not cv2.imwrite(str(path), picture_of(run)[:, :, ::-1]):
-        raise OSError(f"{path}: cannot be written")
+    write_png(path, picture_of(run))
 
 
 @drawn

@@ -9,12 +9,13 @@ from rich.table import Table
 from roomba.commands.sim.percentiles import PERCENTS, ROWS
 from roomba.commands.telling import clock, named_table
 from roomba.commands.trials.figures import Figures, MissedShare
+from roomba.commands.trials.unreached import NOTHING, Unreached
 
 _SHOWN: Final = 8
 """The most missed areas or failures that are listed one by one."""
 
 
-def lines_of(figures: Figures) -> list[tuple[str, str]]:
+def lines_of(figures: Figures, unreached: Unreached = NOTHING) -> list[tuple[str, str]]:
     """Return the rows of a run's table: a name and a text."""
     ratio = figures.path_ratio
     lines = [
@@ -45,12 +46,15 @@ def lines_of(figures: Figures) -> list[tuple[str, str]]:
     if rest:
         area = sum(each.area_m2 for each in rest)
         lines.append(("missed", f"and {_count(len(rest), 'smaller patch', 'es')}: {area:.3f} m²"))
+    if unreached.area:
+        lines.append(("unreached", unreached.words))
     return lines
 
 
-def table_of(figures: Figures) -> Table:
+def table_of(figures: Figures, unreached: Unreached = NOTHING) -> Table:
     """Return a run's table."""
-    return named_table(lines_of(figures), {"outcome": "green" if figures.is_completed else "red"})
+    rows = lines_of(figures, unreached)
+    return named_table(rows, {"outcome": "green" if figures.is_completed else "red"})
 
 
 def percentile_table(spread: dict[str, dict[str, float]]) -> Table:

@@ -6,6 +6,7 @@ import itertools
 import math
 import threading
 from collections.abc import Callable
+from pathlib import Path
 
 from roomba.bumping.brain import BumpingState
 from roomba.client import view
@@ -15,10 +16,11 @@ from roomba.client.protocol import (
     RequestRefusedError,
     RobotUnavailableError,
 )
-from roomba.geometry import STANDSTILL, Pose, Twist
+from roomba.geometry import STANDSTILL, Pose
 from roomba.headless.live.bumping_robot import BumpingRobot
 from roomba.headless.live.bumping_view import BY_WHEELS, FeltLayers, home_of_bumping, view_of
 from roomba.headless.live.robot import LiveRobot
+from roomba.storage.kept_stop import NO_REASON, KeptStop
 from roomba.vocabulary import CleanMode, RoomWay
 
 _NO_MAP = "it has no lidar, so it makes no map: it sweeps all that it bumps along"
@@ -38,6 +40,8 @@ class BumpingClient:
         self._home_of: Pose | None = None
         self._last: CleanReport | None = None
         self._clean: _CleanUnderWay | None = None
+        self._kept_stop: KeptStop | None = None
+        self._held = ""
         body = robot.robot.body
         self._top_speed = body.max_speed
         self._limits = view.PageLimits(
@@ -48,6 +52,15 @@ class BumpingClient:
             each_room=False,
             modes=(CleanMode.WHOLE.value,),
         )
+
+    def keep_stop(self, folder: Path) -> None:
+        """Keep the emergency stop in ``folder``, and hold the drive if it was held before.
+
+        To be called before :meth:`start`.
+        """
+        self._kept_stop = KeptStop(folder, self._name)
+        if reason := self._kept_stop.reason():
+            self._hold(self._robot, reason)
 
     def start(self) -> None:
         """Let the robot live."""
@@ -125,34 +138,48 @@ class BumpingClient:
         """Do nothing: it does not know how full its bin is, and the household counts."""
 
     def emergency_stop(self, reason: str) -> None:
-        """Hold the drive until it is released."""
+        """Hold the drive until it is released.
+
+        A disk that does not keep it is told as part of why it is held.
+        """
         self._live.drive(STANDSTILL)
-        self._obey(lambda robot: robot.brain.hold())
+        self._obey(lambda robot: self._hold(robot, reason.strip() or NO_REASON))
+        if refused := self._keep_newest_stop():
+            self._obey(lambda robot: self._tell_not_kept(robot, refused))
 
     def release(self) -> None:
-        """Release the emergency stop."""
-        self._obey(lambda robot: robot.brain.release())
+        """Release the emergency stop; raises RequestRefusedError too where it holds again later."""
+
+        def release(robot: BumpingRobot) -> None:
+            robot.brain.release()
+            self._held = ""
+
+        self._obey(release)
+        if refused := self._keep_newest_stop():
+            raise RequestRefusedError(f"the drive is free; but {refused}")
+
+    def _hold(self, robot: BumpingRobot, reason: str) -> None:
+        robot.brain.hold()
+        self._held = reason
+
+    def _tell_not_kept(self, robot: BumpingRobot, refused: str) -> None:
+        if self._held:
+            self._hold(robot, f"{self._held}; but {refused}")
+
+    def _keep_newest_stop(self) -> str:
+        """Keep why the drive is held, if at all; return what the disk refused."""
+        return "" if self._kept_stop is None else self._kept_stop.keep(lambda: self._held)
 
     def drive(self, linear: float, angular: float) -> None:
         """Drive by hand; refused while the emergency stop holds, or it drives by itself."""
         state = self._robot.brain.state
         if state.drives or state is BumpingState.EMERGENCY:
             raise RequestRefusedError(f"the robot is {state.value}; stop it to drive by hand")
-        most = self._limits.max_speed, self._limits.max_angular_speed
-        self._live.drive(
-            Twist(
-                min(max(linear, -most[0]), most[0]),
-                min(max(angular, -most[1]), most[1]),
-            )
-        )
+        self._live.drive(self._limits.clamped(linear, angular))
 
     def set_top_speed(self, speed: float) -> None:
         """Set how fast it may drive, m/s."""
-        low, high = self._limits.min_speed, self._limits.max_speed
-        if not low <= speed <= high:
-            raise RequestRefusedError(
-                f"expected a speed from {low:g} to {high:g} m/s, got {speed:g}"
-            )
+        self._limits.require_speed(speed)
         self._top_speed = speed
         self._obey(lambda robot: robot.brain.limit_speed(speed))
 
@@ -211,7 +238,7 @@ class BumpingClient:
         """Take snapshots after a frame, or a command."""
         if self._clean is not None:
             self._last, self._clean = self._clean.look(robot, self._last)
-        self._view = view_of(robot, self._last, self._top_speed)
+        self._view = view_of(robot, self._last, self._top_speed, self._held)
         if self._home is None or self._home_of is not robot.brain.station:
             self._home_of = robot.brain.station
             self._home = home_of_bumping(next(self._versions), self._name, robot)

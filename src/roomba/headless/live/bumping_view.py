@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from roomba.bumping.brain import BumpingState
 from roomba.bumping.felt_floor import FeltFloor
 from roomba.client.protocol import CleanReport, VacuumSnapshot
-from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
+from roomba.client.view import GridLayer, HomeView, LayerName, RobotView, battery_fills
 from roomba.geometry import Pose
 from roomba.headless.live.bumping_robot import BumpingRobot
 from roomba.mission.phases.machine import VACUUM_STATES, Phase
@@ -39,8 +39,10 @@ def phase_of(state: BumpingState) -> Phase:
     return _PHASES[state]
 
 
-def view_of(robot: BumpingRobot, last: CleanReport | None, top_speed: float) -> RobotView:
-    """Return the robot as it is now."""
+def view_of(
+    robot: BumpingRobot, last: CleanReport | None, top_speed: float, held: str = ""
+) -> RobotView:
+    """Return the robot as it is now; ``held`` is why the emergency stop holds the drive."""
     now, brain = robot.now, robot.brain
     pose, phase = brain.compass.pose, phase_of(brain.state)
     swept = brain.floor.coverage.swept_area
@@ -50,7 +52,7 @@ def view_of(robot: BumpingRobot, last: CleanReport | None, top_speed: float) -> 
         doubt=robot.body.trouble or BY_WHEELS,
         speed=abs(now.twist.linear),
         dirt=math.nan,
-        held="emergency stop" if brain.state is BumpingState.EMERGENCY else "",
+        held=held,
         vacuum=VacuumSnapshot(
             VACUUM_STATES[phase],
             phase.value,
@@ -66,7 +68,7 @@ def view_of(robot: BumpingRobot, last: CleanReport | None, top_speed: float) -> 
         path=_NO_SCAN,
         last=last,
         top_speed=top_speed,
-        charges=now.battery.is_docked,
+        charges=battery_fills(now.battery.level, is_docked=now.battery.is_docked),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
@@ -12,7 +13,7 @@ from roomba.client import view
 from roomba.client.observed import SPILL, TickTimes
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.errors import RoombaError
-from roomba.geometry import STANDSTILL, Pose, Twist
+from roomba.geometry import STANDSTILL, Pose
 from roomba.headless.embodied import Embodied
 from roomba.headless.live import playing
 from roomba.headless.live.errands import begin_exploring
@@ -24,6 +25,7 @@ from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
+from roomba.storage.kept_stop import NO_REASON, KeptStop
 from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 from roomba.world.simulator import Simulator
 
@@ -44,11 +46,13 @@ class LiveClient:
         zones: Zones | None = None,
     ) -> None:
         """Start nothing yet; ``rooms`` and ``zones`` are those that the robot goes by."""
-        self._live_home = live_home
+        self._live_home, self._robot = live_home, robot
         plan = FloorPlan(rooms, Zones() if zones is None else zones)
         self._snapshots = Snapshots(robot, plan, live_home)
         self._live = LiveRobot(robot, speed, self._observe)
         self._watchers: list[Watcher] = []
+        self._kept_stop: KeptStop | None = None
+        self._held = ""
         body = robot.robot.body
         has_camera = live_home.camera is not None
         self._bin_capacity = robot.robot.brush.bin_capacity
@@ -58,6 +62,15 @@ class LiveClient:
             camera_angles=view.camera_angles(robot.robot.camera.max_pan) if has_camera else (),
             play=live_home.acts,
         )
+
+    def keep_stop(self, folder: Path) -> None:
+        """Keep the emergency stop in ``folder``, and hold the drive if it was held before.
+
+        To be called before :meth:`start`.
+        """
+        self._kept_stop = KeptStop(folder, self._live_home.name)
+        if reason := self._kept_stop.reason():
+            self._hold(self._robot, reason)
 
     def start(self) -> None:
         """Let the robot live."""
@@ -217,18 +230,42 @@ class LiveClient:
         self._play(playing.replace_bag)
 
     def emergency_stop(self, reason: str) -> None:
-        """Hold the drive until it is released; a walk ends, however soon that is."""
+        """Hold the drive until it is released; a walk ends, however soon that is.
+
+        A disk that does not keep it is told as part of why it is held.
+        """
         self._live.drive(STANDSTILL)
 
         def stop(robot: Embodied) -> None:
             robot.brain.walking.end()
-            robot.mission.command(Event.EMERGENCY, robot.senses(), reason)
+            self._hold(robot, reason.strip() or NO_REASON)
 
         self.obey(stop)
+        if refused := self._keep_newest_stop():
+            self.obey(lambda robot: self._tell_not_kept(robot, refused))
 
     def release(self) -> None:
-        """Release the emergency stop."""
-        self._command(Event.RELEASE)
+        """Release the emergency stop; raises RequestRefusedError too where it holds again later."""
+
+        def release(robot: Embodied) -> None:
+            robot.mission.command(Event.RELEASE, robot.senses())
+            self._held = ""
+
+        self.obey(release)
+        if refused := self._keep_newest_stop():
+            raise RequestRefusedError(f"the drive is free; but {refused}")
+
+    def _hold(self, robot: Embodied, reason: str) -> None:
+        robot.mission.command(Event.EMERGENCY, robot.senses(), reason)
+        self._held = reason
+
+    def _tell_not_kept(self, robot: Embodied, refused: str) -> None:
+        if self._held:
+            self._hold(robot, f"{self._held}; but {refused}")
+
+    def _keep_newest_stop(self) -> str:
+        """Keep why the drive is held, if at all; return what the disk refused."""
+        return "" if self._kept_stop is None else self._kept_stop.keep(lambda: self._held)
 
     def drive(self, linear: float, angular: float) -> None:
         """Drive by hand; refused while the emergency stop holds, or an errand is under way."""
@@ -237,21 +274,11 @@ class LiveClient:
             raise RequestRefusedError("the emergency stop holds the drive; release it first")
         if phase not in (Phase.IDLE, Phase.DOCKED, Phase.PAUSED, Phase.ERROR):
             raise RequestRefusedError(f"the robot is {phase.value}; pause it to drive by hand")
-        limits = self._limits
-        self._live.drive(
-            Twist(
-                min(max(linear, -limits.max_speed), limits.max_speed),
-                min(max(angular, -limits.max_angular_speed), limits.max_angular_speed),
-            )
-        )
+        self._live.drive(self._limits.clamped(linear, angular))
 
     def set_top_speed(self, speed: float) -> None:
         """Set how fast it may drive, m/s."""
-        low, high = self._limits.min_speed, self._limits.max_speed
-        if not low <= speed <= high:
-            raise RequestRefusedError(
-                f"expected a speed from {low:g} to {high:g} m/s, got {speed:g}"
-            )
+        self._limits.require_speed(speed)
         self.obey(lambda robot: robot.brain.limit_speed(speed))
 
     def put_zone(self, zone: view.ZoneView) -> None:

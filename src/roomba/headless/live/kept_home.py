@@ -9,7 +9,6 @@ from typing import Final
 from roomba.headless.embodied import Embodied
 from roomba.headless.live.client import LiveClient
 from roomba.headless.live.floor_plan import FloorPlan
-from roomba.headless.live.snapshots import ErrandsEnded
 from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.storage.map_store import MapStore, MapStoreError, StoredMap
 
@@ -45,7 +44,7 @@ class KeptHome:
 
     def start(self, client: LiveClient) -> None:
         """Keep the map of a robot from now on."""
-        client.watch(lambda robot, ended: self._look(robot, client.plan, ended))
+        client.watch(lambda robot, _: self._look(robot, client.plan))
         self._thread.start()
 
     def stop(self) -> None:
@@ -56,7 +55,7 @@ class KeptHome:
         if self._thread.ident is not None:
             self._thread.join(_ENDING)
 
-    def _look(self, robot: Embodied, plan: FloorPlan, ended: ErrandsEnded) -> None:
+    def _look(self, robot: Embodied, plan: FloorPlan) -> None:
         """Let a map be written that is another one than before; in the robot's thread."""
         context = robot.mission.context
         if context.is_growing:

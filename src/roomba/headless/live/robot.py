@@ -92,7 +92,7 @@ class LiveRobot(Generic[_Robot]):
         """Let the robot's thread call ``command`` between two frames, and return its answer.
 
         Raises what it raises, and RobotUnavailableError when the robot ended or does not answer
-        within ``timeout`` s of wall time.
+        within ``timeout`` s of wall time: then a command that it has not begun is left undone.
         """
         if self.ending:
             raise RobotUnavailableError(f"{self.ending}; start it again")
@@ -101,6 +101,7 @@ class LiveRobot(Generic[_Robot]):
         try:
             return answer.result(timeout)
         except FutureTimeoutError:
+            answer.cancel()
             raise RobotUnavailableError(
                 f"expected the robot's answer within {timeout:g} s, got none{self._reason}"
             ) from None
@@ -146,6 +147,8 @@ class LiveRobot(Generic[_Robot]):
                 command, answer = self._commands.get_nowait()
             except Empty:
                 return
+            if not answer.set_running_or_notify_cancel():
+                continue
             try:
                 answer.set_result(command(self._robot))
             except Exception as refusal:

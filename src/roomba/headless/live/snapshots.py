@@ -20,6 +20,7 @@ from roomba.headless.live.views import (
     map_cells,
     robot_view,
 )
+from roomba.headless.rows import BELIEVED, TIME
 from roomba.perception.rooms.rooms import segment
 from roomba.perception.swept.visits import Visits
 
@@ -112,8 +113,9 @@ class Snapshots:
             if not robot.mission.sweeps:
                 self._visits.lift()
                 return
-            for row in robot.passed[::2]:
-                self._visits.sweep(float(row[0]), float(row[4]), float(row[5]))
+            for row in robot.passed[::2].tolist():
+                x, y, _ = row[BELIEVED]
+                self._visits.sweep(row[TIME], x, y)
             pose = robot.brain.pose
             self._visits.sweep(robot.now.time, pose.x, pose.y)
 
@@ -128,6 +130,7 @@ class Snapshots:
         if ended.exploration is not None:
             end = ended.exploration
             self._last = exploration_as_clean(end.outcome, end.message, end.distance, end.duration)
+        if exploration is not None and exploration.is_completed:
             robot.brain.finish_map()
 
     def _follow_map(self, robot: Embodied) -> None:

@@ -27,6 +27,7 @@ from roomba.client.view import (
     RoomView,
     TruthView,
     ZoneView,
+    battery_fills,
     battery_seconds,
     known_cells,
 )
@@ -47,8 +48,6 @@ from roomba.world.home.materials import MATERIALS
 from roomba.world.home.raster import footprint, outline
 
 _NO_SCAN: Final = np.empty((0, 2), np.float32)
-_CLEARANCE: Final = 0.12
-"""m; below what begins higher the robot passes."""
 _DIRTIEST: Final = 8000.0
 """Grains/m2 that are drawn as the dirtiest floor there is: sixteen times where dirt begins."""
 
@@ -74,7 +73,7 @@ def robot_view(
         battery_seconds=battery_seconds(now.battery.level, robot.battery_change),
         top_speed=robot.brain.max_speed,
         truth=truth,
-        charges=robot.battery_change > 0.0,
+        charges=battery_fills(now.battery.level, is_docked=now.battery.is_docked),
         bag=math.nan if now.emptying is None else now.emptying.bag,
     )
 
@@ -151,16 +150,17 @@ def home_view(
 ) -> HomeView:
     """Return what seldom changes."""
     station, plan = robot.mission.context.station, live_home.plan
+    height = robot.robot.body.height
     return HomeView(
         version=version,
         name=live_home.name,
         station=(station.x, station.y, station.theta),
         rooms=() if rooms is None else tuple(_room_views(rooms, plan)),
         zones=tuple(ZoneView(zone.name, zone.kind.value, zone.points) for zone in zones.all),
-        furniture=() if plan is None else tuple(_outlines(plan, is_overhead=False)),
+        furniture=() if plan is None else tuple(_outlines(plan, height, is_overhead=False)),
         radius=robot.robot.body.radius,
         tool=robot.robot.brush.width,
-        overhead=() if plan is None else tuple(_outlines(plan, is_overhead=True)),
+        overhead=() if plan is None else tuple(_outlines(plan, height, is_overhead=True)),
         carpets=() if plan is None else tuple(_carpets(plan)),
         felt_carpets=robot.mission.carpets.felt.all,
         low_things=tuple(
@@ -186,11 +186,14 @@ def _rings(outline: shapely.Polygon | shapely.MultiPolygon) -> Iterator[tuple[Po
             yield tuple((float(x), float(y)) for x, y in ring.coords)
 
 
-def _outlines(home: Home, *, is_overhead: bool) -> Iterator[tuple[Point, ...]]:
-    """Yield the outlines of the boxes of all furniture that the map shows, the lowest first."""
+def _outlines(home: Home, height: float, *, is_overhead: bool) -> Iterator[tuple[Point, ...]]:
+    """Yield the outlines of the boxes of all furniture that the map shows, the lowest first.
+
+    Those that a robot of a ``height``, m, passes below, or the others.
+    """
     boxes = [box for piece in home.furniture if piece.on_map for box in piece.boxes]
     for box in sorted(boxes, key=lambda box: box.top):
-        if (box.bottom > _CLEARANCE) is is_overhead:
+        if (box.bottom >= height) is is_overhead:
             yield tuple((x, y) for x, y in footprint(box).exterior.coords[:-1])
 
 

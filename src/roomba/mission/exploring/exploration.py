@@ -41,6 +41,11 @@ class ExploreResult:
     duration: float
     unseen: tuple[Point, ...] = ()
 
+    @property
+    def is_completed(self) -> bool:
+        """Whether the map is whole: it saw all that it could get to see, and docked."""
+        return self.outcome is CleanOutcome.COMPLETED
+
 
 class Exploration:
     """Chooses where to go; ``unseen`` are the frontiers that it gave up, m, map frame."""

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-import time
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,9 @@ from roomba.planning.path.new_walls import is_walled
 from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
 
 Mask = NDArray[np.bool_]
+
+UNWATCHED: Final = contextlib.nullcontext()
+"""Around plans that are not counted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,11 +81,12 @@ class PlanningContext:
         *,
         is_growing: bool = False,
         stages: CoverageStages = OUR_STAGES,
+        plan_watch: AbstractContextManager[object] = UNWATCHED,
     ) -> None:
         """Make the planners; ``station`` is where the docked robot stands, map frame.
 
         In a map that ``is_growing`` paths keep the distances of exploring. ``stages`` are those of
-        planning coverage.
+        planning coverage. ``plan_watch`` is entered for each plan of coverage, and may count them.
         """
         self.occupancy, self.station = occupancy, station
         self.rooms, self.zones = rooms, zones or Zones()
@@ -94,7 +99,7 @@ class PlanningContext:
         self.spot_size = mission.cleaning.spot_size
         self.tool_width, self._sharp_corner = robot.brush.width, robot.tracking.sharp_corner
         self._coverage_config, self._stages = mission.coverage, stages
-        self.plans, self.planning_time = 0, 0.0
+        self._plan_watch = plan_watch
         self.body_radius, self.is_growing = radius, is_growing
         # Paths may come as near to walls as swaths do, so that they can join them.
         self._clearance, self._least = driving.way_clearance, 0.5 * driving.clearance
@@ -145,16 +150,12 @@ class PlanningContext:
         That is the staging place where none is given, or no way leads there. Raises NoPathError
         when the robot cannot move.
         """
-        began = time.perf_counter()
         home = (self.staging.x, self.staging.y)
-        try:
+        with self._plan_watch:
             if end is not None:
                 with contextlib.suppress(NoPathError):
                     return self.coverage.plan(here, end, todo, obstacles, edges_only=edges_only)
             return self.coverage.plan(here, home, todo, obstacles, edges_only=edges_only)
-        finally:
-            self.plans += 1
-            self.planning_time += time.perf_counter() - began
 
     def with_closed_gaps(self, obstacles: Sequence[RoundObstacle]) -> list[RoundObstacle]:
         """Return the obstacles, and what closes gaps between them that are too narrow."""
@@ -241,10 +242,10 @@ class PlanningContext:
         label = self.rooms.label_of(name)
         return self.fine(self.rooms.labels == label)
 
-    def fine(self, mask: Mask) -> Mask:
-        """Return a mask over the map's grid as one over ``frame``."""
+    def fine(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return values over the map's grid as those over ``frame``."""
         factor = self.frame.rows // self.known.frame.rows
-        return np.repeat(np.repeat(mask, factor, axis=0), factor, axis=1)
+        return np.repeat(np.repeat(values, factor, axis=0), factor, axis=1)
 
     def room_at(self, x: float, y: float) -> str:
         """Return the name of the room at a point, or nothing."""

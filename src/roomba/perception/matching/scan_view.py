@@ -92,6 +92,25 @@ class LidarModel:
         lidar.mount, lidar._arrays = np.array([mount.x, mount.y, mount.theta]), None
         return lidar
 
+    def swept(self, time_increment: float, *, is_backwards: bool) -> LidarModel:
+        """Return the same lidar with another time between beams, s.
+
+        One that ``is_backwards`` has its beams in the opposite order: its scans are to be turned
+        round as well.
+        """
+        lidar = copy(self)
+        lidar.time_increment, lidar._arrays = time_increment, None
+        if is_backwards and self.beams:
+            lidar._directions = np.ascontiguousarray(self._directions[::-1])
+            lidar._first_angle = self._first_angle + self._step * (self.beams - 1)
+            lidar._step = -self._step
+        return lidar
+
+    @property
+    def step(self) -> float:
+        """From one beam to the next, rad."""
+        return self._step
+
     def arrays(self) -> LidarBeams:
         """Return the lidar as kernels know it, with work arrays of its own."""
         ends, lanes = np.empty((self.beams, 4)), np.empty((JUDGE_LANES, self.beams))

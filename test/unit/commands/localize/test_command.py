@@ -238,6 +238,17 @@ def test_where_the_lidar_is_may_be_told(localize: Localize, tmp_path: Path) -> N
     assert any("no transform" in note for note in localize(bag, *at_start()).figures["notes"])
 
 
+def test_a_lidar_that_looks_back_is_noticed(localize: Localize, tmp_path: Path) -> None:
+    def turned_round(number: int, item: Item) -> Item:
+        back = pose_at(item.stamp - BEGAN).compose(LASER).compose(Pose(theta=math.pi))
+        seen = ranges_from(back.compose(LASER.inverse()), np.random.default_rng(number))
+        return replace(item, value=seen)
+
+    items = changed(drive(SECONDS), "/scan", turned_round)
+    done = localize(write_bag(tmp_path / "made.bag", items, with_mount=False), *at_start())
+    assert any("degrees to the" in note for note in done.figures["notes"])
+
+
 def test_a_lidar_of_few_beams(localize: Localize, tmp_path: Path) -> None:
     def thinned(number: int, item: Item) -> Item:
         assert isinstance(item.value, np.ndarray)

@@ -16,13 +16,19 @@ from roomba.grid import FREE, OCCUPIED
 from roomba.perception.matching.scan_view import LidarModel
 
 CONFIG = RobotConfig()
-LIDAR = LidarModel.all_around(360, 0.15, 12.0)
+ANGLES = np.arange(360) * 2.0 * math.pi / 360.0
+LIDAR = LidarModel(ANGLES, 0.15, 12.0)
+SWEEP = 0.2
+"""s that a lidar takes which turns."""
 START = Pose(1.0, 1.0, 0.0)
 
 
-def _ranges(at: Pose) -> NDArray[np.float32]:
-    """What is seen in a room of 4 x 2 m whose corner is the origin."""
-    angles = at.theta + np.arange(360) * 2.0 * math.pi / 360.0
+def _ranges(at: Pose, turned: float = 0.0) -> NDArray[np.float32]:
+    """What is seen in a room of 4 x 2 m whose corner is the origin.
+
+    From the first beam to the last the robot has ``turned``, rad.
+    """
+    angles = at.theta + ANGLES + np.linspace(0.0, turned, 360)
     cosine, sine = np.cos(angles), np.sin(angles)
     with np.errstate(divide="ignore"):
         x = np.where(cosine > 0.0, (4.0 - at.x) / cosine, -at.x / cosine)
@@ -62,6 +68,21 @@ def test_true_odometry_draws_the_room() -> None:
 def test_wrong_odometry_draws_walls_where_there_are_none() -> None:
     area = np.count_nonzero(_drive(0.3).occupancy().values == FREE) * 0.05**2
     assert area > 8.6
+
+
+def test_of_a_lidar_that_turns_each_beam_is_drawn_from_where_it_was_measured() -> None:
+    blind = BlindMap(MappingConfig(), CONFIG.localization, CONFIG.gyro, START)
+    lidar = LidarModel(ANGLES, 0.15, 12.0, time_increment=SWEEP / 359.0)
+    blind.move(0.0, Pose())
+    for scan in range(40):
+        stamp, theta = SWEEP * scan, SWEEP * scan
+        blind.move(stamp + SWEEP, Pose(0.0, 0.0, theta + SWEEP))
+        blind.see(stamp, _ranges(Pose(START.x, START.y, theta), SWEEP), lidar)
+    occupancy = blind.occupancy()
+    x, y = occupancy.frame.centres(*np.nonzero(occupancy.values == OCCUPIED))
+    off = np.maximum(np.abs(x - 2.0) - 2.0, np.abs(y - 1.0) - 1.0)
+    assert len(off) > 0.8 * 12.0 / occupancy.frame.resolution
+    assert np.abs(off).max() < 1.5 * occupancy.frame.resolution
 
 
 def test_a_robot_that_stands_draws_once(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
 import pytest
 
 from roomba.commands.map import runs
+from roomba.commands.map.blind_map import BlindMap
 from roomba.commands.map.command import main
 from roomba.commands.map.json_file import TIMES, run_as_json
 from roomba.commands.map.plot import picture_of
@@ -72,6 +74,22 @@ def test_an_observer_sees_it_every_now_and_then() -> None:
     assert seen[-1] == times[-1]
     assert len(seen) > 0.2 * len(times)
     assert 0.0 < np.diff(seen).min() <= np.diff(seen).max() < 3.1
+
+
+def test_by_odometry_each_scan_is_drawn_where_it_was_taken(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    late: list[float] = []
+    see, scene = BlindMap.see, MapScene(CLOSET)
+
+    def noted(blind: BlindMap, stamp: float, *scan: Any) -> None:
+        late.append(stamp - scene.robot.seen.scan_stamp)
+        see(blind, stamp, *scan)
+
+    monkeypatch.setattr(BlindMap, "see", noted)
+    scene.run()
+    assert len(late) > 10
+    assert not np.any(late)
 
 
 def test_json_says_what_the_run_was(run: MapRun) -> None:

@@ -21,6 +21,7 @@ from roomba.commands.trials import many
 from roomba.commands.trials.figures import MissedShare
 from roomba.commands.trials.many import Outcome
 from roomba.commands.trials.trial import Trial
+from roomba.files.shipped import CONFIGURATION
 
 REPOSITORY = Path(__file__).parents[4]
 FINE = replace(WHOLE, missed=(MissedShare(0.1, 1.0, 2.0, "", "a door is shut"),))
@@ -85,6 +86,20 @@ def test_a_home_that_fails_is_status_1_and_told_by_its_seed(
     assert values["failures"] == [{"seed": 2, "reason": "no floor"}]
     assert "again: ./roomba sim --home random --sensors ideal --things 2 --seed 1" in printed.err
     assert "1 of 3 completed and docked" in printed.err
+
+
+def test_the_command_that_repeats_a_home_is_one_for_a_shell(
+    outcomes: dict[int, Outcome],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("my robot.yaml").write_bytes((CONFIGURATION / "robot.yaml").read_bytes())
+    outcomes[1] = "no floor"
+    assert command.main(["--homes", "2", "--config", "my robot.yaml"]) == 1
+    told = capsys.readouterr().out
+    assert "again: ./roomba sim --home random --config 'my robot.yaml' --seed 1" in told
 
 
 def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 from fixtures.bumping import BumpingHome
@@ -32,7 +34,8 @@ def phase(client: BumpingClient) -> str:
 
 def test_it_sweeps_is_paused_goes_on_and_comes_home(client: BumpingClient) -> None:
     wait_until(lambda: phase(client) == "docked", 20.0, lambda: phase(client))
-    assert client.robot().charges
+    assert client.robot().vacuum.battery == 1.0
+    assert not client.robot().charges
     client.clean(CleanOrder())
     wait_until(lambda: client.robot().vacuum.covered > 1.0, 60.0, lambda: phase(client))
     assert phase(client) == "cleaning"
@@ -47,6 +50,7 @@ def test_it_sweeps_is_paused_goes_on_and_comes_home(client: BumpingClient) -> No
     client.resume()
     client.dock()
     wait_until(lambda: phase(client) == "docked", 120.0, lambda: phase(client))
+    assert client.robot().charges
     last = client.robot().last
     assert last is not None
     assert last.outcome is ErrandOutcome.COMPLETED
@@ -77,6 +81,55 @@ def test_told_to_stop_it_stays_and_its_clean_is_told_as_stopped(client: BumpingC
     before = client.robot().pose
     client.drive(0.2, 0.0)
     wait_until(lambda: math.dist(client.robot().pose[:2], before[:2]) > 0.02, 10.0, "it drives")
+
+
+@contextlib.contextmanager
+def lives(stops: Path) -> Iterator[BumpingClient]:
+    """A robot that keeps its emergency stop in a folder; its program just ends in the end."""
+    home = BumpingHome("studio", 1)
+    client = BumpingClient("studio", BumpingRobot(home.body, home.brain), speed=50.0)
+    client.keep_stop(stops)
+    client.start()
+    yield client
+    client.end()
+
+
+def test_the_emergency_stop_holds_the_robot_that_is_started_anew(tmp_path: Path) -> None:
+    with lives(tmp_path) as client:
+        assert client.robot().held == ""
+        client.emergency_stop("child in the way")
+        assert client.robot().held == "child in the way"
+    with lives(tmp_path) as client:
+        assert client.robot().held == "child in the way"
+        assert phase(client) == "emergency stop"
+        before = client.robot()
+        client.clean(CleanOrder())
+        wait_until(lambda: client.robot().time > before.time + 3.0, 20.0, "its time passes")
+        assert client.robot().held == "child in the way"
+        assert math.dist(client.robot().pose[:2], before.pose[:2]) < 0.01
+        client.release()
+        assert client.robot().held == ""
+    with lives(tmp_path) as client:
+        assert client.robot().held == ""
+        client.emergency_stop("")
+    with lives(tmp_path) as client:
+        assert client.robot().held == "no reason was given"
+
+
+def test_a_disk_that_refuses_is_told_and_changes_nothing(tmp_path: Path) -> None:
+    file = tmp_path / "file"
+    file.write_bytes(b"")
+    with lives(file) as client:
+        client.emergency_stop("smoke")
+        assert client.robot().held.startswith("smoke; but it is forgotten if the robot is killed, ")
+        client.release()
+        assert client.robot().held == ""
+    (tmp_path / "studio.txt").mkdir()
+    with lives(tmp_path) as client:
+        assert "it counts as held" in client.robot().held
+        with pytest.raises(RequestRefusedError, match="the drive is free; but it holds again"):
+            client.release()
+        assert client.robot().held == ""
 
 
 def test_what_wants_a_map_is_refused_with_the_reason(client: BumpingClient) -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import datetime as dt
 import math
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +16,14 @@ from roomba.client.plain import home_from, home_of
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.client.view import CleanOrder, LayerName, ZoneView
 from roomba.commands.play.living import live_client
+from roomba.configuration.frozen import load_config
+from roomba.configuration.household import HouseholdConfig
+from roomba.files.shipped import CONFIGURATION
 from roomba.headless.live.client import LiveClient
+from roomba.household.household import LiveHousehold
 from roomba.perception.rooms.low_things import LowThing, LowThings
+from roomba.plans.plan import Plan
+from roomba.storage.kept_stop import KeptStop
 
 DEADLINE = 20.0
 """s of wall time."""
@@ -74,6 +83,88 @@ def test_the_emergency_stop_holds_until_it_is_released(client: LiveClient) -> No
         client.resume()
     client.release()
     assert client.robot().held == ""
+
+
+@contextlib.contextmanager
+def lives(stops: Path) -> Iterator[LiveClient]:
+    """A robot that keeps its emergency stop in a folder; its program just ends in the end."""
+    client = live_client("studio", seed=1, speed=40.0, knows_map=True)
+    client.keep_stop(stops)
+    client.start()
+    yield client
+    client.end()
+
+
+def test_the_emergency_stop_holds_the_robot_that_is_started_anew(tmp_path: Path) -> None:
+    with lives(tmp_path) as client:
+        assert client.robot().held == ""
+        client.emergency_stop("child in the way")
+    with lives(tmp_path) as client:
+        assert client.robot().held == "child in the way"
+        assert phase(client) == "emergency stop"
+        with pytest.raises(RequestRefusedError, match="child in the way"):
+            client.clean(CleanOrder())
+        client.release()
+        assert client.robot().held == ""
+    with lives(tmp_path) as client:
+        assert client.robot().held == ""
+        client.emergency_stop(" ")
+    with lives(tmp_path) as client:
+        assert client.robot().held == "no reason was given"
+
+
+def test_a_kept_stop_that_is_damaged_holds_and_says_so(tmp_path: Path) -> None:
+    (tmp_path / "studio.txt").write_bytes(b"")
+    with lives(tmp_path) as client:
+        assert "it counts as held" in client.robot().held
+        client.release()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_plan_that_is_due_waits_while_the_kept_stop_holds(tmp_path: Path) -> None:
+    assert KeptStop(tmp_path, "studio").keep(lambda: "child in the way") == ""
+    now = [dt.datetime(2026, 3, 2, 8, 0, tzinfo=dt.timezone.utc)]
+    with lives(tmp_path) as client:
+        config = load_config(HouseholdConfig, CONFIGURATION / "household.yaml")
+        told: list[str] = []
+        household = LiveHousehold(
+            client, tmp_path / "household", config, 50.0, told.append, now=lambda: now[0]
+        )
+        household.set_zone("UTC")
+        household.put_plan(Plan(name="all"))
+        household.look()
+        now[0] += dt.timedelta(hours=1, minutes=1)
+        household.look()
+        (plan,) = household.plans().plans
+        assert plan.reason == "the emergency stop holds the drive"
+        assert phase(client) == "emergency stop"
+        client.release()
+        household.look()
+        assert household.plans().running == "all"
+        assert told == []
+
+
+def test_a_disk_that_does_not_keep_the_stop_holds_it_nevertheless_and_is_told(
+    tmp_path: Path,
+) -> None:
+    file = tmp_path / "file"
+    file.write_bytes(b"")
+    with lives(file) as client:
+        client.clean(CleanOrder())
+        client.emergency_stop("child in the way")
+        held = client.robot().held
+        assert held.startswith("child in the way; but it is forgotten if the robot is killed, ")
+        assert phase(client) == "emergency stop"
+        client.release()
+        assert client.robot().held == ""
+
+
+def test_a_kept_stop_that_cannot_be_removed_is_told_and_the_drive_is_free(tmp_path: Path) -> None:
+    (tmp_path / "studio.txt").mkdir()
+    with lives(tmp_path) as client:
+        with pytest.raises(RequestRefusedError, match="the drive is free; but it holds again"):
+            client.release()
+        assert client.robot().held == ""
 
 
 def test_driving_by_hand_ends_with_silence(client: LiveClient) -> None:
@@ -260,6 +351,23 @@ def test_without_a_map_it_explores_and_finds_rooms() -> None:
         assert layer is not None
         assert client.home().rooms
         assert np.count_nonzero(layer.cells == 1) > np.count_nonzero(first.cells == 1)
+    finally:
+        client.end()
+
+
+def test_an_exploration_that_was_stopped_leaves_the_rest_to_be_explored() -> None:
+    client = live_client("studio", seed=1, speed=10.0, knows_map=False)
+    client.start()
+    try:
+        client.explore()
+        wait_until(lambda: phase(client) == "exploring", DEADLINE, "the exploration")
+        client.stop()
+        last = client.robot().last
+        assert last is not None
+        assert last.outcome.value == "stopped"
+        client.explore()
+        assert phase(client) != "idle"
+        assert client.home().rooms == ()
     finally:
         client.end()
 

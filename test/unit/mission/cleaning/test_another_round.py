@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from fixtures.robots.driven_cleans import FENCE, context
 from fixtures.robots.missions import DEN, TWO_ROOMS, WALL_X
 from numpy.typing import NDArray
@@ -51,6 +52,14 @@ def test_behind_a_shut_door_nothing_is_in_reach_but_for_who_is_there() -> None:
     shut_in = floor_in_reach(PLACE, DEN_SIDE, FENCE)
     assert shut_in[den].mean() > 0.9
     assert shut_in[PLACE.frame.cell_of(*STATION_SIDE)]
+
+
+@pytest.mark.parametrize("beyond", [(-0.5, -0.5), (PLACE.frame.extent[1] + 0.5, 1.2)])
+def test_a_robot_that_believes_itself_off_the_map_adds_no_floor(
+    beyond: tuple[float, float],
+) -> None:
+    from_the_station = floor_in_reach(PLACE, STATION_SIDE, FENCE)
+    assert np.array_equal(floor_in_reach(PLACE, beyond, FENCE), from_the_station)
 
 
 def test_a_room_may_be_opened_and_floor_below_a_thing_may_not() -> None:

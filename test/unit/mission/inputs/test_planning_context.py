@@ -66,6 +66,7 @@ def test_a_plan_of_coverage_begins_here_and_is_counted() -> None:
     edges = home.plan_coverage((1.0, 0.5), todo, [], edges_only=True)
     assert edges.length < 0.7 * plan.length
     assert watch.plans == 2
+    assert watch.seconds > 0.0
 
 
 def test_a_plan_that_fails_is_counted_too() -> None:

@@ -21,6 +21,8 @@ DRIVES: Final = (
 """What can be read."""
 _MOUNT: Final = 3
 """Numbers of --laser."""
+_HANGS: Final = {"upside-down": True, "upright": False}
+"""Words that may follow them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,14 +71,16 @@ def add_read(parser: argparse.ArgumentParser) -> None:
     what.add_argument(
         "--laser",
         type=_mount,
-        metavar="X,Y,YAW",
-        help="where the lidar is on the robot (default: as the transforms or the log tell)",
+        metavar="X,Y,YAW[,upside-down]",
+        help="where the lidar is on the robot, and whether it hangs upside down; upright: it does "
+        "not (default: as the transforms or the log tell, else as the drive shows)",
     )
 
 
 def wanted_of(given: argparse.Namespace) -> Wanted:
     """Return what is to be read of the logs."""
-    return Wanted(given.scan, given.odom, given.imu, given.laser)
+    laser, is_upside_down = given.laser or (None, None)
+    return Wanted(given.scan, given.odom, given.imu, laser, is_upside_down)
 
 
 def _parser() -> Parser:
@@ -99,13 +103,17 @@ def _parser() -> Parser:
     return parser
 
 
-def _mount(text: str) -> Pose:
+def _mount(text: str) -> tuple[Pose, bool | None]:
+    """Return where the lidar is, and whether it hangs upside down; None: not said."""
+    words = text.split(",")
+    is_upside_down = _HANGS.get(words[-1].strip())
     try:
-        numbers = [float(word) for word in text.split(",")]
+        numbers = [float(word) for word in (words if is_upside_down is None else words[:-1])]
     except ValueError:
         numbers = []
     if len(numbers) != _MOUNT or not all(map(math.isfinite, numbers)):
         raise argparse.ArgumentTypeError(
-            f"expected three finite numbers X,Y,YAW (m, m, rad), got {text!r}"
+            "expected three finite numbers X,Y,YAW (m, m, rad), and at most one of "
+            f"{' or '.join(_HANGS)} after them, got {text!r}"
         )
-    return Pose(*numbers)
+    return Pose(*numbers), is_upside_down

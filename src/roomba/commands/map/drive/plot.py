@@ -14,8 +14,8 @@ from roomba.commands.map.plot import (
     draw_station,
     draw_way,
     height_for,
-    write_picture,
 )
+from roomba.plots.png import write_png
 from roomba.plots.style import drawn, empty_figure
 
 _WIDTH: Final = 1200
@@ -24,7 +24,7 @@ _REST: Final = 130
 
 def write_plot(path: Path, done: MappedDrive) -> None:
     """Draw a drive into a PNG file; raises OSError."""
-    write_picture(path, picture_of(done))
+    write_png(path, picture_of(done))
 
 
 @drawn

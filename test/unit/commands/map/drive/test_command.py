@@ -25,6 +25,7 @@ from fixtures.drives.made_logs import (
 )
 
 from roomba.commands.map.drive.command import main
+from roomba.commands.map.drive.options import options_of
 from roomba.files.occupancy_map import load_map
 from roomba.geometry import Pose
 
@@ -97,6 +98,16 @@ def test_where_the_lidar_is_matters(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert "taken to be in the middle" not in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("words", "hangs"), [("", None), (",upside-down", True), (", upright", False)]
+)
+def test_how_the_lidar_hangs_may_be_said(words: str, hangs: bool | None) -> None:
+    wanted = options_of(["--bag", "made.bag", "--laser", f"0.1,-0.2,3{words}"]).wanted
+    assert (wanted.laser, wanted.laser_is_upside_down) == (Pose(0.1, -0.2, 3.0), hangs)
+    unsaid = options_of(["--bag", "made.bag"]).wanted
+    assert (unsaid.laser, unsaid.laser_is_upside_down) == (None, None)
+
+
 def test_poor_odometry_and_several_logs_are_corrected(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -134,6 +145,8 @@ def test_what_was_not_used_is_told_with_the_reason(
     [
         ("--bag {log} --laser 1,2", 2, "expected three finite numbers X,Y,YAW"),
         ("--bag {log} --laser 0,0,nan", 2, "expected three finite numbers X,Y,YAW"),
+        ("--bag {log} --laser 0,0,0,over", 2, "at most one of upside-down or upright after them"),
+        ("--bag {log} --laser upside-down", 2, "expected three finite numbers X,Y,YAW"),
         ("--bag {log} --trajectory no/folder/a.txt", 2, "--trajectory: expected a file in a"),
         ("--bag {log} --scan /none", 1, "expected sensor_msgs/LaserScan on /none, there is none"),
         ("--bag {log} {log}.relations", 1, "the truth that maps are judged by"),

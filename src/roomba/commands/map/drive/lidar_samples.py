@@ -1,0 +1,123 @@
+"""Scans of a drive by which its lidar is looked at, and where odometry had the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.perception.matching.pose_kernels import is_apart, seen_from
+from roomba.perception.matching.reckoned_path import ReckonedPath
+from roomba.perception.slam.scan_matching.surface_kernels import (
+    POINT,
+    room_for_sums,
+    surface_points,
+)
+from roomba.recordings.readings import LidarScan, Odometry, Reading
+from roomba.recordings.sweeps import Sweep, SweptScans
+
+Floats = NDArray[np.float64]
+
+_APART_WAY, _APART_TURN = 0.03, 0.03
+"""m, rad; between scans that are kept: a robot that stands shows nothing new."""
+_MOST: Final = 600
+"""Scans that are kept at most, with 18 m of way or 18 rad of turns between them."""
+_AROUND: Final = 2.0
+"""s; of odometry before and after a scan that is looked at."""
+_TIMES: Final = 4
+"""Odometry that is needed to tell anything."""
+
+
+class Sample(NamedTuple):
+    """A scan and its stamp, s; ``pose`` is where odometry had the robot then, [3]."""
+
+    stamp: float
+    scan: LidarScan
+    pose: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Path:
+    """Odometry: rows of stamp, s, x, y, m, and theta, rad, not wrapped."""
+
+    rows: Floats
+
+    def at(self, stamp: float) -> Floats:
+        """Return the pose at a time, [3]."""
+        stamps, *axes = self.rows.T
+        return np.array([np.interp(stamp, stamps, axis) for axis in axes])
+
+    def around(self, stamp: float) -> ReckonedPath:
+        """Return a piece of it as kernels know it."""
+        begin, end = np.searchsorted(self.rows[:, 0], (stamp - _AROUND, stamp + _AROUND)).tolist()
+        piece = self.rows[max(begin - 1, 0) : end + 1].copy()
+        return ReckonedPath(piece, np.array([len(piece) - 1, len(piece)]))
+
+
+class LidarSamples:
+    """Scans that were kept, in the order of time; ``period`` is the usual time between two, s."""
+
+    def __init__(self, readings: Iterable[Reading]) -> None:
+        """Keep scans until there are enough, and all odometry till then."""
+        rows: list[tuple[float, float, float, float]] = []
+        kept: list[tuple[float, LidarScan]] = []
+        stamps: list[float] = []
+        apart_from: tuple[float, float, float] | None = None
+        for stamp, value, _ in readings:
+            if isinstance(value, Odometry) and (not rows or stamp > rows[-1][0]):
+                rows.append((stamp, value.pose.x, value.pose.y, value.pose.theta))
+            elif isinstance(value, LidarScan) and rows:
+                stamps.append(stamp)
+                now = rows[-1][1:]
+                if apart_from is None or is_apart(
+                    np.array(now), np.array(apart_from), _APART_WAY, _APART_TURN
+                ):
+                    kept.append((stamp, value))
+                    apart_from = now
+            if len(kept) == _MOST:
+                break
+        path = np.array(rows).reshape(-1, 4)
+        path[:, 3] = np.unwrap(path[:, 3])
+        self._path = _Path(path)
+        self.period = float(np.median(np.diff(stamps))) if len(stamps) > 1 else 0.0
+        self._kept = kept if len(rows) >= _TIMES else []
+        self._swept: dict[Sweep, SweptScans] = {}
+
+    @cached_property
+    def scans(self) -> list[Sample]:
+        """The scans of which odometry tells where they were taken, from begin to end."""
+        begin, end = self._path.rows[[0, -1], 0].tolist() if self._kept else (0.0, 0.0)
+        return [
+            Sample(stamp, scan, self._path.at(stamp))
+            for stamp, scan in self._kept
+            if begin <= stamp <= end - self.period
+        ]
+
+    def turning(self, sample: Sample) -> float:
+        """Return how far the robot turned from a scan on until the next one usually came, rad."""
+        return float(self._path.at(sample.stamp + self.period)[2] - sample.pose[2])
+
+    def between(self, one: Sample, other: Sample, late: float = 0.0) -> Floats:
+        """Return where odometry had the robot at a scan, as seen from it at another one, [3].
+
+        Scans are stamped ``late``, s.
+        """
+        at = (self._path.at(each.stamp - late).tolist() for each in (one, other))
+        return np.array(seen_from(np.array(next(at)), np.array(next(at))))
+
+    def points(self, sample: Sample, sweep: Sweep | None = None, late: float = 0.0) -> Floats:
+        """Return the points that a scan shows, [n, 4], as :func:`surface_points` does.
+
+        None is the sweep that the driver tells; scans are stamped ``late``, s.
+        """
+        scan = sample.scan
+        if sweep is not None:
+            scan = self._swept.setdefault(sweep, SweptScans(sweep)).of(scan)
+        stamp = sample.stamp - late
+        still = scan.lidar.at_once(stamp, scan.ranges, self._path.around(stamp))
+        points, sums = np.empty((scan.lidar.beams, POINT)), room_for_sums(scan.lidar.beams)
+        return points[: surface_points(still, scan.lidar.arrays(), 0.0, points, sums)]

@@ -1,0 +1,75 @@
+"""A look at the lidar of a drive before that is followed: what was not told, or told wrong."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from roomba.commands.map.drive.lidar_samples import LidarSamples
+from roomba.commands.map.drive.shown_mount import ShownMount, shown_mount
+from roomba.commands.map.drive.shown_sweep import shown_sweep
+from roomba.geometry import Pose
+from roomba.perception.matching.mounts import Mount
+from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.mounting import degrees_aside
+
+_ANOTHER_WAY: Final = 0.25
+"""rad; a lidar that looks so far to a side is not taken to look ahead. Less is what its mounting is
+off, as the map's calibration tells."""
+
+
+def look_at_lidar(drive: LoggedDrive) -> None:
+    """Find out how the lidar is mounted and how it sweeps; have the drive read so, and say so.
+
+    A mount that was told is left as it is. Without odometry nothing is found out.
+    """
+    if not drive.chosen.has_odometry:
+        return
+    samples = LidarSamples(drive.readings())
+    shown = shown_mount(samples)
+    is_other = shown is not None and _is_other(shown)
+    if shown is not None and is_other:
+        if drive.is_mount_told:
+            drive.remark(_contradiction(shown))
+            return
+        drive.take_mount(_mount_of(shown))
+        samples = LidarSamples(drive.readings())
+    sweep = shown_sweep(samples)
+    if sweep is None:
+        return
+    drive.take_sweep(sweep)
+    drive.remark(
+        "the scans of turns fit the others clearly better if the beams of each were measured "
+        f"{sweep}: so they are taken, and not as the driver tells"
+    )
+    if shown is not None and is_other:
+        # Scans that are no longer bent tell it better.
+        drive.take_mount(Mount())
+        closer = shown_mount(LidarSamples(drive.readings()))
+        drive.take_mount(_mount_of(closer or shown))
+
+
+def _is_other(shown: ShownMount) -> bool:
+    return shown.is_turned_over or abs(shown.yaw) > _ANOTHER_WAY
+
+
+def _mount_of(shown: ShownMount) -> Mount:
+    yaw = shown.yaw if abs(shown.yaw) > _ANOTHER_WAY else 0.0
+    return Mount(Pose(theta=yaw), shown.is_turned_over)
+
+
+def _contradiction(shown: ShownMount) -> str:
+    """Return what is told of a lidar that is mounted another way than was told."""
+    if shown.is_turned_over:
+        wrong = (
+            "its scans turn one way and the odometry the other one: one of the two is mirrored, or "
+            "the lidar hangs the other way round than was told"
+        )
+    else:
+        wrong = (
+            "by its scans against the odometry it looks "
+            f"{degrees_aside(shown.yaw)} of where it was told to"
+        )
+    return (
+        f"the lidar's mount is taken as it was told, but {wrong}; --laser X,Y,YAW[,upside-down] "
+        "says how it is"
+    )

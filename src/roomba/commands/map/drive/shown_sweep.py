@@ -1,0 +1,105 @@
+"""How a lidar measures its beams one after the other, as its scans show while the robot turns.
+
+Some drivers turn scans round and leave ``time_increment`` as it was (Slamtec/rplidar_ros, issue
+55), some tell a wrong one, many none. A scan of a turn is bent unless it is put right by the sweep
+that it was measured with; one that was taken while the robot hardly turned is straight. So scans of
+turns are laid on such ones, put right by one sweep after the other: the right one makes them fit.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from roomba.commands.map.drive.lidar_samples import Floats, LidarSamples, Sample
+from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher
+from roomba.recordings.sweeps import Sweep
+
+_REACH: Final = 12.0
+"""m; farther points do not count."""
+_TURNING: Final = 0.03
+"""rad; so far the robot turns at least in the time of a scan that is bent."""
+_STRAIGHT: Final = 0.25
+"""Share of that by which it turns at most during the scan that the bent one is laid on."""
+_NEAR_WAY, _NEAR_TURN = 1.0, 1.0
+"""m, rad; farther apart scans show other places."""
+_PAIRS, _LEAST_PAIRS = 80, 10
+"""Pairs of scans that are looked at, at most and at least."""
+_LATE: Final = (0.0, 0.1, 0.2, 0.3, 0.4)
+"""s; scans may be stamped so late, whatever the sweep: for each one the best counts."""
+_WINDOW, _TURN = 0.2, 0.2
+"""m, rad; by which odometry may be off between two scans."""
+_CLEAR: Final = 4.0
+"""Standard errors by which another sweep than the told one must be better."""
+_SAME: Final = 0.3
+"""Share by which two times of a whole turn differ to be two."""
+
+
+def shown_sweep(samples: LidarSamples) -> Sweep | None:
+    """Return the sweep that is clearly better than the told one; None if none is."""
+    pairs = _pairs(samples)
+    if len(pairs) < _LEAST_PAIRS:
+        return None
+    told = _fits(samples, pairs, None)
+    best, best_fits = None, told
+    for sweep in _sweeps(samples):
+        fits = _fits(samples, pairs, sweep)
+        better = fits - told
+        error = float(better.std()) / math.sqrt(len(better))
+        if better.mean() > _CLEAR * error and fits.mean() > best_fits.mean():
+            best, best_fits = sweep, fits
+    return best
+
+
+def _pairs(samples: LidarSamples) -> list[tuple[Sample, Sample]]:
+    """Return straight scans, each with a bent one of about the same place, of all of the drive."""
+    scans = samples.scans
+    stamps = np.array([sample.stamp for sample in scans])
+    turns = np.array([abs(samples.turning(sample)) for sample in scans])
+    pairs = []
+    for number in np.flatnonzero(turns > _TURNING).tolist():
+        straight = np.flatnonzero(turns < _STRAIGHT * turns[number])
+        if not len(straight):
+            continue
+        nearest = straight[np.argmin(np.abs(stamps[straight] - stamps[number]))]
+        x, y, turn = samples.between(scans[nearest], scans[number]).tolist()
+        if math.hypot(x, y) < _NEAR_WAY and abs(turn) < _NEAR_TURN:
+            pairs.append((scans[nearest], scans[number]))
+    chosen = np.linspace(0, len(pairs) - 1, min(len(pairs), _PAIRS)).round().astype(int)
+    return [pairs[number] for number in chosen.tolist()]
+
+
+def _sweeps(samples: LidarSamples) -> list[Sweep]:
+    """Return what may be instead of what the driver tells."""
+    lidar = samples.scans[0].scan.lidar
+    told = lidar.time_increment * math.tau / abs(lidar.step)
+    sweeps = []
+    if told:
+        sweeps += [Sweep(turn=0.0), Sweep(is_backwards=True)]
+    if told < 0.0:
+        sweeps.append(Sweep())
+    if abs(abs(told) - samples.period) > _SAME * samples.period:
+        # Most lidars turn evenly, once for each scan.
+        sweeps += [Sweep(is_backwards, samples.period) for is_backwards in (False, True)]
+    return sweeps
+
+
+def _fits(samples: LidarSamples, pairs: list[tuple[Sample, Sample]], sweep: Sweep | None) -> Floats:
+    """Return how well the scans of pairs fit each other, [pairs], 0..1."""
+    fits = [[_fit(samples, *pair, sweep, late) for pair in pairs] for late in _LATE]
+    return np.array(max(fits, key=sum))
+
+
+def _fit(
+    samples: LidarSamples, straight: Sample, bent: Sample, sweep: Sweep | None, late: float
+) -> float:
+    """Return how well a bent scan fits a straight one, where it fits best, 0..1."""
+    place = samples.points(straight, sweep, late)
+    if not (np.hypot(place[:, 0], place[:, 1]) < _REACH).any():
+        return 0.0
+    matcher = CorrelativeMatcher(place, _REACH)
+    around = samples.between(straight, bent, late)
+    match = matcher.best(samples.points(bent, sweep, late), around, _WINDOW, _TURN, 0.0)
+    return 0.0 if match is None else match.score

@@ -1,0 +1,93 @@
+"""Where the sensors of a recorded drive are on its robot: as is told, or as the drive shows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Final
+
+from roomba.perception.matching.mounts import Mount, Mounts
+from roomba.recordings.choice import Wanted
+from roomba.recordings.log import Log
+from roomba.recordings.readings import Kind
+
+BODIES: Final = ("base_link", "base_footprint", "base")
+"""Frames of a robot's body that lie on each other as seen from above."""
+
+
+class Mounting:
+    """Tells where frames are on the frame ``body``; ``notes`` says what was doubtful."""
+
+    def __init__(self, logs: Sequence[Log], body: str, wanted: Wanted) -> None:
+        """Take the transforms of logs; where the lidar was ``wanted`` to be, it is."""
+        self._body = body
+        self._laser, self._is_upside_down = wanted.laser, wanted.laser_is_upside_down
+        self._mounts = Mounts()
+        for log in logs:
+            self._mounts.add(log.transforms())
+        self._found: dict[tuple[str, Kind], Mount] = {}
+        self._remarks: list[str] = []
+        self._untold: list[str] = []
+        self._shown: Mount | None = None
+
+    @property
+    def notes(self) -> list[str]:
+        """What is worth knowing of the lidars that were asked for so far."""
+        return [*self._remarks, *(self._words_of_untold(frame) for frame in self._untold)]
+
+    @property
+    def is_told(self) -> bool:
+        """Whether it was told where each lidar is that was asked for."""
+        return not self._untold
+
+    def take(self, shown: Mount) -> None:
+        """From now on a lidar of which nothing is told is mounted so, as the drive shows."""
+        self._shown = shown
+
+    def of(self, frame: str, kind: Kind) -> Mount:
+        """Return where a sensor is: in the middle, and looking ahead, if nothing tells."""
+        if kind is Kind.SCAN and self._laser is None and frame in self._untold:
+            return self._shown or Mount()
+        if (frame, kind) not in self._found:
+            self._found[frame, kind] = self._searched(frame, kind)
+        mount = self._found[frame, kind]
+        if kind is not Kind.SCAN or self._laser is None:
+            return mount
+        hangs = self._is_upside_down
+        return Mount(self._laser, mount.is_upside_down if hangs is None else hangs)
+
+    def _searched(self, frame: str, kind: Kind) -> Mount:
+        mount = self._mounts.mount(self._body, frame)
+        if mount is not None:
+            return mount
+        is_asked = kind is Kind.SCAN and self._laser is None
+        for body in BODIES if self._body in BODIES else ():
+            mount = self._mounts.mount(body, frame)
+            if mount is not None:
+                if is_asked:
+                    self._remarks.append(
+                        f"{frame!r} is where it is on {body!r}, not on {self._body!r}"
+                    )
+                return mount
+        if not is_asked:
+            return Mount()
+        self._untold.append(frame)
+        return self._shown or Mount()
+
+    def _words_of_untold(self, frame: str) -> str:
+        looks = "to look ahead"
+        if self._shown is not None:
+            yaw = self._shown.pose.theta
+            looks = f"to look {degrees_aside(yaw)}" if yaw else looks
+            looks += " and to hang upside down" if self._shown.is_upside_down else ""
+            looks += ", as its scans show against the odometry"
+        return (
+            f"no transform from {self._body!r} to {frame!r} was recorded: the lidar is taken to be "
+            f"in the middle of the robot, and {looks}; --laser X,Y,YAW[,upside-down] says where it "
+            "is"
+        )
+
+
+def degrees_aside(yaw: float) -> str:
+    """Return in words how far to the left, rad, something looks."""
+    return f"{math.degrees(abs(yaw)):.0f} degrees to the {'left' if yaw > 0.0 else 'right'}"

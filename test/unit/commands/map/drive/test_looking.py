@@ -1,0 +1,85 @@
+"""A lidar is looked at before its drive is followed: what was told wrong, or not at all."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from fixtures.drives.made_logs import Item, write_bag
+from fixtures.drives.turning_drive import BEAM_TIME, turning_drive
+
+from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
+from roomba.commands.map.drive.report import summary_of
+from roomba.geometry import Pose, wrap_angle
+from roomba.recordings.choice import Wanted
+
+
+def mapped(
+    path: Path, items: list[Item], wanted: Wanted | None = None, *, with_mount: bool = False
+) -> MappedDrive:
+    bag = write_bag(path / f"{id(items)}.bag", items, with_mount=with_mount)
+    return mapped_drive([bag], wanted or Wanted(), lambda share, words: None)
+
+
+def off(done: MappedDrive) -> float:
+    """How far the odometry, which is right, was off the map at most, m."""
+    return summary_of(done, 1.0).corrected_m
+
+
+def mount_of(done: MappedDrive) -> list[float]:
+    assert done.replay.lidar is not None
+    return list(done.replay.lidar.mount.tolist())
+
+
+@pytest.mark.parametrize("hangs", [False, True])
+def test_a_lidar_that_looks_back_is_taken_so_and_told(tmp_path: Path, hangs: bool) -> None:
+    done = mapped(tmp_path, turning_drive(yaw=math.pi, hangs=hangs))
+    x, y, theta = mount_of(done)
+    assert (x, y) == (0.0, 0.0)
+    assert abs(wrap_angle(theta - math.pi)) < 0.1
+    # It is 0.2 m ahead of the middle, which is not found out.
+    assert off(done) < 0.5
+    [note] = [note for note in done.notes if "no transform" in note]
+    assert "degrees to the" in note
+    assert ("hang upside down" in note) is hangs
+    assert "--laser X,Y,YAW[,upside-down] says where it is" in note
+
+
+def test_one_that_hangs_upside_down_makes_no_mirrored_map(tmp_path: Path) -> None:
+    done = mapped(tmp_path, turning_drive(hangs=True))
+    assert mount_of(done) == [0.0, 0.0, 0.0]
+    assert off(done) < 0.5
+    assert any("to look ahead and to hang upside down" in note for note in done.notes)
+
+
+def test_a_mount_that_was_told_is_left_and_what_contradicts_it_is_told(tmp_path: Path) -> None:
+    items = turning_drive(hangs=True)
+    recorded = mapped(tmp_path, items, with_mount=True)
+    assert mount_of(recorded) == pytest.approx([0.2, 0.0, 0.0])
+    assert any("its scans turn one way and the odometry the other" in n for n in recorded.notes)
+    looks_back = mapped(tmp_path, turning_drive(yaw=math.pi), Wanted(laser=Pose(0.2)))
+    assert mount_of(looks_back) == [0.2, 0.0, 0.0]
+    assert any("degrees to the" in note for note in looks_back.notes)
+
+
+def test_one_that_is_said_to_hang_upside_down_does(tmp_path: Path) -> None:
+    wanted = Wanted(laser=Pose(0.2), laser_is_upside_down=True)
+    done = mapped(tmp_path, turning_drive(hangs=True), wanted)
+    assert off(done) < 0.1
+    assert done.notes == ()
+
+
+def test_scans_that_are_bent_by_turns_are_straightened_and_that_is_told(tmp_path: Path) -> None:
+    items = turning_drive(beam_time=BEAM_TIME, is_backwards=True)
+    done = mapped(tmp_path, items, with_mount=True)
+    assert done.replay.lidar is not None
+    assert done.replay.lidar.time_increment == pytest.approx(BEAM_TIME)
+    [note] = done.notes
+    assert "from the last to the first" in note
+
+
+def test_of_a_drive_that_is_recorded_right_nothing_is_told(tmp_path: Path) -> None:
+    done = mapped(tmp_path, turning_drive(), with_mount=True)
+    assert done.notes == ()
+    assert off(done) < 0.05
