@@ -41,8 +41,8 @@ from roomba.recordings.readings import (
     Refused,
     Value,
 )
-from roomba.recordings.stamps import gone_on
-from roomba.recordings.untimed import spread_times, tell_nothing
+from roomba.recordings.times.stamps import gone_on
+from roomba.recordings.times.untimed import spread_times, tell_nothing
 
 BASE: Final = "base_link"
 WORDS: Final = ("FLASER", "ROBOTLASER1", "RAWLASER1", "ODOM", "PARAM")

@@ -24,7 +24,8 @@ from roomba.recordings.readings import (
     Refused,
     Value,
 )
-from roomba.recordings.stamps import (
+from roomba.recordings.sweeps import Sweep, SweptScans
+from roomba.recordings.times.stamps import (
     CLOCKS,
     Floats,
     Ints,
@@ -33,7 +34,6 @@ from roomba.recordings.stamps import (
     in_order,
     mended,
 )
-from roomba.recordings.sweeps import Sweep, SweptScans
 
 _GAP: Final = 1.0
 """s between two logs from which it is told."""

@@ -9,8 +9,8 @@ from enum import Enum
 import numpy as np
 
 from roomba.geometry import Twist
-from roomba.robot.look_around import SearchDrive
 from roomba.perception.localization.estimate import Knowledge
+from roomba.robot.look_around import SearchDrive
 from roomba.world.engine.state.arrays import Fault
 from roomba_bench.localization.drive import Wander
 from roomba_bench.localization.robot import (

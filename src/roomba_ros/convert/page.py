@@ -76,8 +76,9 @@ def battery_seconds_of(message: BatteryState) -> float:
 
 
 def charges_of(message: BatteryState) -> bool:
-    """Return whether the battery fills; False if that is not known."""
-    return bool(message.current > 0.0)
+    """Return whether the battery fills; a driver may tell its status and no current."""
+    is_charging = message.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING
+    return bool(is_charging or message.current > 0.0)
 
 
 def shown_path_of(message: Path) -> NDArray[np.float32]:

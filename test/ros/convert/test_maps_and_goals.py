@@ -26,7 +26,13 @@ from roomba_ros.convert.mission import (
     request_of,
     zones_of,
 )
-from roomba_ros.convert.page import battery_seconds_of, carpets_of, low_things_of, shown_path_of
+from roomba_ros.convert.page import (
+    battery_seconds_of,
+    carpets_of,
+    charges_of,
+    low_things_of,
+    shown_path_of,
+)
 
 BAD = (math.nan, math.inf, -math.inf)
 
@@ -203,3 +209,15 @@ def test_a_path_that_no_page_can_draw_is_refused(far: float) -> None:
     path.poses[1].pose.position.x = far
     with pytest.raises(MessageError, match="expected a path in a home"):
         shown_path_of(path)
+
+
+def test_a_battery_fills_by_its_current_or_by_its_status() -> None:
+    charging, discharging = (
+        BatteryState.POWER_SUPPLY_STATUS_CHARGING,
+        BatteryState.POWER_SUPPLY_STATUS_DISCHARGING,
+    )
+    assert charges_of(BatteryState(current=1.2, power_supply_status=discharging))
+    # A real robot tells no current.
+    assert charges_of(BatteryState(current=math.nan, power_supply_status=charging))
+    assert not charges_of(BatteryState(current=math.nan, power_supply_status=discharging))
+    assert not charges_of(BatteryState(current=-0.5, power_supply_status=discharging))

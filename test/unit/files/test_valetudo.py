@@ -167,13 +167,13 @@ def test_rooms_of_one_name_are_told_apart() -> None:
 
 
 SEAMS = """
-##############
-#aaa-bbbb--cc#
-#aaa-bbbb--cc#
-#aaa#bbbb#.cc#
-#aa...bbb....#
-#a...bbbb....#
-##############
+WWWWWWWWWWWWWW
+Waaa-bbbb--ccW
+Waaa-bbbb--ccW
+WaaaWbbbbW.ccW
+Waa...bbb....W
+Wa...bbbb....W
+WWWWWWWWWWWWWW
 """
 """Rooms, and no layer between: seams, -, what is wider or at a wall, and spots within a room."""
 
@@ -183,15 +183,15 @@ def test_seams_between_rooms_are_floor_and_nothing_else_is(turned: bool) -> None
     drawn = np.array([list(line) for line in SEAMS.split()])
     drawn = drawn.T if turned else drawn
     layers = []
-    for mark in "abc#":
+    for mark in "abcW":
         y, x = np.nonzero(drawn == mark)
-        kind = {"type": "wall"} if mark == "#" else {"type": "segment", "metaData": {"name": mark}}
+        kind = {"type": "wall"} if mark == "W" else {"type": "segment", "metaData": {"name": mark}}
         layers.append({**kind, "pixels": np.column_stack((x + 90, y + 90)).ravel().tolist()})
     home = parse(changed(layers=layers, entities=[]))
     inside = slice(2, -2), slice(2, -2)
     values = home.occupancy.values[inside][::-1]
     assert np.array_equal(values == FREE, np.isin(drawn, list("abc-")))
-    assert np.array_equal(values == OCCUPIED, drawn == "#")
+    assert np.array_equal(values == OCCUPIED, drawn == "W")
     masks = {name: mask[inside][::-1] for name, mask in home.rooms}
     for name, mask in masks.items():
         assert set(drawn[mask]) <= {name, "-"}

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-import cv2
 from matplotlib.figure import Figure
 
 from roomba.commands.campaign.comparison import Comparison
 from roomba.commands.campaign.running.measures import MEASURES
 from roomba.commands.campaign.running.specification import Campaign
+from roomba.plots.png import write_png
 from roomba.plots.style import BLUE, GREEN, GREY, INK, ORANGE, PINK, RED, drawn, empty_figure
 
 _WIDTH: Final = 1000
@@ -28,8 +28,7 @@ _MARGIN: Final = 1.25
 
 def write_plot(path: Path, campaign: Campaign, comparisons: Sequence[Comparison]) -> None:
     """Draw the comparisons into a PNG file; raises OSError."""
-    if not cv2.imwrite(str(path), picture_of(campaign, comparisons)[:, :, ::-1]):
-        raise OSError(f"{path}: cannot be written")
+    write_png(path, picture_of(campaign, comparisons))
 
 
 def reach_of(comparisons: Sequence[Comparison]) -> float | None:

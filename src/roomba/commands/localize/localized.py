@@ -20,7 +20,7 @@ from roomba.files.shipped import CONFIGURATION
 from roomba.grid import FREE, OccupancyMap
 from roomba.recordings.drive import LoggedDrive
 from roomba.recordings.readings import Kind, LogError, OwnPose
-from roomba.recordings.stamps import StampCounts
+from roomba.recordings.times.stamps import StampCounts
 
 _SHOWN: Final = 64
 """Readings between two updates of the progress."""

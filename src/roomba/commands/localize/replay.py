@@ -20,8 +20,8 @@ from roomba.recordings.readings import (
     ToldPose,
     Turning,
 )
+from roomba.recordings.times.waiting import StampedScan, WaitingScan
 from roomba.recordings.turning import NewestTurning
-from roomba.recordings.waiting import StampedScan, WaitingScan
 
 _ROW_PERIOD: Final = 0.045
 """s; as often as the live node tells its pose, with something left for clocks that tremble."""

@@ -22,7 +22,7 @@ from roomba.grid import OccupancyMap
 from roomba.recordings.choice import Wanted
 from roomba.recordings.drive import LoggedDrive
 from roomba.recordings.readings import Kind, LogError, TruePose
-from roomba.recordings.stamps import StampCounts
+from roomba.recordings.times.stamps import StampCounts
 
 Floats = NDArray[np.float64]
 

@@ -20,8 +20,8 @@ from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.mapper import Mapper
 from roomba.recordings.readings import LidarScan, Odometry, Turning, Value
+from roomba.recordings.times.waiting import StampedScan, WaitingScan
 from roomba.recordings.turning import NewestTurning
-from roomba.recordings.waiting import StampedScan, WaitingScan
 
 _GUESSED: Final = {
     "way_noise": 0.2,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from roomba.perception.matching.scan_view import LidarModel
-from roomba.recordings.waiting import StampedScan, WaitingScan
+from roomba.recordings.times.waiting import StampedScan, WaitingScan
 
 ANGLES = np.arange(4) * 0.5 * np.pi
 RANGES = np.ones(4, np.float32)

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.recordings.stamps import StampCounts, delay_of, gone_on, in_order, mended
+from roomba.recordings.times.stamps import StampCounts, delay_of, gone_on, in_order, mended
 
 Floats = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from roomba.recordings.untimed import spread_times, tell_nothing
+from roomba.recordings.times.untimed import spread_times, tell_nothing
 
 
 @pytest.mark.parametrize(

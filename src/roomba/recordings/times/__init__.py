@@ -1,0 +1,1 @@
+"""Times of recorded messages: mended, made up where there are none, and in order."""
