@@ -100,7 +100,8 @@ def touches_of(lines: Sequence[str]) -> Touches:
     def any_of(*names: str) -> bool:
         return any(values.get(name, 0.0) for name in names)
 
-    _of(values, "LSIDEBIT")
+    for name in ("LSIDEBIT", "LFRONTBIT", "RSIDEBIT", "RFRONTBIT"):
+        _of(values, name)
     return Touches(
         any_of("LSIDEBIT", "LFRONTBIT", "LLDSBIT"),
         any_of("RSIDEBIT", "RFRONTBIT", "RLDSBIT"),

@@ -2,6 +2,10 @@
 
 One command at a time goes over the line, some 25 ms each and a scan half a second on a serial line.
 :meth:`NeatoBody.serve` does the one that is due; a thread of its own calls it again and again.
+
+No command takes a wheel farther ahead than the floor that the drop sensors have seen, which are
+asked before it where too little of that is left: a scan, a slow line or one that dies lead over no
+edge. Where they tell one the wheels are stopped at once.
 """
 
 from __future__ import annotations
@@ -9,19 +13,27 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.robot import STANDSTILL_WITHIN, RobotConfig
 from roomba.drivers.line import LineError
 from roomba.drivers.neato import answers
 from roomba.drivers.neato.answers import AnswerError
 from roomba.drivers.neato.conversation import Conversation, SilenceError
 from roomba.drivers.neato.planned import PlannedWheels
+from roomba.drivers.neato.questions import ANSWER, Question, UntoldError
+from roomba.drivers.neato.seen_floor import SeenFloor
 from roomba.drivers.neato.sweeps import SweepClock
-from roomba.drivers.neato.wheels import ENABLE, STOP, WheelCommand, wheel_command
+from roomba.drivers.neato.wheels import (
+    ENABLE,
+    STOP,
+    AheadLimit,
+    WheelCommand,
+    fastest_ahead,
+    wheel_command,
+)
 from roomba.drivers.wheel_odometry import WheelOdometry
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.mission.inputs.senses import Battery
@@ -29,8 +41,6 @@ from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.command import Command
 from roomba.robot.readings import CliffReading, Readings, ScanReading
 
-_ANSWER: Final = 0.3
-"""s; the longest wait for a short answer."""
 _SCAN_ANSWER: Final = 1.5
 _BEGINNING: Final = 1.0
 """s; the same for what takes the robot over."""
@@ -42,8 +52,10 @@ _HOLD: Final = 0.3
 """s; that the wheels go on after a command, while others are on the line."""
 _SCAN_HOLD: Final = 0.45
 """s; the same before a scan, which takes longer on a serial line."""
-_AGAIN: Final = 0.1
+_AGAIN: Final = 0.05
 """s; from a command of the wheels to the next."""
+_LONG: Final = 10.0
+"""s without a scan, or the charge, after which that is trouble; bumpers and drops are told."""
 _SCAN_PERIOD: Final = 0.1
 """s; more often than the lidar turns, so that it is seen when its sweeps end."""
 _SCAN_SHARE: Final = 0.5
@@ -59,17 +71,6 @@ _NO_FLOOR: Final = 0.06
 _SAME_TURN: Final = 0.05
 """Share by which the lidar's turns may differ and its beams are taken to be the same."""
 _BEEP: Final = "PlaySound SoundID 3"
-
-
-@dataclass(slots=True)
-class _Due:
-    """A question that is asked every ``period`` s, for the last time at ``last``, s."""
-
-    command: str
-    period: float
-    take: Callable[[list[str]], None]
-    within: float = _ANSWER
-    last: float = -math.inf
 
 
 class NeatoBody:
@@ -101,13 +102,20 @@ class NeatoBody:
         self._scan: ScanReading | None = None
         self._newest_scan: ScanReading | None = None
         self._is_unanswered = False
-        self._scans = _Due("GetLDSScan", _SCAN_PERIOD, self._take_scan, _SCAN_ANSWER)
-        self._due = [
-            _Due("GetMotors", 0.05, self._take_motors),
-            _Due("GetDigitalSensors", 0.1, self._take_touches),
-            _Due("GetAnalogSensors", 0.2, self._take_drops),
+        self._floor = SeenFloor(config.cliff)
+        self._goes_ahead = False
+        self._telling = 0.0
+        self._scans = Question(
+            "GetLDSScan", "its lidar", _SCAN_PERIOD, self._take_scan, _SCAN_ANSWER
+        )
+        self._edges = Question("GetAnalogSensors", "its drop sensors", 0.1, self._take_drops)
+        self._charger = Question("GetCharger", "its battery", 0.25, self._take_charge)
+        self._questions = [
+            Question("GetMotors", "its wheels", 0.05, self._take_motors),
+            Question("GetDigitalSensors", "its bumpers", 0.1, self._take_touches),
+            self._edges,
             self._scans,
-            _Due("GetCharger", 0.25, self._take_charge),
+            self._charger,
         ]
 
     def read(self) -> Readings:
@@ -157,14 +165,22 @@ class NeatoBody:
             self._beeps = True
 
     def begin(self) -> None:
-        """Take the robot over and let its lidar turn; raises LineError."""
+        """Take the robot over and let its lidar turn; raises LineError, or UntoldError.
+
+        All that it must tell is asked once; scans only once there was one: a lidar takes its time
+        to come up to its speed.
+        """
         for command in ("TestMode On", "SetLDSRotation On", STOP):
             self._line.ask(command, _BEGINNING)
-        self._is_enabled, self._is_unanswered = False, False
+        self._is_enabled, self._is_unanswered, self._goes_ahead = False, False, False
         self._power_told = (False, 0)
         with self._lock:
             self._odometry.stand()
             self._planned.take(self._now(), None)
+        for question in self._questions:
+            if question is not self._scans or self._newest_scan is not None:
+                question.require(self._line, self._now)
+        self._scans.told_at = self._now()
 
     def end(self) -> None:
         """Let the robot stand, and give it back.
@@ -181,7 +197,7 @@ class NeatoBody:
 
     def _is_answered(self, command: str) -> bool:
         try:
-            self._line.ask(command, _ANSWER)
+            self._line.ask(command, ANSWER)
         except LineError:
             return False
         return True
@@ -189,7 +205,7 @@ class NeatoBody:
     def serve(self) -> None:
         """Send the command that is due; raises LineError, after which :meth:`begin` is due.
 
-        One answer that does not come is passed over.
+        One answer that does not come is passed over, and so is one that tells nothing.
         """
         try:
             self._serve()
@@ -198,41 +214,52 @@ class NeatoBody:
             if self._is_unanswered:
                 raise
             self._is_unanswered = True
+        self._require_answers()
+
+    def _require_answers(self) -> None:
+        """Let the robot stand, and raise UntoldError, where it does not tell what it must."""
+        # While a scan is on the line nothing else is told.
+        soon = STANDSTILL_WITHIN + self._scans.took
+        try:
+            for question in self._questions:
+                may_wait = question is self._scans or question is self._charger
+                question.check(self._now(), _LONG if may_wait else soon)
+        except UntoldError:
+            self._is_answered(STOP)
+            raise
 
     def _serve(self) -> None:
         if self._drive_is_due():
-            self._drive(_HOLD)
+            others = max(each.took for each in self._questions if each is not self._scans)
+            self._drive(_HOLD, others)
             return
         if self._takes_beep():
-            self._line.ask(_BEEP, _ANSWER)
+            self._line.ask(_BEEP, ANSWER)
             return
-        question = max(self._due, key=self._urgency)
+        question = max(self._questions, key=self._urgency)
         if question is self._scans:
-            self._drive(_SCAN_HOLD)
-        question.last = self._now()
-        self._take(question)
+            self._drive(_SCAN_HOLD, question.took)
+        self._ask(question)
         if question is self._scans:
-            took = self._now() - question.last
-            question.period = max(_SCAN_PERIOD, took / _SCAN_SHARE)
+            question.period = max(_SCAN_PERIOD, question.took / _SCAN_SHARE)
 
-    def _urgency(self, due: _Due) -> float:
-        """Return how many of its periods ago a question was asked."""
-        since = self._now() - due.last
-        is_blind = due is self._scans and due.period > _SCAN_PERIOD / _SCAN_SHARE
+    def _urgency(self, question: Question) -> float:
+        since = self._now() - question.asked_at
+        is_blind = question is self._scans and question.period > _SCAN_PERIOD / _SCAN_SHARE
         is_blind = is_blind and since < _LONGEST_WITHOUT_SCAN
         if is_blind and (self._is_to_turn() or self._now() - self._turned_at < _SETTLED):
             # While a scan is on a slow line it is not told how far the robot turned.
             return 0.0
-        return since / due.period
+        return question.urgency(self._now())
 
     def _is_to_turn(self) -> bool:
         return abs(self._wanted_now()[0].angular) > _CALM
 
-    def _take(self, question: _Due) -> None:
+    def _ask(self, question: Question) -> None:
         try:
-            question.take(self._line.ask(question.command, question.within))
+            question.ask(self._line, self._now)
         except AnswerError:
-            # What a bad line garbled; it is asked again at its time.
+            # What a bad line garbled; it is asked again.
             return
 
     def _takes_beep(self) -> bool:
@@ -252,26 +279,42 @@ class NeatoBody:
                 return STANDSTILL, (False, 0)
             return self._wanted, self._power
 
-    def _drive(self, seconds: float) -> None:
+    def _drive(self, hold: float, busy: float) -> None:
+        """Tell the wheels to go on for ``hold`` s; what is asked next keeps the line ``busy`` s."""
+        seconds = min(hold, busy + self._edges.took + self._telling)
+        if fastest_ahead(self._wanted_now()[0], self._track) * seconds > self._way_left():
+            self._ask(self._edges)
         twist, power = self._wanted_now()
         with self._lock:
             now = self._odometry.twist
         half = 0.5 * self._track * now.angular
         moving = max(abs(now.linear - half), abs(now.linear + half))
-        command = wheel_command(twist, self._track, seconds, moving)
+        limit = AheadLimit(self._way_left(), seconds)
+        command = wheel_command(twist, self._track, hold, moving, limit)
         if command is None:
-            if self._is_enabled:
-                self._line.ask(STOP, _ANSWER)
-                self._is_enabled = False
-                self._plan(None)
+            self._stop()
         else:
             if not self._is_enabled:
-                self._line.ask(ENABLE, _ANSWER)
+                self._line.ask(ENABLE, ANSWER)
                 self._is_enabled = True
-            self._line.ask(command.text, _ANSWER)
+            self._line.ask(command.text, ANSWER)
+            self._telling = self._line.took
+            self._goes_ahead = max(command.left, command.right) > 0
             self._plan(command)
         self._driven = twist != STANDSTILL, self._now()
         self._set_power(power)
+
+    def _way_left(self) -> float:
+        """Return how far the wheels may roll ahead when they hear a command that is sent now, m."""
+        heard = self._now() + self._telling
+        with self._lock:
+            return self._floor.left(self._planned.ways(heard))
+
+    def _stop(self) -> None:
+        if self._is_enabled:
+            self._line.ask(STOP, ANSWER)
+            self._is_enabled = self._goes_ahead = False
+            self._plan(None)
 
     def _plan(self, command: WheelCommand | None) -> None:
         with self._lock:
@@ -284,7 +327,7 @@ class NeatoBody:
         is_cleaning, fan = power
         on = f"SetMotor VacuumOn VacuumSpeed {fan}", "SetMotor BrushEnable Brush RPM 1200"
         for command in on if is_cleaning and fan > 0 else _AT_REST:
-            self._line.ask(command, _ANSWER)
+            self._line.ask(command, ANSWER)
         self._power_told = power
 
     def _heard_at(self) -> float:
@@ -305,9 +348,13 @@ class NeatoBody:
             self._touches = touches
 
     def _take_drops(self, lines: list[str]) -> None:
-        drops = answers.drops_of(lines)
+        drops, at = answers.drops_of(lines), self._heard_at() - self._edges.lateness
+        has_edge = max(drops.left, drops.right) > _NO_FLOOR
         with self._lock:
             self._drops = drops
+            self._floor.take(self._planned.ways(at), has_edge=has_edge)
+        if has_edge and self._goes_ahead:
+            self._stop()
 
     def _take_charge(self, lines: list[str]) -> None:
         charge = answers.charge_of(lines)
@@ -317,7 +364,7 @@ class NeatoBody:
     def _take_scan(self, lines: list[str]) -> None:
         told = answers.scan_of(lines)
         if told.rotation <= 0.0:
-            return
+            raise AnswerError("expected a lidar that turns, got ROTATION_SPEED 0")
         before, turn = self._newest_scan, 1.0 / told.rotation
         is_other = before is None or not np.array_equal(before.ranges, told.ranges)
         ended = self._sweeps.ended(self._heard_at(), turn, is_other=is_other)

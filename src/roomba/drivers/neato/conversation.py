@@ -36,6 +36,12 @@ class Conversation:
         self._line, self._now = line, now
         self._patience, self._per_byte = patience, per_byte
         self._heard_at = now()
+        self._took = 0.0
+
+    @property
+    def took(self) -> float:
+        """How long the newest question took until its answer was whole, or was given up, s."""
+        return self._took
 
     @property
     def since_heard(self) -> float:
@@ -49,6 +55,13 @@ class Conversation:
         command is passed over. Raises SilenceError when nothing whole came ``within`` s, and
         LineError when the line is gone.
         """
+        began = self._now()
+        try:
+            return self._answer(command, within)
+        finally:
+            self._took = self._now() - began
+
+    def _answer(self, command: str, within: float) -> list[str]:
         end = self._now() + within + self._patience
         self._line.discard()
         self._line.write(command.encode("ascii") + b"\n")

@@ -42,23 +42,43 @@ GAIN: Final = 1e-3 * _ACCELERATION
 """m/s2."""
 
 
+@dataclass(frozen=True, slots=True)
+class AheadLimit:
+    """A wheel may roll ``way`` m ahead, and takes ``seconds`` for it at least."""
+
+    way: float = math.inf
+    seconds: float = 0.0
+
+
+def fastest_ahead(twist: Twist, track: float) -> float:
+    """Return how fast the wheel that is faster ahead is to roll, m/s; 0 or less: none rolls ahead.
+
+    No wheel is faster than it can.
+    """
+    return min(_FASTEST, twist.linear + 0.5 * track * abs(twist.angular))
+
+
 def wheel_command(
-    twist: Twist, track: float, seconds: float, moving: float = math.inf
+    twist: Twist,
+    track: float,
+    seconds: float,
+    moving: float = math.inf,
+    limit: AheadLimit = AheadLimit(),
 ) -> WheelCommand | None:
     """Return what drives ``twist`` for ``seconds``; None for standing still.
 
     ``track`` is how far the wheels are apart, m; ``moving`` how fast the faster wheel goes already,
     m/s: as long as it gains speed it comes less far in that time. Too fast a twist is driven
-    slower, along the same curve. Raises ValueError for one that is not finite.
+    slower, along the same curve, and one that would come too far ahead less far. Raises ValueError
+    for one that is not finite.
     """
     if not twist.is_finite:
         raise ValueError(f"expected a finite twist, got {twist}")
     half = 0.5 * track * twist.angular
     left, right = twist.linear - half, twist.linear + half
+    left, right = _scaled(left, right, _share(_FASTEST, max(abs(left), abs(right))))
+    left, right = _scaled(left, right, _share(limit.way, max(left, right) * limit.seconds))
     fastest = max(abs(left), abs(right))
-    if fastest > _FASTEST:
-        left, right = left * _FASTEST / fastest, right * _FASTEST / fastest
-        fastest = _FASTEST
     speed = round(1e3 * fastest)
     if speed == 0:
         return None
@@ -66,7 +86,17 @@ def wheel_command(
     lacking = max(0.0, fastest - moving)
     gaining = min(seconds, lacking / GAIN)
     full = seconds - gaining * (lacking - 0.5 * GAIN * gaining) / fastest
+    full *= _share(limit.way, full * max(left, right))
     ways = round(1e3 * left * full), round(1e3 * right * full)
     if ways == (0, 0):
         return None
     return WheelCommand(*ways, speed)
+
+
+def _scaled(left: float, right: float, share: float) -> tuple[float, float]:
+    return share * left, share * right
+
+
+def _share(most: float, wanted: float) -> float:
+    """Return the share of what is wanted that is not more than ``most``."""
+    return most / wanted if wanted > most else 1.0

@@ -84,3 +84,10 @@ def test_nonsense_is_refused_with_what_was_expected(lines: list[str]) -> None:
     ):
         with pytest.raises(AnswerError, match="expected"):
             read(lines)
+
+
+@pytest.mark.parametrize("label", ["LSIDEBIT", "LFRONTBIT", "RSIDEBIT", "RFRONTBIT"])
+def test_bumpers_of_which_one_is_not_told_are_refused(label: str) -> None:
+    lines = [line for line in XV11_TOUCHES if not line.startswith(label)]
+    with pytest.raises(AnswerError, match=f"expected {label}"):
+        answers.touches_of(lines)

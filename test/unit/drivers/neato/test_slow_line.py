@@ -38,8 +38,9 @@ def test_while_a_scan_is_on_the_line_and_after_it_is_told_where_it_should_be() -
         assert told.distance_to(true.x, true.y) < 0.05
         assert abs(math.remainder(told.theta - true.theta, math.tau)) < 0.25
     steps = [told.distance_to(before.x, before.y) for (_, before), (_, told) in pairwise(poses)]
-    # At 0.3 m/s a tick is 0.015 m; the rest is what the way to the next answer was guessed wrong.
-    assert max(steps) < 0.03
+    # At 0.3 m/s a tick is 0.015 m; the rest is what the way to the next answer was guessed wrong:
+    # the wheels brake before the end of the floor that was seen.
+    assert max(steps) < 0.035
 
 
 def test_as_quick_as_usb_no_scan_is_so_old_that_the_lidar_counts_as_silent() -> None:

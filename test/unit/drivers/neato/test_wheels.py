@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.drivers.neato.wheels import WheelCommand, wheel_command
+from roomba.drivers.neato.wheels import AheadLimit, WheelCommand, fastest_ahead, wheel_command
 from roomba.geometry import Twist
 
 TRACK = 0.248
@@ -52,3 +52,34 @@ def test_standing_is_no_distance_and_nonsense_is_refused() -> None:
     assert wheel_command(Twist(), TRACK, 0.3) is None
     with pytest.raises(ValueError, match="expected a finite twist"):
         wheel_command(Twist(math.nan, 0.0), TRACK, 0.3)
+
+
+@given(SPEEDS, TURNS, st.floats(0.0, 0.1), st.floats(0.0, 0.6))
+def test_ahead_it_comes_as_far_as_it_may_and_takes_its_time(
+    linear: float, angular: float, way: float, seconds: float
+) -> None:
+    free = wheel_command(Twist(linear, angular), TRACK, 0.3)
+    command = wheel_command(Twist(linear, angular), TRACK, 0.3, limit=AheadLimit(way, seconds))
+    ahead = fastest_ahead(Twist(linear, angular), TRACK)
+    if ahead <= 0.0:
+        assert command == free
+    if command is not None:
+        assert max(command.left, command.right) <= 1e3 * way + 0.5
+        share = max(command.left, command.right) / max(abs(command.left), abs(command.right))
+        assert 1e-3 * command.speed * share * seconds <= way + 0.02
+
+
+def test_with_no_way_ahead_it_stands_and_still_goes_back() -> None:
+    none = AheadLimit(0.0, 0.2)
+    assert wheel_command(Twist(0.3, 0.0), TRACK, 0.3, limit=none) is None
+    assert wheel_command(Twist(0.0, 1.0), TRACK, 0.3, limit=none) is None
+    back = wheel_command(Twist(-0.1, 0.0), TRACK, 0.3, limit=none)
+    assert back is not None
+    assert back.left < 0
+
+
+def test_the_wheel_that_is_fastest_ahead() -> None:
+    assert fastest_ahead(Twist(0.1, 1.0), TRACK) == pytest.approx(0.224)
+    assert fastest_ahead(Twist(0.0, -1.0), TRACK) == pytest.approx(0.124)
+    assert fastest_ahead(Twist(-0.2, 1.0), TRACK) < 0.0
+    assert fastest_ahead(Twist(0.5, 0.0), TRACK) == pytest.approx(0.3)

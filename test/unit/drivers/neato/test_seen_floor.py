@@ -1,0 +1,48 @@
+"""How far wheels may roll ahead where drop sensors saw a floor."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from roomba.configuration.sensors import CliffConfig
+from roomba.drivers.neato.seen_floor import SeenFloor
+
+SENSORS = CliffConfig(angles=(60.0, 10.0, -10.0, -60.0), radius=0.2)
+REACH = 0.1
+"""m; how far the outer sensors are ahead of the wheels."""
+
+
+def test_nothing_was_seen_before_the_sensors_told() -> None:
+    assert SeenFloor(SENSORS).left((0.0, 0.0)) == 0.0
+
+
+def test_the_wheels_may_come_where_the_sensors_were() -> None:
+    floor = SeenFloor(SENSORS)
+    floor.take((1.0, 2.0), has_edge=False)
+    assert floor.left((1.0, 2.0)) == pytest.approx(REACH)
+    assert floor.left((1.03, 2.04)) == pytest.approx(REACH - 0.04)
+    assert floor.left((1.2, 2.2)) == 0.0
+    floor.take((1.2, 2.2), has_edge=False)
+    assert floor.left((1.2, 2.2)) == pytest.approx(REACH)
+
+
+def test_a_wheel_that_rolled_back_left_the_floor_that_was_seen_as_well() -> None:
+    floor = SeenFloor(SENSORS)
+    floor.take((0.0, 0.0), has_edge=False)
+    assert floor.left((-0.04, 0.04)) == pytest.approx(REACH - 0.04)
+    assert floor.left((-0.3, -0.3)) == 0.0
+
+
+def test_at_an_edge_no_way_ahead_is_left() -> None:
+    floor = SeenFloor(SENSORS)
+    floor.take((0.0, 0.0), has_edge=False)
+    floor.take((0.01, 0.01), has_edge=True)
+    assert floor.left((0.01, 0.01)) == 0.0
+
+
+def test_the_least_ahead_of_all_sensors_counts() -> None:
+    floor = SeenFloor(CliffConfig(angles=(60.0, 15.0, -15.0, -60.0), radius=0.155))
+    floor.take((0.0, 0.0), has_edge=False)
+    assert floor.left((0.0, 0.0)) == pytest.approx(0.155 * math.cos(math.radians(60.0)))
