@@ -7,13 +7,24 @@ from typing import Annotated, ClassVar, Final
 
 from pydantic import Field
 
-from roomba.configuration.frozen import AtLeastOne, Frozen, Positive, Ratio
+from roomba.configuration.frozen import (
+    Acceleration,
+    AtLeastOne,
+    Duration,
+    Frozen,
+    Positive,
+    Ratio,
+    Side,
+    TurningSpeed,
+)
 from roomba.geometry import Pose
 from roomba.vocabulary import FanLevel
 
 FASTEST_SPEED: Final = 3.0
 """m/s; a speed above this is a slip of the finger, not a robot for a home."""
-Speed = Annotated[float, Field(gt=0.0, le=FASTEST_SPEED, allow_inf_nan=False)]
+Speed = Annotated[float, Field(ge=0.001, le=FASTEST_SPEED)]
+BinCapacity = Annotated[float, Field(ge=0.01, le=100_000.0)]
+"""g; with less each pass over a floor fills it."""
 Angles = Annotated[
     tuple[Annotated[float, Field(ge=-math.pi, le=math.pi)], ...], Field(min_length=1)
 ]
@@ -26,21 +37,21 @@ _ABOUT: Final = Pose(0.0, 0.0, math.pi)
 class BodyConfig(Frozen):
     """The round differential-drive body; lengths in m, speeds in m/s and rad/s."""
 
-    diameter: Positive = 0.32
-    height: Positive = 0.092
-    wheel_separation: Positive = 0.235
-    wheel_diameter: Positive = 0.072
+    diameter: Side = 0.32
+    height: Side = 0.092
+    wheel_separation: Side = 0.235
+    wheel_diameter: Side = 0.072
     max_speed: Speed = 0.5
-    max_angular_speed: Positive = 4.25
-    max_acceleration: Positive = 0.9
-    max_deceleration: Positive = 2.0
-    max_angular_acceleration: Positive = 7.7
-    command_timeout: Positive = 0.15
-    backing_speed: Positive = 0.1
+    max_angular_speed: TurningSpeed = 4.25
+    max_acceleration: Acceleration = 0.9
+    max_deceleration: Acceleration = 2.0
+    max_angular_acceleration: Acceleration = 7.7
+    command_timeout: Duration = 0.15
+    backing_speed: Speed = 0.1
     """m/s; away from a cliff, and from what the bumper met."""
-    cliff_backing_time: Positive = 2.5
+    cliff_backing_time: Duration = 2.5
     """s; then it stands: no sensor looks behind, and a cliff sensor may be dirty."""
-    bumper_backing_time: Positive = 0.6
+    bumper_backing_time: Duration = 0.6
     """s; the longest time that it backs off from what the bumper met."""
     bumper_side: Angles = (0.35, 0.95)
     """rad; where on the left half of the rim a press of that half may come from; the right half is
@@ -83,9 +94,9 @@ class BrushConfig(Frozen):
     it, in a mean in which the newest current has ``current_share``.
     """
 
-    width: Positive = 0.20
+    width: Annotated[float, Field(ge=0.05, le=1.0)] = 0.20
     duty: Ratio = 1.0
-    bin_capacity: Positive = 100.0
+    bin_capacity: BinCapacity = 100.0
     carpet_current: Positive = 0.33
     floor_current: Positive = 0.29
     current_share: Ratio = 0.3

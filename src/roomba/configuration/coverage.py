@@ -6,7 +6,15 @@ from typing import Annotated
 
 from pydantic import Field
 
-from roomba.configuration.frozen import AtLeastOne, Count, Frozen, NotNegative, Positive, Ratio
+from roomba.configuration.frozen import (
+    AtLeastOne,
+    Count,
+    Frozen,
+    Length,
+    NotNegative,
+    Positive,
+    Ratio,
+)
 
 
 class CoverageConfig(Frozen):
@@ -14,7 +22,7 @@ class CoverageConfig(Frozen):
 
     cell: Annotated[float, Field(ge=0.005, le=0.05)] = 0.01
     """m; approximate side of the cells on which floor is counted: finer is exacter, and slower."""
-    out_of_station: Positive = 0.4
+    out_of_station: Length = 0.4
     """m; the farthest from a robot in its station to where it can drive freely."""
     narrow: Positive = 6.0
     """Blocks of 5 cells to both sides; a place that is narrower divides the floor."""
@@ -22,7 +30,7 @@ class CoverageConfig(Frozen):
     """Blocks; a part with a smaller wide place is joined to its neighbour."""
     speck: Count = 20
     """Cells; smaller patches that the edges leave get no swath."""
-    piece: Positive = 3.0
+    piece: Annotated[float, Field(ge=0.1, le=1000.0)] = 3.0
     """Widths of the tool; edges can be left for swaths about this often."""
     edge_worth: NotNegative = 1.0
     """Cells of new floor for a cell of way: the least that an edge is driven for."""

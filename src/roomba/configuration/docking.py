@@ -2,7 +2,18 @@
 
 from __future__ import annotations
 
-from roomba.configuration.frozen import Acute, AtLeastOne, Frozen, Positive, Ratio
+from roomba.configuration.body import Speed
+from roomba.configuration.frozen import (
+    Acute,
+    Angle,
+    AtLeastOne,
+    Frozen,
+    Length,
+    Positive,
+    Ratio,
+    TurningSpeed,
+    Wait,
+)
 
 
 class DockingConfig(Frozen):
@@ -11,90 +22,90 @@ class DockingConfig(Frozen):
     Distances to the station count from the robot's middle to where it is when it is docked.
     """
 
-    staging_distance: Positive = 0.65
+    staging_distance: Length = 0.65
     """In front of the station, where path planning hands over: within its beams."""
-    plate_gap: Positive = 0.03
+    plate_gap: Length = 0.03
     """Between the docked robot's front and the station."""
-    farthest: Positive = 2.5
+    farthest: Length = 2.5
     """From the station; farther away path planning has to bring the robot first."""
-    search_reach: Positive = 0.3
+    search_reach: Length = 0.3
     """To either side of the way to the station, where it looks for beams."""
 
-    speed: Positive = 0.2
+    speed: Speed = 0.2
     """While it is not near."""
-    creep_speed: Positive = 0.05
+    creep_speed: Speed = 0.05
     """Over the last of the way: it stops within the contacts' tolerance, senses being late."""
-    feeling_speed: Positive = 0.02
+    feeling_speed: Speed = 0.02
     """Past the docked place, where the contacts should have touched: current may be told late."""
-    creep_distance: Positive = 0.08
+    creep_distance: Length = 0.08
     """Of the way; as sure as the believed place and the halo's edge are."""
     braking: Positive = 0.8
     """1/s; how much faster it is for each metre that is left before it creeps."""
-    turning_speed: Positive = 1.0
+    turning_speed: TurningSpeed = 1.0
     steering_gain: Positive = 2.0
     """1/s; the turning speed for each radian that the heading is wrong."""
 
-    contact_margin: Positive = 0.08
+    contact_margin: Length = 0.08
     """What is felt nearer to the docked place than this is the station."""
-    overrun: Positive = 0.10
+    overrun: Length = 0.10
     """Past the docked place; when nothing is felt so far, no station is there."""
-    contact_wait: Positive = 2.0
+    contact_wait: Wait = 2.0
     """For the charging current after contact."""
-    settle_time: Positive = 0.4
+    settle_time: Wait = 0.4
     """The current must last so long before the robot is docked."""
-    nudge: Positive = 0.05
+    nudge: Length = 0.05
     """So far it creeps when it backs off: where it was pressed too far in, current comes."""
-    back_distance: Positive = 0.4
+    back_distance: Length = 0.4
     back_turn: Ratio = 0.2
     """rad; it turns as it backs off, and so crosses the edge of the beams on the next try."""
-    blocked_wait: Positive = 2.0
+    blocked_wait: Wait = 2.0
     """Before the next attempt, so that what stands in the way can leave."""
 
     max_attempts: AtLeastOne = 4
-    beam_wait: Positive = 0.5
+    beam_wait: Wait = 0.5
     """Without a beam it goes on for so long."""
-    lost_timeout: Positive = 10.0
+    lost_timeout: Wait = 10.0
     """Not knowing where it is and seeing no beam, it waits so long."""
-    stuck_timeout: Positive = 3.0
+    stuck_timeout: Wait = 3.0
     """So long it may drive without moving."""
-    emptying_timeout: Positive = 5.0
+    emptying_timeout: Wait = 5.0
     """For a station to begin to empty the bin."""
-    time_limit: Positive = 150.0
+    time_limit: Wait = 150.0
 
-    undock_distance: Positive = 0.35
-    undock_speed: Positive = 0.15
-    undocked_distance: Positive = 0.25
+    undock_distance: Length = 0.35
+    undock_speed: Speed = 0.15
+    undocked_distance: Length = 0.25
     """From the station; a robot that is farther away is undocked already."""
     undocked_turn: Acute = 0.5
     """rad; one whose nose is turned away from the station by more is so, too: nothing holds it."""
-    undock_time_limit: Positive = 10.0
+    undock_time_limit: Wait = 10.0
 
-    place_tolerance: Positive = 0.08
+    place_tolerance: Length = 0.08
     """Arriving at the staging place, or at one from which it looks for beams."""
     turn_in_place_angle: Acute = 0.5
     """rad; when its heading is wrong by more, it turns on the spot."""
-    shortest_reach: Positive = 0.15
+    shortest_reach: Length = 0.15
     """Look-ahead for aiming at the middle of the beams; it is longer while the robot is far."""
     most_aside: Acute = 0.5
     """rad; the largest angle to the straight way at which it aims; smaller when it is near."""
-    least_aside: Positive = 0.09
+    least_aside: Angle = 0.09
     """rad; the same angle at the end: within what the contacts tolerate."""
     narrow: Ratio = 0.3
     """Share of the way left that it may be aside; beyond it drives to the staging place first."""
-    shortest_way: Positive = 0.2
+    shortest_way: Length = 0.2
     """With less way left it cannot get straight any more."""
-    side_step: Positive = 0.15
+    side_step: Length = 0.15
     """So far it backs off from what it meets while it looks for beams."""
-    standstill_way: Positive = 0.02
+    standstill_way: Length = 0.02
     """A robot that moved less stands still."""
-    standstill_turn: Positive = 0.1
+    standstill_turn: Angle = 0.1
     """rad; the same of turning."""
-    longest_step: Positive = 0.3
+    longest_step: Length = 0.3
     """A larger change of the believed place in a tick is a new belief."""
-    farthest_off: Positive = 0.5
+    farthest_off: Length = 0.5
     """Beams that say that the belief is wrong by more are of another place, or another time."""
-    heading_doubt: Positive = 0.1
+    heading_doubt: Angle = 0.1
     """rad; possible error of the heading: a robot that long sees one beam alone is farther
     aside."""
-    late_beams: Positive = 0.3
+    late_beams: Wait = 0.3
     """s; after a new belief, beams may still be those that were seen before it."""

@@ -4,26 +4,53 @@ from __future__ import annotations
 
 import math
 import operator
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, TypeVar
 
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic_core import ErrorDetails
 
 from roomba.errors import ConfigError
 from roomba.files.bounded import read_text
-from roomba.files.plain_yaml import load_yaml
+from roomba.files.plain_yaml import load_with_nodes
+from roomba.files.strict_yaml import told_of_repeated_key
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+_LARGEST: Final = 1e9
+
+Positive = Annotated[float, Field(ge=1.0 / _LARGEST, le=_LARGEST)]
+"""What has no type of its own: areas, gains, worths."""
+NotNegative = Annotated[float, Field(ge=0.0, le=_LARGEST)]
 Ratio = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 Degrees = Annotated[float, Field(ge=-180.0, le=180.0)]
-NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
+Length = Annotated[float, Field(ge=1e-9, le=10_000.0)]
+"""m; of ways, ranges and tolerances."""
+Clearance = Annotated[float, Field(ge=1e-4, le=1.0)]
+"""m; between the body and what stands: a home has no more room."""
+Side = Annotated[float, Field(ge=0.01, le=2.0)]
+"""m; of the robot and its parts."""
+Cell = Annotated[float, Field(ge=0.01, le=0.5)]
+"""m; side of a grid's cells."""
+Duration = Annotated[float, Field(ge=0.001, le=86_400.0)]
+"""s, up to a day."""
+Wait = Annotated[float, Field(ge=0.001, le=600.0)]
+"""s that the robot may stand still for."""
+WaitOrNone = Annotated[float, Field(ge=0.0, le=600.0)]
+Period = Annotated[float, Field(ge=0.001, le=10.0)]
+"""s; of what is done again and again."""
+TurningSpeed = Annotated[float, Field(ge=0.001, le=50.0)]
+"""rad/s."""
+Acceleration = Annotated[float, Field(ge=0.01, le=_LARGEST)]
+"""m/s2, or rad/s2; the largest are as good as at once."""
+Angle = Annotated[float, Field(ge=1e-4, le=2.0 * math.pi)]
+"""rad."""
 Acute = Annotated[float, Field(gt=0.0, lt=math.pi / 2)]
 """rad; less than a right angle."""
-Count = Annotated[int, Field(ge=0)]
-AtLeastOne = Annotated[int, Field(ge=1)]
+Count = Annotated[int, Field(ge=0, le=1_000_000)]
+AtLeastOne = Annotated[int, Field(ge=1, le=1_000_000)]
 
 _SIGNS: Final = {"<": operator.lt, "<=": operator.le}
 _Model = TypeVar("_Model", bound=BaseModel)
@@ -55,16 +82,21 @@ def load_config(model: type[_Model], path: Path) -> _Model:
 
 
 def read_yaml(path: Path) -> Any:
-    """Return what a YAML file holds, an empty mapping for an empty file; raises ConfigError."""
+    """Return what a YAML file holds, an empty mapping for an empty file.
+
+    Raises ConfigError for what is no YAML, and for a key that is there twice.
+    """
     try:
-        raw = load_yaml(read_text(path))
+        raw, root = load_with_nodes(read_text(path))
     except UnicodeDecodeError as error:
         raise ConfigError(
             f"{path}: expected UTF-8 text, got other bytes; save it as UTF-8"
         ) from error
     except (OSError, yaml.YAMLError) as error:
         raise ConfigError(f"{path}: cannot be read as YAML: {error}") from error
-    return raw or {}
+    if told := told_of_repeated_key(root):
+        raise ConfigError(f"{path}:{told}")
+    return {} if raw is None else raw
 
 
 def validated(
@@ -78,7 +110,7 @@ def validated(
         return model.model_validate(raw)
     except ValidationError as error:
         first = error.errors()[0]
-        name = ".".join(str(part) for part in first["loc"])
+        name = ".".join(str(part) for part in _place_in(raw, first))
         match first["type"]:
             case "value_error":  # raised by a validator of the model, which says what it got
                 reason = first["msg"].removeprefix("Value error, ")
@@ -86,9 +118,24 @@ def validated(
                 reason = f"{unknown}, got {first['input']!r}"
             case "model_type" | "dict_type":
                 reason = f"expected keys and values (`key: value`), got {first['input']!r}"
+            case "tuple_type" | "list_type":
+                reason = f"expected a list (`[value, value]`), got {first['input']!r}"
             case "missing":
                 reason = "expected a value, got nothing; add it"
             case _:
                 told = first["msg"].replace("Input should be", "expected")
                 reason = f"{told}, got {first['input']!r}"
         raise ConfigError(f"{where}{name}: {reason}" if name else f"{where}{reason}") from error
+
+
+def _place_in(raw: Any, error: ErrorDetails) -> list[int | str]:
+    """Return the keys and indices of a value, without pydantic's names of the types tried on it."""
+    place: list[int | str] = []
+    for part in error["loc"]:
+        held = raw if isinstance(raw, Mapping) else {}
+        if isinstance(raw, list | tuple):
+            held = dict(enumerate(raw))
+        if part in held:
+            place.append(part)
+            raw = held[part]
+    return [*place, error["loc"][-1]] if error["type"] == "missing" else place

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from roomba.configuration.frozen import AtLeastOne, Frozen, Positive, Ratio
+from roomba.configuration.frozen import AtLeastOne, Duration, Frozen, Positive, Ratio
 
 
 class UpkeepConfig(Frozen):
@@ -23,13 +23,13 @@ class PlansConfig(Frozen):
 
     least_battery: Ratio = 0.3
     """With less no clean begins by a plan."""
-    retry_after: Positive = 1800.0
+    retry_after: Duration = 1800.0
     """Before a clean that ended too early is tried again."""
     most_tries: AtLeastOne = 3
     """Of the same time of a plan."""
-    longest_pause: Positive = 1800.0
+    longest_pause: Duration = 1800.0
     """On the floor while a person is at home; then the robot goes home to its station."""
-    on_time: Positive = 120.0
+    on_time: Duration = 120.0
     """What begins later than this was missed."""
 
 

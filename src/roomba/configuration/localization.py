@@ -6,7 +6,17 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from roomba.configuration.frozen import AtLeastOne, Frozen, NotNegative, Positive, Ratio
+from roomba.configuration.frozen import (
+    Angle,
+    AtLeastOne,
+    Duration,
+    Frozen,
+    Length,
+    NotNegative,
+    Positive,
+    Ratio,
+    WaitOrNone,
+)
 
 HalfTurn = Annotated[float, Field(gt=0.0, le=3.1416)]
 """rad; to each side."""
@@ -15,14 +25,14 @@ HalfTurn = Annotated[float, Field(gt=0.0, le=3.1416)]
 class ReckoningConfig(Frozen):
     """Going by wheels and gyro between two scans: m, rad, s."""
 
-    settling: NotNegative = 0.3
+    settling: WaitOrNone = 0.3
     """After a stop, until the gyro shows its bias alone."""
     jolt: NotNegative = 0.05
     """Tolerance of a step that seems faster than any robot: its time is not exact."""
-    longest_step: Positive = 1.0
+    longest_step: Duration = 1.0
     """Between two samples over which the gyro is integrated."""
-    same_way: Positive = 1.0
-    same_turn: Positive = 1.0
+    same_way: Length = 1.0
+    same_turn: Angle = 1.0
     """Motion after which the map's errors of what is seen are others than before."""
 
 
@@ -64,10 +74,10 @@ class FitConfig(Frozen):
 class ExpectingConfig(Frozen):
     """Where the robot is expected when places are compared: m, rad; evidence is a logarithm."""
 
-    told_radius: Positive = 0.5
+    told_radius: Length = 0.5
     told_turn: HalfTurn = 0.5
     """Around a pose that was told,"""
-    here_radius: Positive = 0.04
+    here_radius: Length = 0.04
     here_turn: HalfTurn = 0.04
     """and around one that was known;"""
     drift: NotNegative = 0.01
@@ -81,18 +91,18 @@ class ExpectingConfig(Frozen):
 class SearchingConfig(Frozen):
     """Looking for the robot, near by and on the whole map: m, rad, s; evidence is a logarithm."""
 
-    wait_before_moving: NotNegative = 0.5
+    wait_before_moving: WaitOrNone = 0.5
     """For a scan that tells places apart, before it moves to get one."""
-    again_after: NotNegative = 1.0
+    again_after: WaitOrNone = 1.0
     """A search that found nothing is tried anew;"""
-    compare_after: NotNegative = 1.0
+    compare_after: WaitOrNone = 1.0
     """a place of which no better one was found is compared anew."""
-    follow_after: Positive = 1.0
+    follow_after: Duration = 1.0
     """Driven while places are compared; then particles follow all that may be."""
-    near_way: Positive = 0.6
+    near_way: Length = 0.6
     near_turn: HalfTurn = 0.7
     """To each side, where it looks first: wheels that slip, a push."""
-    new_way: Positive = 0.12
+    new_way: Length = 0.12
     new_turn: HalfTurn = 0.4
     """Motion after which another scan counts."""
     hopeless: Positive = 14.0
@@ -102,11 +112,11 @@ class SearchingConfig(Frozen):
 class RecentSightConfig(Frozen):
     """What was seen a moment ago, which tells that the robot was not carried: s, m."""
 
-    apart: NotNegative = 0.4
+    apart: WaitOrNone = 0.4
     """Between two scans that are kept, of which there are twelve."""
-    newest: NotNegative = 1.0
+    newest: WaitOrNone = 1.0
     """The least age of a scan to compare with: later ones may be from after it was carried."""
-    oldest: Positive = 6.0
+    oldest: Duration = 6.0
     """The greatest age: by then it may have driven elsewhere."""
     slack: NotNegative = 0.10
     slack_share: Ratio = 0.03
@@ -133,18 +143,18 @@ class CalibrationConfig(Frozen):
 
     scale: Positive = 0.02
     drift: Positive = 0.1
-    shift: Positive = 0.02
+    shift: Length = 0.02
     turn: Positive = 1.5
     least_scale: Positive = 0.01
     least_gyro: Positive = 0.004
     least_drift: Positive = 0.02
-    least_shift: Positive = 0.001
+    least_shift: Length = 0.001
     least_turn: Positive = 0.1
     sure: AtLeastOne = 1
-    window_way: Positive = 1.0
-    window_turn: Positive = 1.5
+    window_way: Length = 1.0
+    window_turn: Angle = 1.5
     forgetting_way: Positive = 20_000.0
-    bias_time: Positive = 600.0
+    bias_time: Duration = 600.0
 
 
 class LocalizationConfig(Frozen):
@@ -162,16 +172,16 @@ class LocalizationConfig(Frozen):
     wheel_turn_noise: Positive = 0.012
     turn_noise: Positive = 0.01
     gyro_drift: Positive = 0.001
-    beam_deviation: Positive = 0.03
-    known_deviation: Positive = 0.06
-    unsure_deviation: Positive = 0.08
+    beam_deviation: Length = 0.03
+    known_deviation: Length = 0.06
+    unsure_deviation: Length = 0.08
     """Above it a scan is matched from farther away."""
-    astray_deviation: Positive = 0.3
+    astray_deviation: Length = 0.3
     """Above it a pose is searched around, as one that was told is."""
-    lost_deviation: Positive = 1.0
+    lost_deviation: Length = 1.0
     least_beams: AtLeastOne = 30
-    scan_timeout: Positive = 0.9
-    search_timeout: Positive = 30.0
+    scan_timeout: Duration = 0.9
+    search_timeout: Duration = 30.0
     needed_evidence: Annotated[float, Field(gt=0.0, le=12.0)] = 8.0
     calibration: CalibrationConfig = CalibrationConfig()
     reckoning: ReckoningConfig = ReckoningConfig()

@@ -6,33 +6,47 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from roomba.configuration.frozen import AtLeastOne, Count, Frozen, NotNegative, Positive, Ratio
+from roomba.configuration.frozen import (
+    Angle,
+    AtLeastOne,
+    Cell,
+    Count,
+    Duration,
+    Frozen,
+    Length,
+    NotNegative,
+    Positive,
+    Ratio,
+)
+
+Window = Annotated[float, Field(ge=0.01, le=50.0)]
+"""m to each side, in which scans are matched: time and memory grow with its square."""
 
 
 class MapChangesConfig(Frozen):
     """What is a lasting change of a map that the robot knows: m, m2, s."""
 
-    farthest: Positive = 5.0
+    farthest: Length = 5.0
     """The longest range that counts: there a degree is two cells."""
-    look_way: Positive = 0.5
+    look_way: Length = 0.5
     """A look at the home lasts until so much was driven,"""
-    look_time: Positive = 15.0
+    look_time: Duration = 15.0
     """and so much time has passed: people who stand about are no change."""
     sure: Annotated[int, Field(ge=1, le=5)] = 4
     """Looks that show a change of a cell, minus those that show none, for the change to count."""
-    blur: Positive = 0.12
+    blur: Length = 0.12
     """Nearer to what stands as mapped a cell tells no change."""
     least_area: Positive = 0.06
     """A change with less area, and with less extent than ``least_length``, is no furniture."""
-    least_length: Positive = 0.4
-    behind: Positive = 0.8
+    least_length: Length = 0.4
+    behind: Length = 0.8
     """Depth of unknown cells behind vanished furniture that become known."""
-    movable: Positive = 0.7
+    movable: Length = 0.7
     """What is no larger is moved about by people; a chair that was moved is no change."""
-    moved: Positive = 1.0
+    moved: Length = 1.0
     """So far a thing is moved at most; farther off another one appeared."""
-    new_way: Positive = 0.05
-    new_turn: Positive = 0.2
+    new_way: Length = 0.05
+    new_turn: Angle = 0.2
     """m, rad; a scan from nearer to the last one says nothing new."""
     least_beams: AtLeastOne = 2
     """In a cell, for a look to count there."""
@@ -47,8 +61,8 @@ class MapChangesConfig(Frozen):
 class FloorsConfig(Frozen):
     """Telling floors, and their rooms, from others: m, rad; evidence is a natural logarithm."""
 
-    station_radius: Positive = 0.3
-    station_turn: Positive = 0.3
+    station_radius: Length = 0.3
+    station_turn: Angle = 0.3
     """Around its station, where a robot is expected to wake."""
     station_evidence: NotNegative = 6.0
     """For that; less than believing a place needs, so that it never decides alone."""
@@ -61,7 +75,7 @@ class FloorsConfig(Frozen):
     """Share of the walls that two maps of one floor have in common, or more,"""
     least_floor: Ratio = 0.6
     """and of the smaller map's floor."""
-    same_wall: Positive = 0.08
+    same_wall: Length = 0.08
     """Walls so near to each other are the same: those of neighbouring cells."""
     same_room: Ratio = 0.5
     """Share of the smaller of two rooms' floor; with less in common they are different rooms."""
@@ -78,18 +92,18 @@ class FollowingConfig(Frozen):
     """Scans without a match, after which the next is matched from farther away."""
     doubtful: Ratio = 0.85
     """Of the usual agreement; a scan that agrees less is searched for around the robot."""
-    searched_way: Positive = 0.5
-    searched_turn: Positive = 0.8
+    searched_way: Window = 0.5
+    searched_turn: Angle = 0.8
     """To each side,"""
     searched_share: NotNegative = 0.2
     """and by this share of what was driven and turned since a scan confirmed the pose,"""
-    searched_farthest: NotNegative = 4.0
+    searched_farthest: Annotated[float, Field(ge=0.0, le=50.0)] = 4.0
     """and by what it drives in that time at its pace, but no farther than this."""
-    pace_fades: Positive = 10.0
+    pace_fades: Duration = 10.0
     """After so long the fastest pace counts a third."""
     likelihood: Ratio = 0.5
     """Mean of points, from which a pose is looked at closely."""
-    far_apart: Positive = 0.5
+    far_apart: Length = 0.5
     """Between scans that are so far apart, which show much that none before them did,"""
     likelihood_apart: Ratio = 0.3
     """it is this, up to half as far off as wheels may have slipped."""
@@ -100,10 +114,10 @@ class FollowingConfig(Frozen):
     piece_way: NotNegative = 0.6
     piece_turn: NotNegative = 2.0
     """and so much driven or turned: then the map goes on in a piece of its own."""
-    sure_deviation: Positive = 0.01
-    sure_heading: Positive = 0.005
-    unsure_deviation: Positive = 0.1
-    unsure_heading: Positive = 0.05
+    sure_deviation: Length = 0.01
+    sure_heading: Angle = 0.005
+    unsure_deviation: Length = 0.1
+    unsure_heading: Angle = 0.05
     """What is told of the pose, against what was seen just now, with a match and without one."""
 
     in_order: ClassVar[tuple[str, ...]] = ("fewest_points <= least_points",)
@@ -112,15 +126,15 @@ class FollowingConfig(Frozen):
 class WindowsConfig(Frozen):
     """How far submaps that are matched may lie off: m, rad."""
 
-    beside: Positive = 0.15
+    beside: Window = 0.15
     """From where they were thought to be, always."""
-    narrow: Positive = 0.35
+    narrow: Window = 0.35
     """In a window that is no wider points find their surfaces by themselves."""
-    ambiguous: Positive = 1.5
+    ambiguous: Window = 1.5
     """In a wider window nothing else may fit nearly as well."""
-    widest: Positive = 12.0
+    widest: Window = 12.0
     """No wider window is searched."""
-    turn: Positive = 0.1
+    turn: Angle = 0.1
     turn_per_metre: NotNegative = 0.15
     most_turn: NotNegative = 0.9
     """rad, and rad/m of the window; how much submaps may be turned, the second at most this."""
@@ -129,7 +143,7 @@ class WindowsConfig(Frozen):
     """Of submaps that are near only if much is wrong so many are looked at, so many apart."""
     likely: Ratio = 0.45
     """Mean likelihood of points from which a pose of a wide window is looked at closely."""
-    hardly: Positive = 0.3
+    hardly: Length = 0.3
     """A link with a larger standard deviation was made without a scan that confirmed it."""
 
     in_order: ClassVar[tuple[str, ...]] = ("beside <= narrow <= ambiguous <= widest",)
@@ -138,73 +152,73 @@ class WindowsConfig(Frozen):
 class BackingConfig(Frozen):
     """Loops that move a part of the map far, which another one must back: m, rad."""
 
-    far: Positive = 2.0
+    far: Length = 2.0
     neighbours: AtLeastOne = 3
     """Submaps; the other loop is of one that is so few away."""
-    same_place: Positive = 0.4
-    same_heading: Positive = 0.08
+    same_place: Length = 0.4
+    same_heading: Angle = 0.08
     """Two loops agree that place a submap so nearly alike."""
 
 
 class PiecesConfig(Frozen):
     """Standard deviations of links that no scan measured: m, rad."""
 
-    deviation: Positive = 0.5
-    heading_deviation: Positive = 0.1
+    deviation: Length = 0.5
+    heading_deviation: Angle = 0.1
     """Of one to a piece of its own,"""
     share: NotNegative = 0.1
     """and by this share of what was driven and turned there."""
-    told_deviation: Positive = 0.05
-    told_heading_deviation: Positive = 0.05
+    told_deviation: Length = 0.05
+    told_heading_deviation: Angle = 0.05
     """Of one to a pose that people told."""
 
 
 class RelocationConfig(Frozen):
     """Finding a robot on its growing map after it was carried: m, rad."""
 
-    window: Positive = 3.0
+    window: Window = 3.0
     """Around each submap's beginning."""
     likelihood: Ratio = 0.85
     """Mean of points, that a place must have."""
     clearly: Ratio = 0.85
     """Of the best place's likelihood, that others may have."""
-    elsewhere_way: Positive = 0.5
-    elsewhere_turn: Positive = 0.3
+    elsewhere_way: Length = 0.5
+    elsewhere_turn: Angle = 0.3
     """Poses that are farther apart are of two places."""
-    moved: Positive = 0.25
-    turned: Positive = 0.5
+    moved: Length = 0.25
+    turned: Angle = 0.5
     """Driven or turned between two scans that are searched for."""
-    same_place: Positive = 0.2
-    same_heading: Positive = 0.1
+    same_place: Length = 0.2
+    same_heading: Angle = 0.1
     """Two scans agree that were found so near to where they lie to each other."""
 
 
 class MappingConfig(Frozen):
     """Keyframes, submaps and their links: m, rad; the drawing: shares 0..1."""
 
-    resolution: Positive = 0.05
-    keyframe_way: Positive = 0.15
-    keyframe_turn: Positive = 0.35
-    submap_way: Positive = 3.0
+    resolution: Cell = 0.05
+    keyframe_way: Length = 0.15
+    keyframe_turn: Angle = 0.35
+    submap_way: Length = 3.0
     submap_keyframes: Annotated[int, Field(ge=4)] = 40
-    point_deviation: Positive = 0.03
+    point_deviation: Length = 0.03
     least_met: Ratio = 0.35
     least_close: Ratio = 0.6
-    link_radius: Positive = 5.0
+    link_radius: Length = 5.0
     link_met: Ratio = 0.3
     link_close: Ratio = 0.8
     link_points: Annotated[int, Field(ge=50)] = 150
     drift: Positive = 0.03
-    least_link_deviation: Positive = 0.004
-    least_link_turn: Positive = 0.0015
+    least_link_deviation: Length = 0.004
+    least_link_turn: Angle = 0.0015
     occupied_share: Ratio = 0.3
     occupied_beams: AtLeastOne = 2
     redrawn_shift: Positive = 0.01
-    farthest: Positive = 30.0
+    farthest: Length = 30.0
     """What is farther is drawn, but nothing is matched to it."""
-    spare: Positive = 4.0
+    spare: Length = 4.0
     """The farthest that a robot gets from the beginning of a submap."""
-    search_reach: Positive = 12.0
+    search_reach: Length = 12.0
     """Points farther from a place are no help in looking for it: their bearing is less sure."""
     oblique: Annotated[float, Field(gt=0.0, lt=45.0)] = 4.0
     """Degrees; walls that are turned by more from the map's axes are so by design."""

@@ -5,17 +5,24 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, ClassVar
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from roomba.configuration.body import BodyConfig
+from roomba.configuration.body import BodyConfig, Speed
 from roomba.configuration.coverage import CoverageConfig
 from roomba.configuration.frozen import (
+    Angle,
     AtLeastOne,
+    Clearance,
     Count,
+    Duration,
     Frozen,
+    Length,
     NotNegative,
     Positive,
     Ratio,
+    TurningSpeed,
+    Wait,
+    WaitOrNone,
     load_config,
 )
 from roomba.errors import ConfigError
@@ -29,7 +36,7 @@ Moves = Annotated[tuple[Move, ...], Field(min_length=1)]
 class RecoveryConfig(Frozen):
     """Getting free: motions that are tried one after the other while there is no progress."""
 
-    turning_speed: Positive = 1.5
+    turning_speed: TurningSpeed = 1.5
     """rad/s."""
     moves: Annotated[tuple[Moves, ...], Field(min_length=1)] = (
         ((-1.0, 0.0, 1.0), (0.0, 1.0, 0.8)),
@@ -40,24 +47,24 @@ class RecoveryConfig(Frozen):
     )
     """For each attempt its moves: shares of ``driving.backing_speed`` and of ``turning_speed``, -1
     to 1, and s."""
-    freed_way: Positive = 0.03
+    freed_way: Length = 0.03
     """m; a robot that moved farther in an attempt is free."""
-    freed_turn: Positive = 0.3
+    freed_turn: Angle = 0.3
     """rad; the same of turning."""
 
 
 class GivingWayConfig(Frozen):
     """Making room for a person who waits for the robot to go: m."""
 
-    beside: Positive = 1.2
+    beside: Length = 1.2
     """What stands nearer to the robot may want to pass."""
-    room: Positive = 1.2
+    room: Length = 1.2
     """The distance to it at which the robot goes no farther aside."""
-    least_room: Positive = 0.5
+    least_room: Length = 0.5
     """The least distance that lets others pass; with less the robot stays."""
     per_way: NotNegative = 0.25
     """m of room that a metre of way is worth: it does not squeeze past what it makes room for."""
-    farthest: Positive = 3.0
+    farthest: Length = 3.0
     """The longest way aside."""
 
 
@@ -68,11 +75,11 @@ class WaitingConfig(Frozen):
     """Attempts to find a way home before it begins to wait."""
     first_waits: Count = 2
     """The first so many waits are short: people pass sooner than doors are opened."""
-    first_wait: Positive = 10.0
+    first_wait: Wait = 10.0
     """The length of each of them."""
-    wait: Positive = 30.0
+    wait: Wait = 30.0
     """The length of the others."""
-    look_period: Positive = 2.0
+    look_period: Duration = 2.0
     """From one look whether the way is clear to the next."""
     most_waits: AtLeastOne = 41
     """After so many it gives up: twenty minutes in all."""
@@ -81,11 +88,11 @@ class WaitingConfig(Frozen):
 class LowThingsConfig(Frozen):
     """Things that are felt again and again and that neither map nor lidar shows."""
 
-    same: Positive = 0.25
+    same: Length = 0.25
     """m; what is felt nearer to a low thing than this is that thing."""
-    longest: Positive = 1.5
+    longest: Length = 1.5
     """m; a cable may be longer: it is several things then."""
-    seen_near: Positive = 0.15
+    seen_near: Length = 0.15
     """m; what the lidar sees as near to where something was felt was seen, and is not low."""
     offered: AtLeastOne = 3
     """Times that a thing is felt before it is offered as a no-go zone."""
@@ -96,43 +103,58 @@ class LowThingsConfig(Frozen):
 class DrivingConfig(Frozen):
     """Driving a path, and around what the map does not show: m, m/s, s."""
 
-    speed: Positive = 0.30
-    clearance: Positive = 0.005
-    way_clearance: Positive = 0.04
-    look_ahead: Positive = 0.15
-    thing_clearance: Positive = 0.004
-    off_path: Positive = 0.12
-    backing_way: Positive = 0.08
-    backing_speed: Positive = 0.10
-    progress_timeout: Positive = 5.0
+    speed: Speed = 0.30
+    clearance: Clearance = 0.005
+    way_clearance: Clearance = 0.04
+    look_ahead: Length = 0.15
+    thing_clearance: Clearance = 0.004
+    off_path: Length = 0.12
+    backing_way: Length = 0.08
+    backing_speed: Speed = 0.10
+    progress_timeout: Duration = 5.0
     most_recoveries: AtLeastOne = 6
-    felt_memory: Positive = 180.0
+    felt_memory: Duration = 180.0
     mean_speed: Annotated[float, Field(gt=0.0, le=1.0)] = 0.65
     """Mean speed of a clean as a share of ``speed``, by which the time to go is told."""
-    least_progress: Positive = 0.02
+    least_progress: Length = 0.02
     """m along the path; less is no progress."""
-    leaves_trouble: Positive = 0.5
+    leaves_trouble: Length = 0.5
     """m of progress after which earlier recoveries count no more."""
     most_futile: AtLeastOne = 3
     """New paths from one place; after these it tries recoveries."""
-    touch_radius: Positive = 0.10
+    touch_radius: Length = 0.10
     """m; touches from places nearer to each other are of the same thing."""
     most_touches: AtLeastOne = 4
     """Consecutive touches of the same thing, after which a path is given up."""
-    lasting_radius: Positive = 0.06
+    lasting_radius: Length = 0.06
     """m; what is felt again from a place nearer than this is a lasting obstacle."""
-    lasting_memory: Positive = 1800.0
+    lasting_memory: Duration = 1800.0
     """s; how long a lasting obstacle is remembered."""
     gap_spare: NotNegative = 0.06
     """m; more room than the body needs that a gap between two things must have."""
-    most_nudge: Positive = 0.08
+    most_nudge: Length = 0.08
     """m; a path along a thing is moved aside by this at most; more is left to the planner."""
-    out_of_pocket: Positive = 1.0
+    out_of_pocket: Length = 1.0
     """m of the way home, after which the robot is out of where it was shut in."""
     low_things: LowThingsConfig = LowThingsConfig()
     recovery: RecoveryConfig = RecoveryConfig()
     giving_way: GivingWayConfig = GivingWayConfig()
     waiting: WaitingConfig = WaitingConfig()
+
+    @property
+    def tight_clearance(self) -> float:
+        """The least distance from walls on a way, m: as near as swaths, to join them."""
+        return 0.5 * self.clearance
+
+    @model_validator(mode="after")
+    def _ways_keep_no_less_than_swaths(self) -> DrivingConfig:
+        if self.way_clearance < self.tight_clearance:
+            raise ValueError(
+                f"expected a way_clearance of at least half of clearance "
+                f"({self.tight_clearance:g} m), got {self.way_clearance:g} m; raise it, or lower "
+                "clearance"
+            )
+        return self
 
 
 class CleaningConfig(Frozen):
@@ -145,17 +167,17 @@ class CleaningConfig(Frozen):
     dirty_times: Positive = 6.0
     least_dirt: Positive = 500.0
     """Grains/m2; floor with fewer of them is not dirty."""
-    dirty_near: Positive = 1.5
+    dirty_near: Length = 1.5
     """m; dirty floor as near as this is cleaned once more in passing."""
-    dirty_ahead: Positive = 25.0
+    dirty_ahead: Length = 25.0
     """m of the path ahead on which the place that is nearest to such floor is looked for."""
-    dirty_period: Positive = 5.0
+    dirty_period: Duration = 5.0
     """s; from one look for dirty floor close by to the next."""
     least_dirty: Positive = 0.08
     """m2; smaller dirty patches are not cleaned once more."""
     usual_floor: Positive = 4.0
     """m2; with less of it swept it is not known how dirty floor usually is."""
-    usual_period: Positive = 30.0
+    usual_period: Duration = 30.0
     """s; so often that is measured for looks close by."""
     little_gain: Ratio = 0.05
     """Share of what was missed; a round that gains less of it ends the retries."""
@@ -174,13 +196,13 @@ class CleaningConfig(Frozen):
     """Times, in a clean, that it leaves a place where it is shut in, or waits."""
     most_cut_offs: Count = 12
     """Paths that were given up and do not count as rounds, in a clean."""
-    replan_period: Positive = 20.0
+    replan_period: Duration = 20.0
     """s; the least time between two new plans because of things on the path."""
     most_replans: Count = 40
     """Such plans in a clean."""
-    least_way_to_replan: Positive = 8.0
+    least_way_to_replan: Length = 8.0
     """m; with less of it left a path is driven to its end."""
-    spot_size: Positive = 1.5
+    spot_size: Length = 1.5
     """m; side of the square around a spot."""
     detours: Annotated[float, Field(ge=1.0, allow_inf_nan=False)] = 1.2
     """Length of a clean's way as a multiple of floor by width of the tool, for its energy."""
@@ -189,26 +211,26 @@ class CleaningConfig(Frozen):
 class ExploringConfig(Frozen):
     """Driving where the map is being made: m, m/s."""
 
-    speed: Positive = 0.40
-    stand_first: NotNegative = 8.0
+    speed: Speed = 0.40
+    stand_first: WaitOrNone = 8.0
     """s; on its station, before it leaves it: the gyro shows its bias."""
     seeing_speed: Positive = 0.25
     """rad/s; where the map shows no way, it turns once to see more: scans should be as sharp."""
-    clearance: Positive = 0.12
-    careful_clearance: Positive = 0.025
+    clearance: Clearance = 0.12
+    careful_clearance: Clearance = 0.025
     """m; kept wherever any way does: the map may have a surface 0.4 of a cell too far back."""
-    tight_clearance: Positive = 0.005
-    cleaning_clearance: Positive = 0.015
+    tight_clearance: Clearance = 0.005
+    cleaning_clearance: Clearance = 0.015
     """The same as ``driving.clearance``, for a clean while the map is being made."""
-    look_first: Positive = 10.0
+    look_first: Duration = 10.0
     most_stuck: Count = 3
-    viewpoint_tolerance: Positive = 0.12
+    viewpoint_tolerance: Length = 0.12
     """m; as near to a viewpoint it has seen all that is to be seen from there."""
-    frontier_radius: Positive = 0.25
+    frontier_radius: Length = 0.25
     """m; around the middle of a frontier: whether something of it is left is looked up there."""
     least_unknown: Positive = 0.03
     """m2; smaller patches of the unknown are not driven to."""
-    look_from: Positive = 1.2
+    look_from: Length = 1.2
     """m; the farthest viewpoint from its frontier."""
     nearer_worth: NotNegative = 2.0
     """m of way that one metre nearer to the frontier is worth."""
@@ -219,15 +241,15 @@ class ExploringConfig(Frozen):
     """m of way that a viewpoint nearer to walls than ``clearance`` costs more."""
     least_cells: AtLeastOne = 3
     """Cells of the map; a frontier of fewer is none: a gap between two beams."""
-    frontier_stride: Positive = 0.3
+    frontier_stride: Length = 0.3
     """m; about so far apart are the places of a frontier from which viewpoints are looked for."""
-    same_frontier: Positive = 0.3
+    same_frontier: Length = 0.3
     """m; frontiers nearer to one that was given up are the same."""
     most_returns: Annotated[int, Field(ge=0, le=100)] = 3
     """Times that a frontier may come back where one vanished, as glass and mirrors make it do."""
-    patience: Positive = 120.0
+    patience: Duration = 120.0
     """s; a frontier that it has not come to by then, and twice its way's time, is given up."""
-    map_wait: Positive = 120.0
+    map_wait: Duration = 120.0
     """s; how long a clean waits for the whole map when all is seen."""
 
     in_order: ClassVar[tuple[str, ...]] = ("tight_clearance <= careful_clearance <= clearance",)
@@ -241,11 +263,11 @@ class EnergyConfig(Frozen):
     per_metre: Positive = 0.02
     full_enough: Ratio = 0.90
     least_to_start: Ratio = 0.15
-    measured_after: Positive = 10.0
+    measured_after: Length = 10.0
     """m of way, after which the robot goes by its own consumption, not by ``per_metre``."""
     empty: Ratio = 0.005
     """With less than this share of the capacity the drive stops by itself."""
-    check_period: Positive = 5.0
+    check_period: Duration = 5.0
     """s; from one look at how far it is home to the next."""
     ample: Ratio = 0.35
     """With so much of the capacity besides the reserve no way home is too far."""
@@ -254,12 +276,12 @@ class EnergyConfig(Frozen):
 class BinConfig(Frozen):
     """When the dust bin is full: shares of its capacity 0..1, m2."""
 
-    full: Ratio = 0.98
+    full: Annotated[float, Field(ge=0.1, le=1.0)] = 0.98
     nearly_full: Ratio = 0.80
-    silent: Positive = 2.0
+    silent: Duration = 2.0
     least_grains: Positive = 1.0
     """Grains/s; with fewer none comes in."""
-    fading_way: Positive = 0.6
+    fading_way: Length = 0.6
     """m; driven while the dirt sensor's rate fades away after the last grain."""
     dusty: Positive = 500.0
     """Grains/m2; where less is usual floor without a grain tells nothing."""

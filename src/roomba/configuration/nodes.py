@@ -8,7 +8,16 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from roomba.configuration.frozen import AtLeastOne, Frozen, Positive
+from roomba.configuration.body import Speed
+from roomba.configuration.frozen import (
+    Angle,
+    AtLeastOne,
+    Duration,
+    Frozen,
+    Length,
+    Positive,
+    TurningSpeed,
+)
 
 Unsure = tuple[Positive, Positive]
 """Standard deviations of a place and a heading, m and rad."""
@@ -17,45 +26,45 @@ Unsure = tuple[Positive, Positive]
 class HearingConfig(Frozen):
     """When the place is not told any more; both, as a fast clock runs on while all nodes work."""
 
-    oldest_pose: Positive = 0.5
+    oldest_pose: Duration = 0.5
     """s of the robot's clock; an older pose counts no more,"""
-    silence: Positive = 0.4
+    silence: Duration = 0.4
     """and s of wall time, in which none was heard."""
 
 
 class DeadlinesConfig(Frozen):
     """How long is waited for others: s of wall time."""
 
-    senses: Positive = 6.0
+    senses: Duration = 6.0
     """Then goals are taken, and rejected, though map, pose or senses are not there."""
-    answer: Positive = 5.0
+    answer: Duration = 5.0
     """For the tick that answers a service; a long plan may hold one up."""
-    mapping: Positive = 3.0
+    mapping: Duration = 3.0
     """For being told whether a map without a load time is whole or grows."""
-    rooms: Positive = 3.0
+    rooms: Duration = 3.0
     """For the map's rooms; rooms that come later make a new planning context."""
-    floor: Positive = 20.0
+    floor: Duration = 20.0
     """s of the robot's clock; a floor that was not recognised by then is a new one."""
-    ending: Positive = 2.5
+    ending: Duration = 2.5
     """s of the robot's clock; so long a cancelled walk, or looking around, may still drive."""
-    emptying: Positive = 0.5
+    emptying: Duration = 0.5
     """s of the robot's clock; so long a simulated station empties the bin without being told to."""
 
 
 class WalkEndConfig(Frozen):
     """How a walk ends on ROS: the turn to the heading that was asked for, and a cancel."""
 
-    aimed: Positive = 0.05
+    aimed: Angle = 0.05
     """rad; tolerance of the final heading."""
-    not_turning: Positive = 0.2
+    not_turning: TurningSpeed = 0.2
     """rad/s; a robot that turns slower keeps its heading."""
-    longest_turn: Positive = 6.0
+    longest_turn: Duration = 6.0
     """s; limit of the turn at the goal; half a turn takes two."""
-    standstill: Positive = 0.02
+    standstill: Speed = 0.02
     """m/s; a cancelled walk stands when it is slower,"""
-    longest_braking: Positive = 1.0
+    longest_braking: Duration = 1.0
     """or after so many s, without odometry too."""
-    heard_by: Positive = 0.3
+    heard_by: Duration = 0.3
     """s; after this a setpoint has reached its subscriber, on a busy machine too."""
 
 
@@ -68,23 +77,23 @@ class PeriodsConfig(Frozen):
     """Ticks between two clouds of hypotheses."""
     state_ticks: AtLeastOne = 20
     """Ticks between two states of the localization that did not change."""
-    speed: Positive = 0.1
+    speed: Duration = 0.1
     """Between two messages of the speed."""
-    mission_state: Positive = 1.0
+    mission_state: Duration = 1.0
     """Between two states of the mission that did not change."""
-    mission_map: Positive = 1.0
+    mission_map: Duration = 1.0
     """Between two maps of the same kind that the mission tells,"""
-    mission_map_wall: Positive = 0.5
+    mission_map_wall: Duration = 0.5
     """and s of wall time between them."""
-    changes: Positive = 0.4
+    changes: Duration = 0.4
     """Between two scans that are looked through for changes of the map."""
-    finish: Positive = 5.0
+    finish: Duration = 5.0
     """s of wall time from one wish for the whole map to the next, while the mission waits."""
-    pictures: Positive = 0.2
+    pictures: Duration = 0.2
     """s of wall time between two pictures of the simulated camera's stream."""
-    true_pose_wall: Positive = 0.04
+    true_pose_wall: Duration = 0.04
     """s of wall time between two tellings of where a simulated robot really is,"""
-    true_dirt_wall: Positive = 0.5
+    true_dirt_wall: Duration = 0.5
     """and of the dirt that really lies in its home."""
     cruise_speed_ticks: AtLeastOne = 4
     """Ticks between two cruise speeds of a walk that did not change."""
@@ -93,22 +102,22 @@ class PeriodsConfig(Frozen):
 class MemoryConfig(Frozen):
     """What is kept for a node that is killed: how often it is written, and when it is dropped."""
 
-    pose: Positive = 0.7
+    pose: Duration = 0.7
     """s of wall time between two poses that the master keeps."""
-    errand: Positive = 0.8
+    errand: Duration = 0.8
     """s of wall time between two checkpoints of a phase."""
-    map: Positive = 0.8
+    map: Duration = 0.8
     """s of the robot's clock between two writings of the map that is being made,"""
     map_wall_per_byte: Positive = 1e-6
     """and s of wall time for each of its bytes: 1 MB/s is enough for any disk."""
     most_taken_up: AtLeastOne = 5
     """What a node ended with so often, each time within ``goes_well``, is dropped: it may be the
     reason."""
-    goes_well: Positive = 20.0
+    goes_well: Duration = 20.0
     """s of wall time after which what was taken up is no danger."""
     free_space: Positive = 2e6
     """Bytes; with less on the disk of the errand it is told that the disk is full,"""
-    free_space_period: Positive = 1.0
+    free_space_period: Duration = 1.0
     """which is looked at so often: s of wall time."""
 
 
@@ -128,15 +137,15 @@ class PlacingConfig(Frozen):
 class PaceConfig(Frozen):
     """How the simulation waits for the robot's nodes: s of wall time."""
 
-    latest: Positive = 0.5
+    latest: Duration = 0.5
     """Farther behind, the simulation goes on slower than asked for."""
-    most_behind: Positive = 0.07
+    most_behind: Duration = 0.07
     """s of the robot's clock; a robot that thinks of longer ago is waited for. One that keeps up is
     a tick behind at most. So much later than promised a robot may stand; at 0.3 s a turn on the
     spot ends no more: it swings to and fro."""
-    longest_hold: Positive = 2.0
+    longest_hold: Duration = 2.0
     """A node that is silent for longer is not waited for any more."""
-    longest_absence: Positive = 60.0
+    longest_absence: Duration = 60.0
     """A part that was not heard for longer does not come back."""
 
     in_order: ClassVar[tuple[str, ...]] = ("longest_hold <= longest_absence",)
@@ -145,26 +154,26 @@ class PaceConfig(Frozen):
 class PicturesConfig(Frozen):
     """When a kept picture of an angle is old, and how often one is taken."""
 
-    travelled: Positive = 0.1
+    travelled: Length = 0.1
     """m from where it was taken."""
-    turned: Positive = 0.3
+    turned: Angle = 0.3
     """rad from the heading at which it was taken."""
-    rest: Positive = 2.5
+    rest: Duration = 2.5
     """s of wall time between two pictures, at least: one is much work, on a fast clock too."""
 
 
 class SupervisionConfig(Frozen):
     """When a process of the robot is told of, ended, started anew or given up: s of wall time."""
 
-    busy: Positive = 2.0
+    busy: Duration = 2.0
     """A node whose last sign of life is older is told of: it hangs, or works for long."""
-    hung: Positive = 20.0
+    hung: Duration = 20.0
     """It is ended and started anew: a plan over a large home takes some seconds."""
-    stopped: Positive = 2.0
+    stopped: Duration = 2.0
     """So is a process that was stopped for so long, by a signal or a debugger."""
-    back_after: Positive = 0.2
+    back_after: Duration = 0.2
     """From the end of a process until it is started anew."""
-    short_life: Positive = 20.0
+    short_life: Duration = 20.0
     """A process that lived for less ended soon;"""
     most_short_lives: AtLeastOne = 15
     """after so many of them in a row it is not started any more: a start does not mend it."""

@@ -18,7 +18,7 @@ from roomba.configuration.body import (
     FanConfig,
     HealthConfig,
 )
-from roomba.configuration.frozen import Frozen, Positive, read_yaml, validated
+from roomba.configuration.frozen import Frozen, Period, read_yaml, validated
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.loops import (
     ControlConfig,
@@ -53,10 +53,10 @@ class TimingConfig(Frozen):
         From one drawing of a map that grows to the next.
     """
 
-    tick: Positive = 0.05
-    world_step: Positive = 0.025
-    scan_period: Positive = 0.2
-    map_period: Positive = 1.0
+    tick: Period = 0.05
+    world_step: Period = 0.025
+    scan_period: Period = 0.2
+    map_period: Period = 1.0
 
     @model_validator(mode="after")
     def _steps_fill_a_tick(self) -> TimingConfig:

@@ -13,7 +13,15 @@ from typing import Annotated, Any, ClassVar, Final
 
 from pydantic import Field, model_validator
 
-from roomba.configuration.frozen import Degrees, Frozen, NotNegative, Positive, read_yaml
+from roomba.configuration.frozen import (
+    Degrees,
+    Duration,
+    Frozen,
+    Length,
+    NotNegative,
+    Positive,
+    read_yaml,
+)
 from roomba.errors import ConfigError
 
 LIDARS: Final = Path(__file__).resolve().parent.parent / "data" / "configuration" / "lidars"
@@ -22,6 +30,10 @@ EXACT_LIDAR: Final = "ideal_12m"
 """The one for figures that must not stand on a lidar: exact but for some mm, all beams at once."""
 LIDAR: Final = "lidar"
 """The part of a robot's file, of a lidar's file and of the simulation that is the lidar's."""
+Range = Annotated[float, Field(ge=1e-6, le=1000.0)]
+"""m; of a lidar."""
+HalfCircle = Annotated[float, Field(gt=0.0, le=180.0)]
+"""Degrees."""
 SIMULATION: Final = "simulation"
 """The part of a robot's file and of a lidar's file that is the simulator's; no brain reads it."""
 
@@ -38,11 +50,11 @@ class LidarConfig(Frozen):
     model: str = "lds_02"
     beams: Annotated[int, Field(ge=8, le=4096)] = 360
     field: Annotated[float, Field(ge=10.0, le=360.0)] = 360.0
-    min_range: Positive = 0.16
-    max_range: Positive = 8.0
-    rate: Positive = 5.0
+    min_range: Range = 0.16
+    max_range: Range = 8.0
+    rate: Annotated[float, Field(ge=0.5, le=100.0)] = 5.0
     sweep_time: NotNegative = 0.2
-    mount_height: Positive = 0.085
+    mount_height: Length = 0.085
     mount_ahead: Annotated[float, Field(ge=-0.3, le=0.3)] = 0.0
 
     in_order: ClassVar[tuple[str, ...]] = ("min_range < max_range",)
@@ -93,7 +105,7 @@ class CliffConfig(Frozen):
     """Four cliff sensors under the front rim, left to right; degrees and m."""
 
     angles: tuple[Degrees, Degrees, Degrees, Degrees] = (60.0, 15.0, -15.0, -60.0)
-    radius: Positive = 0.155
+    radius: Length = 0.155
 
 
 class StationConfig(Frozen):
@@ -105,10 +117,10 @@ class StationConfig(Frozen):
     has_beams: bool = True
     empties: bool = False
     """Whether it takes the dirt out of the robot's bin into a bag of its own."""
-    halo: Positive = 0.6
-    beam: Positive = 1.0
-    beam_angle: Positive = 20.0
-    overlap: Positive = 4.0
+    halo: Length = 0.6
+    beam: Length = 1.0
+    beam_angle: HalfCircle = 20.0
+    overlap: HalfCircle = 4.0
 
 
 class DirtSensorConfig(Frozen):
@@ -119,18 +131,18 @@ class DirtSensorConfig(Frozen):
 
     grain: Positive = 50.0
     most: Annotated[float, Field(gt=0.0, le=65535.0)] = 2550.0
-    window: Positive = 0.1
+    window: Duration = 0.1
 
 
 class CameraConfig(Frozen):
     """The pan camera; ``horizontal_field`` and ``max_pan`` in degrees, as in the report."""
 
-    width: Annotated[int, Field(gt=0)] = 1024
-    height: Annotated[int, Field(gt=0)] = 768
+    width: Annotated[int, Field(gt=0, le=8192)] = 1024
+    height: Annotated[int, Field(gt=0, le=8192)] = 768
     horizontal_field: Annotated[float, Field(gt=10.0, lt=150.0)] = 75.0
-    mount_forward: float = 0.15
-    mount_height: Positive = 0.085
-    max_pan: Positive = 30.0
+    mount_forward: Annotated[float, Field(ge=-1.0, le=1.0)] = 0.15
+    mount_height: Length = 0.085
+    max_pan: HalfCircle = 30.0
 
 
 def lidar_models() -> list[str]:

@@ -11,11 +11,16 @@ from typing import Annotated, ClassVar, Final, Literal
 
 from pydantic import Field, model_validator
 
+from roomba.configuration.body import Speed
 from roomba.configuration.frozen import (
+    Duration,
     Frozen,
+    Length,
     NotNegative,
     Positive,
     Ratio,
+    Side,
+    Wait,
     load_config,
     read_yaml,
     validated,
@@ -43,7 +48,7 @@ class SimulatedBrush(Frozen):
     :func:`pickup_share`. Depth in m, power in W, current in A, noise in dB(A) at 1 m.
     """
 
-    depth: Positive = 0.05
+    depth: Side = 0.05
     pickup: Ratio = 0.60
     carpet_pickup: Ratio = 0.45
     power: NotNegative = 3.0
@@ -66,12 +71,12 @@ class SimulatedBattery(Frozen):
     resistance: NotNegative = 0.15
     idle_power: NotNegative = 5.3
     drive_power: NotNegative = 3.1
-    drive_speed: Positive = 0.306
+    drive_speed: Speed = 0.306
     stall_power: NotNegative = 15.0
-    charge_hours: Positive = 2.2
+    charge_hours: Annotated[float, Field(ge=0.01, le=48.0)] = 2.2
     ambient: Annotated[float, Field(ge=-20.0, le=60.0)] = 22.0
     heating: NotNegative = 0.4
-    heating_time: Positive = 900.0
+    heating_time: Duration = 900.0
     taper_from: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.9
     """Share of the charge from which on charging becomes slower, evenly, down to ``taper_to``."""
     taper_to: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.2
@@ -101,8 +106,8 @@ class SimulatedLidar(Frozen):
         s; from the end of a sweep until it has come over the line.
     """
 
-    noise: NotNegative = 0.003
-    noise_growth: NotNegative = 0.0016
+    noise: Annotated[float, Field(ge=0.0, le=0.2)] = 0.003
+    noise_growth: Annotated[float, Field(ge=0.0, le=0.02)] = 0.0016
     grazing_noise: NotNegative = 0.3
     misses: Ratio = 0.02
     range_step: NotNegative = 0.001
@@ -131,7 +136,7 @@ class SimulatedWheels(Frozen):
     slip: Ratio = 0.001
     carpet_slip: Ratio = 0.02
     slip_noise: NotNegative = 0.002
-    slip_length: Positive = 0.1
+    slip_length: Length = 0.1
     blocked_slip: Ratio = 0.3
     noise_level: NotNegative = 45.0
 
@@ -167,9 +172,9 @@ class SimulatedWear(Frozen):
 class SimulatedStation(Frozen):
     """Within what of the docked pose the contacts touch: m and degrees."""
 
-    position_tolerance: Positive = 0.015
+    position_tolerance: Length = 0.015
     angle_tolerance: Positive = 8.0
-    emptying_time: Positive = 8.0
+    emptying_time: Wait = 8.0
     """s; that one which empties the bin takes."""
     emptying_noise: NotNegative = 76.0
     """dB(A), 1 m away, meanwhile."""
@@ -183,7 +188,7 @@ class SimulatedSurroundings(Frozen):
     Reflectivities, 0..1, are those in the infrared.
     """
 
-    patch: Positive = 0.7
+    patch: Length = 0.7
     """m; side of the squares in which surfaces are of one reflectivity."""
     black: Ratio = 0.04
     """Reflectivity of black leather, black lacquer, dark fabric."""
@@ -203,7 +208,7 @@ class SimulatedSurroundings(Frozen):
     """Share of the light that is left, there and back, after a pane of glass or a mirror."""
     fading: NotNegative = 0.08
     """Share of the reach by which a faint echo comes and goes."""
-    edge: Positive = 0.10
+    edge: Length = 0.10
     """m; a wide beam whose range differs by more from the last one's may lie on an edge."""
     crumb: Annotated[int, Field(gt=0, le=1_000_000)] = 2000
     """Micrograms; what falls at once from a source of dirt."""

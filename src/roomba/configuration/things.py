@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from roomba.configuration.frozen import Frozen, NotNegative, Positive, Ratio
+from roomba.configuration.frozen import Frozen, Length, NotNegative, Positive, Ratio
 
 Count = Annotated[int, Field(ge=1, le=1000)]
 
@@ -49,14 +49,14 @@ class ThingConfig(Frozen):
     map_error: Positive = 0.5
     margin_share: NotNegative = 0.012
     sure: Positive = 3.0
-    farthest: Positive = 4.0
-    clearly: Positive = 0.10
+    farthest: Length = 4.0
+    clearly: Length = 0.10
     gain: Count = 2
     most_gain: Count = 4
     behind: Count = 1
     loss: Count = 3
     most: Count = 24
     enough: Count = 6
-    spot_radius: Positive = 0.02
+    spot_radius: Length = 0.02
     newest: Ratio = 0.2
-    next_to: Positive = 0.04
+    next_to: Length = 0.04

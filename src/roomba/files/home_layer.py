@@ -23,6 +23,7 @@ from pydantic import (
 
 from roomba.errors import HomeError
 from roomba.files.strict_yaml import YamlFile, read_yaml, suggestion
+from roomba.vocabulary import LONGEST_NAME, fault_of_name
 
 MAP_NAME: Final = "map.yaml"
 LAYER_NAME: Final = "home.yaml"
@@ -57,11 +58,21 @@ def _from_until(interval: list[float]) -> list[float]:
     return interval
 
 
+def _is_name(name: str) -> str:
+    if fault_of_name(name):
+        raise ValueError(f"expected a name of 1 to {LONGEST_NAME} printable characters")
+    return name
+
+
 Number = Annotated[float, Field(allow_inf_nan=False)]
-Length = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-Amount = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+Length = Annotated[float, Field(ge=0.001, le=10_000.0)]
+"""m; also m/s of a person and s of a move: no home has any that is shorter or longer."""
+Side = Annotated[float, Field(ge=0.001, le=20.0)]
+"""m; of a piece of furniture, and the height of a wall: a shelf that is filled has books by it."""
+Amount = Annotated[float, Field(ge=0.0, le=1_000_000.0)]
+"""g; what the floor can hold is less: see :mod:`roomba.world.layers.layer`."""
 Direction = Annotated[Number, BeforeValidator(_direction)]
-Name = Annotated[str, Field(min_length=1)]
+Name = Annotated[str, AfterValidator(_is_name)]
 Corner = Annotated[list[Number], Field(min_length=2, max_length=2)]
 Corners = Annotated[list[Number], Field(min_length=4, max_length=4), AfterValidator(_in_order)]
 Time = Annotated[float, Field(ge=0.0, le=DAY)]
@@ -91,9 +102,9 @@ class RoomEntry(_Entry):
 class SizeEntry(_Entry):
     """Measures that differ from the catalogue's."""
 
-    width: Length | None = None
-    depth: Length | None = None
-    height: Length | None = None
+    width: Side | None = None
+    depth: Side | None = None
+    height: Side | None = None
 
 
 class FurnitureEntry(_Entry):
@@ -273,7 +284,7 @@ MOVING_KEYS: Final = {
 class Layer(_Entry):
     """A whole layer file; every part may be missing."""
 
-    wall_height: Length = 2.4
+    wall_height: Side = 2.4
     station: StationEntry | None = None
     walls: list[Annotated[WallEntry, BeforeValidator(_wall)]] | None = None
     rooms: list[RoomEntry] = []

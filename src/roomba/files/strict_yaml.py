@@ -81,10 +81,38 @@ def read_yaml(path: Path) -> YamlFile:
         problem = getattr(error, "problem", None) or str(error).splitlines()[0]
         raise HomeError(f"{path}:{line}: expected YAML, got something else: {problem}") from error
     file = YamlFile(path, data, root)
-    _refuse_duplicates(file, root, set())
+    if told := told_of_repeated_key(root):
+        raise HomeError(f"{path}:{told}")
     if not isinstance(data, dict):
         raise file.error((), f"expected keys and values (`key: value`), got {_shown(data)}")
     return file
+
+
+def told_of_repeated_key(root: Node | None) -> str:
+    """Return the line of a key that its mapping has twice, and what to do, as "LINE: TEXT".
+
+    YAML lets the last of the two win in silence. Nothing where each key is there once.
+    """
+    seen: set[int] = set()
+    left = [] if root is None else [root]
+    while left:
+        node = left.pop()
+        if id(node) in seen:  # an alias stands for it as well
+            continue
+        seen.add(id(node))
+        if isinstance(node, SequenceNode):
+            left += node.value
+        if isinstance(node, MappingNode):
+            left += [value for _, value in node.value]
+            keys: set[str] = set()
+            for key in [key for key, _ in node.value if isinstance(key, ScalarNode)]:
+                if key.value in keys:
+                    return (
+                        f"{key.start_mark.line + 1}: expected each key once, got {key.value!r} "
+                        "again; remove one of them"
+                    )
+                keys.add(key.value)
+    return ""
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
@@ -103,28 +131,6 @@ def _child(node: Node, step: int | str) -> tuple[Node, Node] | None:
     if isinstance(node, SequenceNode) and isinstance(step, int) and step < len(node.value):
         return node.value[step], node.value[step]
     return None
-
-
-def _refuse_duplicates(file: YamlFile, node: Node | None, seen: set[int]) -> None:
-    """YAML lets the last of two equal keys win in silence; here that is an error."""
-    if node is None or id(node) in seen:
-        return
-    seen.add(id(node))
-    if isinstance(node, SequenceNode):
-        for value in node.value:
-            _refuse_duplicates(file, value, seen)
-    if isinstance(node, MappingNode):
-        keys: set[str] = set()
-        for key, value in node.value:
-            if isinstance(key, ScalarNode):
-                if key.value in keys:
-                    line = key.start_mark.line + 1
-                    raise HomeError(
-                        f"{file.path}:{line}: expected each key once, got {key.value!r} again; "
-                        "remove one of them"
-                    )
-                keys.add(key.value)
-            _refuse_duplicates(file, value, seen)
 
 
 def _reason(error: dict[str, Any], known: list[str]) -> str:

@@ -95,8 +95,18 @@ class CleaningTask:
         """Let the time of one action pass; ``actions`` is [robots, 2], each -1..1.
 
         Robots that are ``beginning`` stand for that time, in which their lidar scans for the first
-        time, and their episodes start at its end.
+        time, and their episodes start at its end. Raises ValueError for actions of another shape,
+        or that are not finite; of robots that are beginning they are not used.
         """
+        if np.shape(actions) != (expected := (len(beginning), 2)):
+            raise ValueError(f"expected actions of shape {expected}, got {np.shape(actions)}")
+        wrong = ~np.isfinite(actions).all(axis=1) & ~beginning
+        if wrong.any():
+            robot = int(np.argmax(wrong))
+            raise ValueError(
+                f"expected actions of finite numbers, got {actions[robot].tolist()} for robot "
+                f"{robot}"
+            )
         twists = np.clip(actions, -1.0, 1.0) * self._full
         twists[beginning] = 0.0
         self.fleet.step(twists, self.task.dt, self.task.steps_per_action)

@@ -75,8 +75,13 @@ class RoombaClean(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         return outcome.observations[0], _truths(outcome)
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Drive for ``action_time`` s; raises ValueError for an action that is not finite."""
-        outcome = self._cleaning.act(np.reshape(action, (1, 2)), beginning=np.zeros(1, np.bool_))
+        """Drive for ``action_time`` s.
+
+        Raises ValueError for an action of another shape, or that is not finite.
+        """
+        if np.shape(action) != (2,):
+            raise ValueError(f"expected an action of shape (2,), got {np.shape(action)}")
+        outcome = self._cleaning.act(np.array([action]), beginning=np.zeros(1, np.bool_))
         return (
             outcome.observations[0],
             float(outcome.rewards[0]),

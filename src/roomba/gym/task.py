@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+from numbers import Integral
 from pathlib import Path
-from typing import Literal
+from typing import Final, Literal
 
+from roomba.configuration.body import FASTEST_SPEED
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
+
+_RANGES: Final = {
+    "duration": (0.001, 1e7),
+    "dt": (0.001, 1.0),
+    "max_speed": (0.001, FASTEST_SPEED),
+    "energy_weight": (0.0, 1e6),
+    "time_weight": (0.0, 1e6),
+}
+"""The least and the most of each number: a longer step of the world passes through walls."""
+_MOST_STEPS: Final = 10_000
+"""Of the world for an action: they are one compiled call, which nothing interrupts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,17 +52,14 @@ class Task:
 
     def __post_init__(self) -> None:
         """Check the numbers."""
-        for name in ("duration", "dt", "max_speed"):
+        for name, (least, most) in _RANGES.items():
             value = getattr(self, name)
-            if not math.isfinite(value) or value <= 0.0:
-                raise ValueError(f"{name}: expected a finite number above 0, got {value}")
-        for name in ("energy_weight", "time_weight"):
-            value = getattr(self, name)
-            if not math.isfinite(value) or value < 0.0:
-                raise ValueError(f"{name}: expected a finite number of 0 or more, got {value}")
-        if self.steps_per_action < 1:
+            if not least <= value <= most:
+                raise ValueError(f"{name}: expected a number of {least:g} to {most:g}, got {value}")
+        steps = self.steps_per_action
+        if not isinstance(steps, Integral) or not 1 <= steps <= _MOST_STEPS:
             raise ValueError(
-                f"steps_per_action: expected 1 step or more, got {self.steps_per_action}"
+                f"steps_per_action: expected a whole number of 1 to {_MOST_STEPS}, got {steps}"
             )
         if self.sensors not in (None, "ideal", "noisy"):
             raise ValueError(f'sensors: expected "ideal" or "noisy", got {self.sensors!r}')

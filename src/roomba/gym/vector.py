@@ -83,10 +83,13 @@ class RoombaCleanVector(VectorEnv[Observations, Actions, NDArray[Any]]):
         return outcome.observations, _infos(outcome)
 
     def step(self, actions: Actions) -> tuple[Observations, Floats, Flags, Flags, dict[str, Any]]:
-        """Let all drive, float32 [num_envs, 2]; raises ValueError for what is not finite."""
+        """Let all drive, float32 [num_envs, 2].
+
+        Raises ValueError for actions of another shape, or that are not finite.
+        """
         beginning = self._has_ended
         self._begin(beginning)
-        outcome = self._cleaning.act(actions, beginning)
+        outcome = self._cleaning.act(np.asarray(actions), beginning)
         self._has_ended = outcome.terminated | outcome.truncated
         return (
             outcome.observations,

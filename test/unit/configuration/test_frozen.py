@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import math
+from pathlib import Path
 from typing import Any, ClassVar
 
 import pytest
 from pydantic import ValidationError
 
 from roomba.configuration.body import FanConfig
-from roomba.configuration.frozen import Frozen, validated
+from roomba.configuration.bumping import BumpingConfig
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.frozen import Frozen, load_config, read_yaml, validated
 from roomba.configuration.localization import LocalizationConfig
-from roomba.configuration.loops import LookingAroundConfig
+from roomba.configuration.loops import LookingAroundConfig, WalkConfig
+from roomba.configuration.mapping import WindowsConfig
 from roomba.configuration.rooms import RoomsConfig
 from roomba.configuration.seed import SeedParameters
 from roomba.configuration.sensors import LidarConfig
@@ -67,12 +72,44 @@ def test_a_refusal_is_one_line_that_names_the_key_once(raw: dict[str, Any], said
 
 
 @pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("part:\n  low: 1\npart:\n  low: 2\n", 3),
+        ("part:\n  low: 1\n  high: 9\n  low: 2\n", 4),
+        ("- low: 1\n  low: 2\n", 2),
+    ],
+)
+def test_a_key_that_is_there_twice_is_refused(tmp_path: Path, text: str, line: int) -> None:
+    path = tmp_path / "twice.yaml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ConfigError, match=rf"twice\.yaml:{line}: expected each key once, got '"):
+        load_config(Whole, path)
+
+
+@pytest.mark.parametrize("text", ["", "# nothing\n", "{}\n"])
+def test_an_empty_file_means_the_usual(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "empty.yaml"
+    path.write_text(text, encoding="utf-8")
+    assert read_yaml(path) == {}
+
+
+@pytest.mark.parametrize("text", ["[]", "0", "false", "''"])
+def test_what_holds_no_keys_is_no_empty_file(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "list.yaml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ConfigError, match=r"list\.yaml: expected keys and values"):
+        load_config(Whole, path)
+
+
+@pytest.mark.parametrize(
     ("model", "values"),
     [
         (FanConfig, {"standard": 0.2}),
         (LidarConfig, {"min_range": 12.0}),
         (LocalizationConfig, {"known_deviation": 1.0}),
         (LookingAroundConfig, {"shortest_leg": 1.6}),
+        (LookingAroundConfig, {"tight_clearance": 0.1}),
+        (WalkConfig, {"tight_clearance": 0.05}),
         (RoomsConfig, {"widest_door": 0.5}),
         (RoomsConfig, {"tightest_passage": 0.6}),
         (SeedParameters, {"min_cordinate": 100.0}),
@@ -81,3 +118,23 @@ def test_a_refusal_is_one_line_that_names_the_key_once(raw: dict[str, Any], said
 def test_the_order_of_sizes_is_kept(model: type[Frozen], values: dict[str, float]) -> None:
     with pytest.raises(ValidationError, match=f"expected .*{next(iter(values))}"):
         model.model_validate(values)
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, 1e-12, 1e12, math.inf, math.nan])
+@pytest.mark.parametrize(
+    ("model", "name"),
+    [
+        (DockingConfig, "settle_time"),
+        (DockingConfig, "staging_distance"),
+        (DockingConfig, "creep_speed"),
+        (DockingConfig, "turning_speed"),
+        (BumpingConfig, "cell"),
+        (WalkConfig, "braking"),
+        (WalkConfig, "astray_timeout"),
+        (LookingAroundConfig, "aimed"),
+        (WindowsConfig, "widest"),
+    ],
+)
+def test_what_no_robot_can_have_is_refused(model: type[Frozen], name: str, value: float) -> None:
+    with pytest.raises(ConfigError, match=rf"a\.yaml: {name}: expected .*, got"):
+        validated(model, {name: value}, "a.yaml: ")

@@ -33,6 +33,41 @@ def test_a_speed_that_the_body_cannot_do_is_refused(tmp_path: Path, part: str) -
     assert getattr(load_mission_config(path, faster), part).speed == 0.55
 
 
+@pytest.mark.parametrize("wrong", ["clearance: 0.5", "way_clearance: 0.001"])
+def test_a_way_that_keeps_less_from_walls_than_a_swath_is_refused(
+    tmp_path: Path, wrong: str
+) -> None:
+    path = tmp_path / "mission.yaml"
+    path.write_text(f"driving: {{{wrong}}}\n", encoding="utf-8")
+    said = (
+        r"mission\.yaml: driving: expected a way_clearance of at least half of clearance \(.* m\)"
+    )
+    with pytest.raises(ConfigError, match=said):
+        load_mission_config(path, BODY)
+    path.write_text("driving: {clearance: 0.08, way_clearance: 0.04}\n", encoding="utf-8")
+    load_mission_config(path, BODY)
+
+
+@pytest.mark.parametrize(
+    ("part", "number", "value"),
+    [
+        ("coverage", "piece", "1.0e-9"),
+        ("driving", "way_clearance", "1.0e+12"),
+        ("driving", "progress_timeout", "1.0e+12"),
+        ("exploring", "stand_first", "1.0e+12"),
+        ("bin", "full", "1.0e-9"),
+        ("cleaning", "most_rounds", "1000000000"),
+    ],
+)
+def test_a_number_that_no_robot_can_have_is_refused(
+    tmp_path: Path, part: str, number: str, value: str
+) -> None:
+    path = tmp_path / "mission.yaml"
+    path.write_text(f"{part}: {{{number}: {value}}}\n", encoding="utf-8")
+    with pytest.raises(ConfigError, match=rf"mission\.yaml: {part}\.{number}: expected .* equal"):
+        load_mission_config(path, BODY)
+
+
 def test_for_a_slower_robot_it_is_slowed() -> None:
     slow = BODY.model_copy(update={"max_speed": 0.2})
     slowed = MissionConfig().slowed_for(slow)

@@ -19,7 +19,14 @@ def test_the_shipped_file_says_what_the_library_takes_without_a_file() -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("body:\n  diameter: -1\n", "body.diameter: .*greater than 0, got -1"),
+        ("body:\n  diameter: -1\n", "body.diameter: .*equal to 0.01, got -1"),
+        ("brush:\n  width: 1.0e-9\n", "brush.width: expected .*0.05, got 1e-09"),
+        ("brush:\n  width: 1.0e+12\n", "brush.width: expected .*1, got"),
+        ("brush:\n  bin_capacity: 1.0e-9\n", "brush.bin_capacity: expected .*1, got"),
+        ("tracking:\n  longest_blend: 1.0e+12\n", "tracking.longest_blend: expected .*1, got"),
+        ("timing:\n  world_step: 1.0e-9\n", "timing.world_step: expected .*0.001, got"),
+        ("lidar:\n  rate: 1.0e-9\n", "lidar.rate: expected"),
+        ("camera:\n  width: 1000000000\n", "camera.width: expected .*8192, got"),
         ("body:\n  wings: 2\n", "body.wings"),
         ("brush:\n  duty: 1.5\n", "brush.duty"),
         ("brush:\n  pickup: 0.5\n", "brush.pickup: unknown; what is true .* under simulation:"),

@@ -50,6 +50,8 @@ def test_what_the_robots_file_leaves_out_is_in_the_simulations_file(tmp_path: Pa
     ("text", "said"),
     [
         ("simulation:\n  brush:\n    pickup: 1.5\n", "robot.yaml: simulation.brush.pickup"),
+        ("simulation: {lidar: {noise_growth: 0.16}}\n", "lidar.noise_growth: expected .*0.02"),
+        ("simulation: {battery: {charge_hours: 1.0e+12}}\n", "battery.charge_hours: expected"),
         ("simulation:\n  wings: 2\n", "robot.yaml: simulation.wings"),
         ("simulation: 3\n", "robot.yaml: simulation"),
         ("- 3\n", "robot.yaml: "),

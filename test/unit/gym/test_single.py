@@ -1,3 +1,5 @@
+import math
+import re
 import warnings
 from typing import Any
 
@@ -11,7 +13,7 @@ import roomba.gym
 from roomba.configuration.body import BatteryConfig, BrushConfig
 from roomba.configuration.simulation import SimulatedBrush, SimulatedRobotConfig, SimulationConfig
 from roomba.errors import HomeError
-from roomba.gym import RoombaClean
+from roomba.gym import RoombaClean, Task
 from roomba.gym.observation import BATTERY, SIZE
 from roomba.world.home.home import DirtSource, Home
 
@@ -82,15 +84,38 @@ def test_what_cannot_be_meant_is_refused_with_the_reason() -> None:
     with pytest.raises(ValueError, match="start or at_station"):
         environment.reset(options={"stort": (1.0, 1.0, 0.0)})
     environment.reset(seed=0)
-    with pytest.raises(ValueError, match="finite"):
+    with pytest.raises(ValueError, match=r"finite numbers, got \[nan, 0.0\] for robot 0"):
         environment.step(np.array([np.nan, 0.0], np.float32))
-    for wrong in ({"dt": 0.0}, {"steps_per_action": 0}, {"energy_weight": -1.0}, {"duration": -1}):
-        with pytest.raises(ValueError, match=next(iter(wrong))):
-            RoombaClean(home=dirty_room(), **wrong)
+    for shape in [(3,), (1, 2), ()]:
+        with pytest.raises(ValueError, match=re.escape(f"shape (2,), got {shape}")):
+            environment.step(np.zeros(shape, np.float32))
     with pytest.raises(ValueError, match="render_mode"):
         RoombaClean(home=dirty_room(), render_mode="human")
     with pytest.raises(HomeError, match="did you mean"):
         RoombaClean(home="apartmint")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("dt", 0.0),
+        ("dt", 1e9),
+        ("dt", 1e-9),
+        ("dt", math.nan),
+        ("steps_per_action", 0),
+        ("steps_per_action", 1.5),
+        ("steps_per_action", 10**9),
+        ("duration", -1),
+        ("duration", 1e12),
+        ("max_speed", 100.0),
+        ("energy_weight", -1.0),
+        ("time_weight", math.inf),
+    ],
+)
+def test_a_number_out_of_range_is_refused_by_name(name: str, value: float) -> None:
+    task: dict[str, Any] = {name: value}
+    with pytest.raises(ValueError, match=f"^{name}: expected .*got {value}"):
+        Task(**task)
 
 
 def test_rewards_add_up_to_dirt_less_energy_and_time() -> None:

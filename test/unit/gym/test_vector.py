@@ -1,3 +1,4 @@
+import re
 from typing import Any
 
 import gymnasium
@@ -139,6 +140,21 @@ def test_seeds_are_one_for_each_or_the_first_in_a_row() -> None:
 def test_it_must_be_reset_first() -> None:
     with pytest.raises(RuntimeError, match="reset"):
         RoombaCleanVector(2, **TASK).step(np.zeros((2, 2), np.float32))
+
+
+@pytest.mark.parametrize("shape", [(2,), (3, 2), (2, 3), (2, 2, 1), ()])
+def test_actions_of_another_shape_are_refused(shape: tuple[int, ...]) -> None:
+    robots = RoombaCleanVector(2, **TASK)
+    robots.reset(seed=1)
+    with pytest.raises(ValueError, match=re.escape(f"shape (2, 2), got {shape}")):
+        robots.step(np.zeros(shape, np.float32))
+
+
+def test_an_action_that_is_not_finite_is_told_with_its_robot() -> None:
+    robots = RoombaCleanVector(2, **TASK)
+    robots.reset(seed=1)
+    with pytest.raises(ValueError, match=r"finite numbers, got \[0.0, inf\] for robot 1"):
+        robots.step(np.array([(0.0, 0.0), (0.0, np.inf)], np.float32))
 
 
 def test_at_least_one_robot_is_expected() -> None:

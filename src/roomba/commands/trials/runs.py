@@ -18,6 +18,7 @@ from roomba.commands.trials.things import Disc, seeded_things
 from roomba.commands.trials.trial import Setting, Trial
 from roomba.commands.trials.truth import coverable_floor, true_map
 from roomba.commands.trials.zones import zones_of
+from roomba.configuration.body import BrushConfig
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import load_config, validated
 from roomba.configuration.mission import MissionConfig
@@ -201,7 +202,8 @@ def robot_config_of(trial: Trial) -> SimulatedRobotConfig:
     if true is not config.simulation:
         config = with_simulation(config, true)
     if trial.bin is not None:
-        brush = config.brush.model_copy(update={"bin_capacity": trial.bin})
+        values = config.brush.model_dump() | {"bin_capacity": trial.bin}
+        brush = validated(BrushConfig, values, "bin: ")
         config = config.model_copy(update={"brush": brush})
     if trial.lidar is not None:
         config = config.with_lidar(trial.lidar)

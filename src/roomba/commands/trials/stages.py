@@ -52,7 +52,7 @@ def _module_of(name: str, path: str, code: Path | None) -> Any:
         sys.path.append(str(code))
     try:
         return importlib.import_module(module)
-    except Exception as error:  # a module of others may raise anything
+    except (Exception, SystemExit) as error:  # a module of others may raise anything, or end
         where = "" if code is None else f", also not in {code}"
         raise UsageError(
             f"stages: {name}: expected a module that can be imported, got {module!r}{where}: "

@@ -23,8 +23,9 @@ def floor_in_reach(context: PlanningContext, here: Point, obstacles: list[RoundO
     A robot that is shut in elsewhere can clean there, and has to get out from there: then that
     floor counts as well.
     """
+    frame = context.frame
     reachable = context.reachable((context.staging.x, context.staging.y), obstacles)
-    if not reachable[context.frame.cell_of(*here)]:
+    if not (frame.contains(*here) and reachable[frame.cell_of(*here)]):
         reachable |= context.reachable(here, obstacles)
     return reachable
 

@@ -20,6 +20,7 @@ from roomba.files.occupancy_map import load_map
 from roomba.files.strict_yaml import YamlFile
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
+from roomba.world.home.dirt import DirtField
 from roomba.world.home.home import DirtSource, Home
 from roomba.world.home.turned import with_steps
 from roomba.world.layers.assembly import (
@@ -91,6 +92,7 @@ def _assembled(
         free_walls=floor.free,
         surfaces=floor.surfaces,
     )
+    _check_dirt_fits(home, file)
     return home if floor.free is None else with_steps(home)
 
 
@@ -128,6 +130,21 @@ def _check_dirt_on_floor(floor: FurnishedFloor, parts: Parts, file: YamlFile) ->
                 f"dirt source {source.name!r}: expected a place on free floor, got "
                 f"({source.x:g}, {source.y:g}), which is none; move it",
             )
+
+
+def _check_dirt_fits(home: Home, file: YamlFile) -> None:
+    field = DirtField.of(home)
+    for index, source in enumerate(home.dirt_sources):
+        if source.amount <= 0.0:
+            continue
+        try:
+            field.spread(source.x, source.y, source.radius, source.amount)
+        except ValueError as error:
+            raise file.error(
+                ("dirt_sources", index),
+                f"dirt source {source.name!r}: expected an amount that the floor can hold, got "
+                f"{source.amount:g} g ({error}); let less fall, or spread it wider",
+            ) from error
 
 
 def _even_dirt(floor: FurnishedFloor) -> DirtSource:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import shapely
@@ -67,6 +68,13 @@ def _free_wall(location: Location, entry: WallEntry, check: Checker) -> FreeWall
         assert entry.arc is not None, "an entry has one of its three forms"
         arc = entry.arc
         centre = arc.centre[0], arc.centre[1]
+        # Of one that leaves the map there may be more pieces than there is memory.
+        for angle in (arc.first, 0.5 * (arc.first + arc.last), arc.last):
+            check.point(
+                location,
+                centre[0] + arc.radius * math.cos(angle),
+                centre[1] + arc.radius * math.sin(angle),
+            )
         line = tuple(arc_points(centre, arc.radius, arc.first, arc.last))
         whole = arc_outline(centre, arc.radius, arc.first, arc.last, thickness)
     if not whole.is_valid or len(whole.interiors) or whole.area <= 0.0:

@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 from roomba.commands.options import UsageError
 from roomba.commands.sim.command import main
 from roomba.commands.sim.json_file import TIMES, run_as_json
-from roomba.commands.trials.runs import Run, TrialSetup, run_trial
+from roomba.commands.trials.runs import Run, TrialSetup, robot_config_of, run_trial
 from roomba.commands.trials.trial import Trial
 from roomba.commands.trials.zones import zones_of
 from roomba.configuration.mission import LowThingsConfig
+from roomba.errors import ConfigError
 from roomba.files.occupancy_map import load_map, save_map
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
@@ -202,6 +203,13 @@ def test_sensors_and_configuration_are_obeyed(room: Path, tmp_path: Path) -> Non
     setup = TrialSetup(trial)
     assert setup.config.simulation.sensors == "ideal"
     assert setup.robot.context.tool_width == 0.18
+
+
+@pytest.mark.parametrize("grams", [1e-9, 0.001, 1e12])
+def test_a_bin_that_no_robot_has_is_refused(grams: float) -> None:
+    with pytest.raises(ConfigError, match=f"^bin: bin_capacity: expected .*got {grams}"):
+        robot_config_of(Trial(bin=grams))
+    assert robot_config_of(Trial(bin=2.0)).brush.bin_capacity == 2.0
 
 
 def test_the_command_prints_a_table_and_writes_files(

@@ -67,6 +67,18 @@ def test_what_is_no_stage_is_refused(code: Path, name: str, path: str, said: str
 
 
 @pytest.mark.parametrize(
+    ("name", "source"),
+    [("stages_that_leave", "raise SystemExit(7)"), ("stages_that_break", "1 / 0")],
+)
+def test_a_module_that_ends_or_fails_as_it_is_imported_is_refused(
+    code: Path, name: str, source: str
+) -> None:
+    (code / f"{name}.py").write_text(f"{source}\n", encoding="utf-8")
+    with pytest.raises(UsageError, match=f"a module that can be imported, got '{name}'"):
+        stages_of([("swaths", f"{name}:f")], code)
+
+
+@pytest.mark.parametrize(
     ("name", "function", "said"),
     [
         ("swaths", "text", "a list of arrays.*got str"),

@@ -111,6 +111,14 @@ def test_a_layer_without_materials_has_neither_faces_nor_codes(tmp_path: Path) -
             "{arc: {centre: [2.0, 1.5], radius: 0.1, from: 0.0, to: 0.5}, thickness: 0.2}",
             "twice the radius",
         ),
+        (
+            "{arc: {centre: [2.0, 1.5], radius: 1.0e+9, from: 0.0, to: 3.0}, thickness: 0.2}",
+            "radius.*10000",
+        ),
+        (
+            "{arc: {centre: [2.0, 1.5], radius: 9000.0, from: 0.0, to: 3.0}, thickness: 0.2}",
+            "on the map",
+        ),
     ],
 )
 def test_what_is_no_wall_is_refused_with_its_line(tmp_path: Path, wall: str, reason: str) -> None:

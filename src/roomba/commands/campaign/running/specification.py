@@ -6,31 +6,31 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Final, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from roomba.commands.campaign.running.measures import DEFAULT_MEASURES, MEASURES
 from roomba.commands.options import MOST_SEED, UsageError
 from roomba.commands.trials.numbers import check_numbers
 from roomba.commands.trials.trial import MOST_THINGS, RANDOM, Trial
+from roomba.configuration.body import BinCapacity
 from roomba.configuration.frozen import (
     AtLeastOne,
     Count,
     Finite,
     Frozen,
     NotNegative,
-    Positive,
     Ratio,
     load_config,
 )
 from roomba.configuration.sensors import lidar_models
-from roomba.files.home_layer import MAP_NAME
+from roomba.files.home_layer import DAY, MAP_NAME
 from roomba.files.shipped import HOMES
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.vocabulary import MOST_PASSES, CleanMode, FanLevel
 
 MOST_RUNS: Final = 100_000
 
-Seed = Annotated[int, Field(ge=0, le=MOST_SEED)]
+Seed = Annotated[int, Field(ge=0, le=MOST_SEED, strict=True)]
 Name = Annotated[str, Field(min_length=1, max_length=80)]
 
 
@@ -38,7 +38,27 @@ class SeedRange(Frozen):
     """``count`` seeds from ``first`` on."""
 
     first: Seed = 0
-    count: Annotated[int, Field(ge=1, le=MOST_RUNS)]
+    count: Annotated[int, Field(ge=1, le=MOST_RUNS, strict=True)]
+
+    @model_validator(mode="after")
+    def _last_is_a_seed(self) -> SeedRange:
+        if (last := self.first + self.count - 1) > MOST_SEED:
+            raise ValueError(
+                f"expected first + count - 1 of at most {MOST_SEED}, got {last}; lower one of them"
+            )
+        return self
+
+
+def _form_of_seeds(seeds: object) -> str:
+    return "list" if isinstance(seeds, list | tuple) else "range"
+
+
+Seeds = Annotated[
+    Annotated[SeedRange, Tag("range")]
+    | Annotated[tuple[Seed, ...], Field(min_length=1), Tag("list")],
+    Discriminator(_form_of_seeds),
+]
+"""So that what is wrong is told of the form that was written."""
 
 
 class Variant(Frozen):
@@ -50,9 +70,9 @@ class Variant(Frozen):
     things: Annotated[Count, Field(le=MOST_THINGS)] = 0
     shut_doors: bool = False
     battery: Ratio = 1.0
-    bin: Positive | None = None
+    bin: BinCapacity | None = None
     """g."""
-    empty_after: NotNegative = 120.0
+    empty_after: Annotated[NotNegative, Field(le=DAY)] = 120.0
     """s."""
     turned: Finite = 0.0
     """Degrees, counter-clockwise."""
@@ -91,7 +111,7 @@ class CampaignFile(Frozen):
     """The file: every home with every seed in every variant is a run."""
 
     homes: Annotated[tuple[Name, ...], Field(min_length=1)]
-    seeds: SeedRange | Annotated[tuple[Seed, ...], Field(min_length=1)]
+    seeds: Seeds
     variants: Annotated[dict[Name, Variant], Field(min_length=1)]
     baseline: str | None = None
     """The variant that the others are compared with; the first one by default."""
