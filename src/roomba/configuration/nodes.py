@@ -6,7 +6,9 @@ no matter of the robot's brain, which runs without ROS as well.
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Annotated, ClassVar
+
+from pydantic import Field
 
 from roomba.configuration.body import Speed
 from roomba.configuration.frozen import (
@@ -19,6 +21,7 @@ from roomba.configuration.frozen import (
     TurningSpeed,
 )
 
+Bytes = Annotated[float, Field(ge=1.0, le=1e18)]
 Unsure = tuple[Positive, Positive]
 """Standard deviations of a place and a heading, m and rad."""
 
@@ -115,7 +118,7 @@ class MemoryConfig(Frozen):
     reason."""
     goes_well: Duration = 20.0
     """s of wall time after which what was taken up is no danger."""
-    free_space: Positive = 2e6
+    free_space: Bytes = 2e6
     """Bytes; with less on the disk of the errand it is told that the disk is full,"""
     free_space_period: Duration = 1.0
     """which is looked at so often: s of wall time."""
