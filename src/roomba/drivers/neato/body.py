@@ -176,7 +176,7 @@ class NeatoBody:
         self._power_told = (False, 0)
         with self._lock:
             self._odometry.stand()
-            self._planned.take(self._now(), None)
+        self._plan(None)
         for question in self._questions:
             if question is not self._scans or self._newest_scan is not None:
                 question.require(self._line, self._now)
@@ -281,14 +281,14 @@ class NeatoBody:
 
     def _drive(self, hold: float, busy: float) -> None:
         """Tell the wheels to go on for ``hold`` s; what is asked next keeps the line ``busy`` s."""
-        seconds = min(hold, busy + self._edges.took + self._telling)
-        if fastest_ahead(self._wanted_now()[0], self._track) * seconds > self._way_left():
+        if fastest_ahead(self._wanted_now()[0], self._track) * hold > self._way_left():
             self._ask(self._edges)
         twist, power = self._wanted_now()
         with self._lock:
             now = self._odometry.twist
         half = 0.5 * self._track * now.angular
         moving = max(abs(now.linear - half), abs(now.linear + half))
+        seconds = min(hold, busy + self._edges.took + self._telling)
         limit = AheadLimit(self._way_left(), seconds)
         command = wheel_command(twist, self._track, hold, moving, limit)
         if command is None:
@@ -306,9 +306,7 @@ class NeatoBody:
 
     def _way_left(self) -> float:
         """Return how far the wheels may roll ahead when they hear a command that is sent now, m."""
-        heard = self._now() + self._telling
-        with self._lock:
-            return self._floor.left(self._planned.ways(heard))
+        return self._floor.left(self._now() + self._telling)
 
     def _stop(self) -> None:
         if self._is_enabled:
@@ -317,8 +315,10 @@ class NeatoBody:
             self._plan(None)
 
     def _plan(self, command: WheelCommand | None) -> None:
+        at = self._heard_at()
         with self._lock:
-            self._planned.take(self._heard_at(), command)
+            self._planned.take(at, command)
+        self._floor.go(at, *((0.0, 0.0) if command is None else (command.way, command.top_speed)))
 
     def _set_power(self, power: tuple[bool, int]) -> None:
         """Switch brush and fan, where they change: they rest while the robot stands."""
@@ -352,7 +352,7 @@ class NeatoBody:
         has_edge = max(drops.left, drops.right) > _NO_FLOOR
         with self._lock:
             self._drops = drops
-            self._floor.take(self._planned.ways(at), has_edge=has_edge)
+        self._floor.take(at, has_edge=has_edge)
         if has_edge and self._goes_ahead:
             self._stop()
 

@@ -9,24 +9,36 @@ from __future__ import annotations
 import math
 
 from roomba.configuration.sensors import CliffConfig
-from roomba.drivers.neato.planned import Ways
 
 
 class SeenFloor:
-    """The floor before the wheels; ``ways`` are those of both wheels since any time, m."""
+    """The floor before the wheels; times in s, of a clock that never goes back."""
 
     def __init__(self, sensors: CliffConfig) -> None:
-        """Know of none: the drop sensors have told nothing yet."""
+        """Know of none: the drop sensors have told nothing yet, and the robot stands."""
         self._reach = min(sensors.radius * math.cos(math.radians(at)) for at in sensors.angles)
-        self._seen_at: Ways | None = None
+        self._rolled = 0.0
+        self._at, self._way, self._speed = 0.0, 0.0, 0.0
+        self._seen: float | None = None
 
-    def take(self, ways: Ways, *, has_edge: bool) -> None:
-        """Take what the sensors told when the wheels had come so far."""
-        self._seen_at = None if has_edge else ways
+    def go(self, at: float, way: float, speed: float) -> None:
+        """Take what the wheels were told at a time: ``way`` m of the faster one, at ``speed`` m/s.
 
-    def left(self, ways: Ways) -> float:
-        """Return how much farther than ``ways`` a wheel may roll ahead, m."""
-        if self._seen_at is None:
+        Any way counts: a wheel that rolls back leaves the floor that was seen as well.
+        """
+        self._rolled = self._most(at)
+        self._at, self._way, self._speed = at, way, speed
+
+    def take(self, at: float, *, has_edge: bool) -> None:
+        """Take what the sensors saw at a time."""
+        self._seen = None if has_edge else self._most(at)
+
+    def left(self, at: float) -> float:
+        """Return how far a wheel may roll ahead from where it is at a time, m."""
+        if self._seen is None:
             return 0.0
-        rolled = max(abs(now - then) for now, then in zip(ways, self._seen_at, strict=True))
-        return max(0.0, self._reach - rolled)
+        return max(0.0, self._reach - (self._most(at) - self._seen))
+
+    def _most(self, at: float) -> float:
+        """Return how far a wheel has rolled at most, m: at once as fast as it was told to."""
+        return self._rolled + min(self._way, self._speed * max(0.0, at - self._at))

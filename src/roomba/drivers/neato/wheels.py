@@ -28,6 +28,16 @@ class WheelCommand:
     speed: int
 
     @property
+    def way(self) -> float:
+        """How far the wheel with the longer distance rolls, m."""
+        return 1e-3 * max(abs(self.left), abs(self.right))
+
+    @property
+    def top_speed(self) -> float:
+        """How fast it rolls at most, m/s."""
+        return 1e-3 * self.speed
+
+    @property
     def text(self) -> str:
         """The command as it is sent."""
         return (
