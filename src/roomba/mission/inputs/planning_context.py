@@ -102,7 +102,7 @@ class PlanningContext:
         self._plan_watch = plan_watch
         self.body_radius, self.is_growing = radius, is_growing
         # Paths may come as near to walls as swaths do, so that they can join them.
-        self._clearance, self._least = driving.way_clearance, 0.5 * driving.clearance
+        self._clearance, self._least = driving.way_clearance, driving.tight_clearance
         if is_growing:
             exploring = mission.exploring
             self._clearance, self._least = exploring.clearance, exploring.tight_clearance
