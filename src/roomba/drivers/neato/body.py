@@ -60,6 +60,8 @@ _SCAN_PERIOD: Final = 0.1
 """s; more often than the lidar turns, so that it is seen when its sweeps end."""
 _SCAN_SHARE: Final = 0.5
 """Of the line's time for scans, at most, where they take long."""
+_BRIDGED_SCAN_SHARE: Final = 0.8
+"""The same behind a bridge: it rests after each short answer, and scans would be too rare."""
 _CALM: Final = 0.3
 """rad/s; a robot that turns faster waits for the next scan, where they take long,"""
 _SETTLED: Final = 0.4
@@ -241,7 +243,8 @@ class NeatoBody:
             self._drive(_SCAN_HOLD, question.took)
         self._ask(question)
         if question is self._scans:
-            question.period = max(_SCAN_PERIOD, question.took / _SCAN_SHARE)
+            share = _BRIDGED_SCAN_SHARE if self._line.is_bridged else _SCAN_SHARE
+            question.period = max(_SCAN_PERIOD, question.took / share)
 
     def _urgency(self, question: Question) -> float:
         since = self._now() - question.asked_at

@@ -44,6 +44,11 @@ class Conversation:
         return self._took
 
     @property
+    def is_bridged(self) -> bool:
+        """Whether the line tells whole answers."""
+        return self._per_byte > 0.0
+
+    @property
     def since_heard(self) -> float:
         """How long ago the newest answer began to come, s."""
         return self._now() - self._heard_at
