@@ -14,7 +14,7 @@ from fixtures.waiting import wait_until
 from roomba.client.view import CleanOrder, LayerName
 from roomba.commands.play.bumping import BumpingLife
 from roomba.drivers.robots.table import ROBOTS
-from roomba.headless.live.bumping_client import BumpingClient
+from roomba.headless.live.bumping.client import BumpingClient
 
 
 @pytest.fixture

@@ -14,8 +14,8 @@ from roomba.configuration.frozen import load_config
 from roomba.drivers.line_body import LineBody
 from roomba.drivers.robots.table import OwnedRobot
 from roomba.files.shipped import CONFIGURATION
-from roomba.headless.live.bumping_client import BumpingClient
-from roomba.headless.live.bumping_robot import BumpingRobot
+from roomba.headless.live.bumping.client import BumpingClient
+from roomba.headless.live.bumping.robot import BumpingRobot
 
 
 class BumpingLife:

@@ -26,7 +26,7 @@ from roomba.configuration.frozen import load_config
 from roomba.configuration.household import HouseholdConfig
 from roomba.errors import RoombaError
 from roomba.files.shipped import CONFIGURATION
-from roomba.headless.live.bumping_client import BumpingClient
+from roomba.headless.live.bumping.client import BumpingClient
 from roomba.headless.live.client import LiveClient
 from roomba.history.database import History
 from roomba.history.folder import history_folder

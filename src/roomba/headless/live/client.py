@@ -18,6 +18,7 @@ from roomba.headless.embodied import Embodied
 from roomba.headless.live import playing
 from roomba.headless.live.errands import begin_exploring
 from roomba.headless.live.floor_plan import FloorPlan, made
+from roomba.headless.live.held_stop import HeldStop
 from roomba.headless.live.live_home import LiveHome
 from roomba.headless.live.robot import LiveRobot
 from roomba.headless.live.snapshots import ErrandsEnded, Snapshots
@@ -25,7 +26,6 @@ from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
-from roomba.storage.kept_stop import NO_REASON, KeptStop
 from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 from roomba.world.simulator import Simulator
 
@@ -51,8 +51,7 @@ class LiveClient:
         self._snapshots = Snapshots(robot, plan, live_home)
         self._live = LiveRobot(robot, speed, self._observe)
         self._watchers: list[Watcher] = []
-        self._kept_stop: KeptStop | None = None
-        self._held = ""
+        self._stop = HeldStop(self.obey, _hold, _release)
         body = robot.robot.body
         has_camera = live_home.camera is not None
         self._bin_capacity = robot.robot.brush.bin_capacity
@@ -68,9 +67,7 @@ class LiveClient:
 
         To be called before :meth:`start`.
         """
-        self._kept_stop = KeptStop(folder, self._live_home.name)
-        if reason := self._kept_stop.reason():
-            self._hold(self._robot, reason)
+        self._stop.keep_in(folder, self._live_home.name, self._robot)
 
     def start(self) -> None:
         """Let the robot live."""
@@ -235,37 +232,11 @@ class LiveClient:
         A disk that does not keep it is told as part of why it is held.
         """
         self._live.drive(STANDSTILL)
-
-        def stop(robot: Embodied) -> None:
-            robot.brain.walking.end()
-            self._hold(robot, reason.strip() or NO_REASON)
-
-        self.obey(stop)
-        if refused := self._keep_newest_stop():
-            self.obey(lambda robot: self._tell_not_kept(robot, refused))
+        self._stop.engage(reason)
 
     def release(self) -> None:
         """Release the emergency stop; raises RequestRefusedError too where it holds again later."""
-
-        def release(robot: Embodied) -> None:
-            robot.mission.command(Event.RELEASE, robot.senses())
-            self._held = ""
-
-        self.obey(release)
-        if refused := self._keep_newest_stop():
-            raise RequestRefusedError(f"the drive is free; but {refused}")
-
-    def _hold(self, robot: Embodied, reason: str) -> None:
-        robot.mission.command(Event.EMERGENCY, robot.senses(), reason)
-        self._held = reason
-
-    def _tell_not_kept(self, robot: Embodied, refused: str) -> None:
-        if self._held:
-            self._hold(robot, f"{self._held}; but {refused}")
-
-    def _keep_newest_stop(self) -> str:
-        """Keep why the drive is held, if at all; return what the disk refused."""
-        return "" if self._kept_stop is None else self._kept_stop.keep(lambda: self._held)
+        self._stop.release()
 
     def drive(self, linear: float, angular: float) -> None:
         """Drive by hand; refused while the emergency stop holds, or an errand is under way."""
@@ -350,8 +321,8 @@ class LiveClient:
     def _play(self, act: Callable[[Simulator], None]) -> None:
         self.obey(lambda _: self._live_home.play(act))
 
-    def _command(self, event: Event, reason: str = "") -> None:
-        self.obey(lambda robot: robot.mission.command(event, robot.senses(), reason))
+    def _command(self, event: Event) -> None:
+        self.obey(lambda robot: robot.mission.command(event, robot.senses()))
 
     def _observe(self, robot: Embodied) -> None:
         self._snapshots.observe(robot)
@@ -360,6 +331,16 @@ class LiveClient:
     def _tell(self, robot: Embodied) -> None:
         for watcher in self._watchers:
             watcher(robot, self._snapshots.ended)
+
+
+def _hold(robot: Embodied, reason: str) -> None:
+    """Hold the drive; a walk ends."""
+    robot.brain.walking.end()
+    robot.mission.command(Event.EMERGENCY, robot.senses(), reason)
+
+
+def _release(robot: Embodied) -> None:
+    robot.mission.command(Event.RELEASE, robot.senses())
 
 
 def _request_of(order: view.CleanOrder) -> CleanRequest:

@@ -17,10 +17,10 @@ from roomba.client.protocol import (
     RobotUnavailableError,
 )
 from roomba.geometry import STANDSTILL, Pose
-from roomba.headless.live.bumping_robot import BumpingRobot
-from roomba.headless.live.bumping_view import BY_WHEELS, FeltLayers, home_of_bumping, view_of
+from roomba.headless.live.bumping.robot import BumpingRobot
+from roomba.headless.live.bumping.view import BY_WHEELS, FeltLayers, home_of_bumping, view_of
+from roomba.headless.live.held_stop import HeldStop
 from roomba.headless.live.robot import LiveRobot
-from roomba.storage.kept_stop import NO_REASON, KeptStop
 from roomba.vocabulary import CleanMode, RoomWay
 
 _NO_MAP = "it has no lidar, so it makes no map: it sweeps all that it bumps along"
@@ -40,8 +40,7 @@ class BumpingClient:
         self._home_of: Pose | None = None
         self._last: CleanReport | None = None
         self._clean: _CleanUnderWay | None = None
-        self._kept_stop: KeptStop | None = None
-        self._held = ""
+        self._stop = HeldStop(self._obey, _hold, _release)
         body = robot.robot.body
         self._top_speed = body.max_speed
         self._limits = view.PageLimits(
@@ -58,9 +57,7 @@ class BumpingClient:
 
         To be called before :meth:`start`.
         """
-        self._kept_stop = KeptStop(folder, self._name)
-        if reason := self._kept_stop.reason():
-            self._hold(self._robot, reason)
+        self._stop.keep_in(folder, self._name, self._robot)
 
     def start(self) -> None:
         """Let the robot live."""
@@ -143,32 +140,11 @@ class BumpingClient:
         A disk that does not keep it is told as part of why it is held.
         """
         self._live.drive(STANDSTILL)
-        self._obey(lambda robot: self._hold(robot, reason.strip() or NO_REASON))
-        if refused := self._keep_newest_stop():
-            self._obey(lambda robot: self._tell_not_kept(robot, refused))
+        self._stop.engage(reason)
 
     def release(self) -> None:
         """Release the emergency stop; raises RequestRefusedError too where it holds again later."""
-
-        def release(robot: BumpingRobot) -> None:
-            robot.brain.release()
-            self._held = ""
-
-        self._obey(release)
-        if refused := self._keep_newest_stop():
-            raise RequestRefusedError(f"the drive is free; but {refused}")
-
-    def _hold(self, robot: BumpingRobot, reason: str) -> None:
-        robot.brain.hold()
-        self._held = reason
-
-    def _tell_not_kept(self, robot: BumpingRobot, refused: str) -> None:
-        if self._held:
-            self._hold(robot, f"{self._held}; but {refused}")
-
-    def _keep_newest_stop(self) -> str:
-        """Keep why the drive is held, if at all; return what the disk refused."""
-        return "" if self._kept_stop is None else self._kept_stop.keep(lambda: self._held)
+        self._stop.release()
 
     def drive(self, linear: float, angular: float) -> None:
         """Drive by hand; refused while the emergency stop holds, or it drives by itself."""
@@ -238,10 +214,18 @@ class BumpingClient:
         """Take snapshots after a frame, or a command."""
         if self._clean is not None:
             self._last, self._clean = self._clean.look(robot, self._last)
-        self._view = view_of(robot, self._last, self._top_speed, self._held)
+        self._view = view_of(robot, self._last, self._top_speed, self._stop.reason)
         if self._home is None or self._home_of is not robot.brain.station:
             self._home_of = robot.brain.station
             self._home = home_of_bumping(next(self._versions), self._name, robot)
+
+
+def _hold(robot: BumpingRobot, _reason: str) -> None:
+    robot.brain.hold()
+
+
+def _release(robot: BumpingRobot) -> None:
+    robot.brain.release()
 
 
 class _CleanUnderWay:

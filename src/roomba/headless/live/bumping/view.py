@@ -14,7 +14,7 @@ from roomba.bumping.felt_floor import FeltFloor
 from roomba.client.protocol import CleanReport, VacuumSnapshot
 from roomba.client.view import GridLayer, HomeView, LayerName, RobotView, battery_fills
 from roomba.geometry import Pose
-from roomba.headless.live.bumping_robot import BumpingRobot
+from roomba.headless.live.bumping.robot import BumpingRobot
 from roomba.mission.phases.machine import VACUUM_STATES, Phase
 
 BY_WHEELS: Final = "it has no lidar: where it is, and what it swept, is by wheels and walls"

@@ -14,9 +14,9 @@ from fixtures.waiting import wait_until
 from roomba.client.protocol import ErrandOutcome, RequestRefusedError
 from roomba.client.view import CleanOrder, LayerName
 from roomba.geometry import Pose
-from roomba.headless.live.bumping_client import BumpingClient
-from roomba.headless.live.bumping_robot import BumpingRobot
-from roomba.headless.live.bumping_view import view_of
+from roomba.headless.live.bumping.client import BumpingClient
+from roomba.headless.live.bumping.robot import BumpingRobot
+from roomba.headless.live.bumping.view import view_of
 
 
 @pytest.fixture
@@ -114,22 +114,6 @@ def test_the_emergency_stop_holds_the_robot_that_is_started_anew(tmp_path: Path)
         client.emergency_stop("")
     with lives(tmp_path) as client:
         assert client.robot().held == "no reason was given"
-
-
-def test_a_disk_that_refuses_is_told_and_changes_nothing(tmp_path: Path) -> None:
-    file = tmp_path / "file"
-    file.write_bytes(b"")
-    with lives(file) as client:
-        client.emergency_stop("smoke")
-        assert client.robot().held.startswith("smoke; but it is forgotten if the robot is killed, ")
-        client.release()
-        assert client.robot().held == ""
-    (tmp_path / "studio.txt").mkdir()
-    with lives(tmp_path) as client:
-        assert "it counts as held" in client.robot().held
-        with pytest.raises(RequestRefusedError, match="the drive is free; but it holds again"):
-            client.release()
-        assert client.robot().held == ""
 
 
 def test_what_wants_a_map_is_refused_with_the_reason(client: BumpingClient) -> None:
