@@ -6,25 +6,20 @@ import bisect
 import heapq
 import operator
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+import numpy as np
 from rosbags.rosbag1 import Reader as Reader1
 from rosbags.rosbag2 import Reader as Reader2
 
 from roomba.recordings.packed import Unpacked
 from roomba.recordings.readings import LogError
+from roomba.recordings.times.stamps import clock_shifts
 
 _SKIPPED: Final = 10**9
 """ns; after what cannot be read it goes on so much later."""
 _MOST_SKIPS: Final = 1000
-_SET_BACK: Final = 10**9
-"""ns; a recorder's clock that is set back by more begins another run."""
-_LASTING: Final = 10
-"""Messages; if all of so many are earlier than what was recorded before, the clock was set back."""
-
-_TIME: Final = operator.itemgetter(1)
 
 _Place = tuple[int, int]
 """Where a message is in a bag: its chunk, and the place in that."""
@@ -147,18 +142,14 @@ class BagFile:
             return [_WHOLE]
         most = max(self._first.connections, key=lambda each: len(self._first.indexes[each.id]))
         rows = sorted((place, time) for time, place in _index(self._first, [most]))
-        steps = sorted(later - time for (_, time), (_, later) in pairwise(rows))
-        usual = steps[len(steps) // 2] if steps else 0
-        runs, newest = [_WHOLE], rows[0][1]
-        for number, (place, time) in enumerate(rows):
-            shift = runs[-1].shift
-            earlier = newest - _SET_BACK - shift
-            if time < earlier and max(rows[number : number + _LASTING], key=_TIME)[1] < earlier:
-                runs[-1] = runs[-1]._replace(end=place)
-                shift = newest + usual - time
-                runs.append(_ClockRun(place, _WHOLE.end, shift))
-                self._note("the recorder's clock was set back on the way: the time goes on there")
-            newest = max(newest, time + shift)
+        times = np.array([time for _, time in rows])
+        shifts = clock_shifts(1e-9 * (times - times[0]), [most.id] * len(times))
+        runs = [_WHOLE]
+        for number in np.flatnonzero(np.diff(shifts)) + 1:
+            place, shift = rows[number][0], round(1e9 * shifts[number])
+            runs[-1] = runs[-1]._replace(end=place)
+            runs.append(_ClockRun(place, _WHOLE.end, shift))
+            self._note("the recorder's clock was set back on the way: the time goes on there")
         return runs
 
     def _opened(self) -> Any:

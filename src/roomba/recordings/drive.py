@@ -106,7 +106,7 @@ class LoggedDrive:
         self._mounting.take(shown)
 
     def take_sweep(self, sweep: Sweep) -> None:
-        """From now on read scans as of a lidar that sweeps so, whatever its driver tells."""
+        """Read all scans from now on by ``sweep`` instead of what the driver tells of it."""
         self._sweep = sweep
 
     def remark(self, remark: str) -> None:

@@ -203,7 +203,7 @@ def lidar_of(readings: Sequence[Reading]) -> LidarModel:
 
 
 def test_a_lidar_that_is_said_to_hang_upside_down_does(tmp_path: Path) -> None:
-    """Whatever was recorded; it looks the way that was said."""
+    """What was said counts, and not the transform in the recording."""
     path = write_bag(tmp_path / "made.bag", drive(1.0))
     steps = [
         lidar_of(read([path], Wanted(laser=LASER, laser_is_upside_down=hangs))[0]).step

@@ -79,23 +79,32 @@ class StampCounts:
 def gone_on(times: Floats, kinds: Sequence[Hashable]) -> Floats:
     """Return times of recording, s, that go on where the clock of the recorder was set back.
 
-    They are in the order of recording, of messages of some ``kinds``. Only beside others of its own
-    kind a message is an earlier one: some logs are written kind by kind.
+    They are of messages as :func:`clock_shifts` takes them.
+    """
+    return times + clock_shifts(times, kinds)
+
+
+def clock_shifts(times: Floats, kinds: Sequence[Hashable]) -> Floats:
+    """Return what to add to times of recording, s: they go on where the clock was set back.
+
+    The times are in the order of recording, of messages of some ``kinds``. Only beside others of
+    its own kind a message is an earlier one: some logs are written kind by kind. What is added
+    stays the same until the clock is set back again.
     """
     usual = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
     told = times.tolist()
     newest: dict[Hashable, float] = {}
     shift = 0.0
-    went_on = []
+    shifts = np.zeros(len(told))
     for first in range(len(told)):
         next_ones = range(first, min(first + _LASTING, len(told)))
         if len(next_ones) == _LASTING and all(
             told[at] + shift < newest.get(kinds[at], -math.inf) - _SET_BACK for at in next_ones
         ):
             shift = max(newest.values()) + usual - told[first]
-        went_on.append(told[first] + shift)
-        newest[kinds[first]] = max(newest.get(kinds[first], -math.inf), went_on[-1])
-    return np.array(went_on, np.float64)
+        shifts[first] = shift
+        newest[kinds[first]] = max(newest.get(kinds[first], -math.inf), told[first] + shift)
+    return shifts
 
 
 def delay_of(stamps: Floats, arrivals: Floats) -> float | None:
