@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from roomba.perception.matching.pose_kernels import is_apart, seen_from
 from roomba.perception.matching.reckoned_path import ReckonedPath
+from roomba.perception.slam.scan_matching.correlative import CorrelativeMatch, CorrelativeMatcher
 from roomba.perception.slam.scan_matching.surface_kernels import (
     POINT,
     room_for_sums,
@@ -26,6 +27,8 @@ _APART_WAY, _APART_TURN = 0.03, 0.03
 """m, rad; between scans that are kept: a robot that stands shows nothing new."""
 _MOST: Final = 600
 """Scans that are kept at most, with 18 m of way or 18 rad of turns between them."""
+_REACH: Final = 12.0
+"""m; farther points of a scan do not count when it is laid on another one."""
 _AROUND: Final = 2.0
 """s; of odometry before and after a scan that is looked at."""
 _TIMES: Final = 4
@@ -121,3 +124,17 @@ class LidarSamples:
         still = scan.lidar.at_once(stamp, scan.ranges, self._path.around(stamp))
         points, sums = np.empty((scan.lidar.beams, POINT)), room_for_sums(scan.lidar.beams)
         return points[: surface_points(still, scan.lidar.arrays(), 0.0, points, sums)]
+
+
+def laid_on(
+    place: Floats, points: Floats, around: Floats, window: float, turn: float
+) -> CorrelativeMatch | None:
+    """Lay the points of a scan on those of another one, ``place``, without any odometry.
+
+    Both are as :meth:`LidarSamples.points` returns them. Returns the best pose within ``window``,
+    m, and ``turn``, rad, of the pose ``around`` [3] in the frame of ``place``; None if one of them
+    shows nothing near, or they fit nowhere.
+    """
+    if not (np.hypot(place[:, 0], place[:, 1]) < _REACH).any():
+        return None
+    return CorrelativeMatcher(place, _REACH).best(points, around, window, turn, 0.0)

@@ -14,11 +14,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from roomba.commands.map.drive.lidar_samples import Floats, LidarSamples, Sample
-from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher
+from roomba.commands.map.drive.lidar_samples import Floats, LidarSamples, Sample, laid_on
 
-_REACH: Final = 12.0
-"""m; farther points do not count."""
 _WAY, _TURN = 0.3, 0.3
 """m, rad; two scans are compared between which the robot moved so far, or turned."""
 _MOST_WAY, _MOST_TURN = 1.0, 0.8
@@ -89,11 +86,10 @@ def _moves(samples: LidarSamples) -> Floats:
     for before, sample in pairwise(chosen):
         told = samples.between(before, sample)
         way, turn = math.hypot(told[0], told[1]), abs(float(told[2]))
-        place, points = samples.points(before), samples.points(sample)
-        if way > _MOST_WAY or turn > _MOST_TURN or not (_is_seen(place) and _is_seen(points)):
+        if way > _MOST_WAY or turn > _MOST_TURN:
             continue
-        matcher = CorrelativeMatcher(place, _REACH)
-        match = matcher.best(points, np.zeros(3), way + _MORE_WAY, turn + _MORE_TURN, 0.0)
+        place, points = samples.points(before), samples.points(sample)
+        match = laid_on(place, points, np.zeros(3), way + _MORE_WAY, turn + _MORE_TURN)
         if match is not None:
             moves.append((told, match.pose))
     return np.array(moves).reshape(-1, 2, 3)
@@ -122,7 +118,3 @@ def _yaw(by_odometry: Floats, by_scans: Floats) -> float:
     variance = max(float(off[best]) / len(rows), _NOISE**2)
     is_clear = off[ahead] - off[best] > _CLEAR**2 * variance
     return float(_YAWS[best]) if is_clear else 0.0
-
-
-def _is_seen(points: Floats) -> bool:
-    return bool((np.hypot(points[:, 0], points[:, 1]) < _REACH).any())

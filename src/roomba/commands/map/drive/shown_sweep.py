@@ -13,12 +13,9 @@ from typing import Final
 
 import numpy as np
 
-from roomba.commands.map.drive.lidar_samples import Floats, LidarSamples, Sample
-from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher
+from roomba.commands.map.drive.lidar_samples import Floats, LidarSamples, Sample, laid_on
 from roomba.recordings.sweeps import Sweep
 
-_REACH: Final = 12.0
-"""m; farther points do not count."""
 _TURNING: Final = 0.03
 """rad; so far the robot turns at least in the time of a scan that is bent."""
 _STRAIGHT: Final = 0.25
@@ -28,7 +25,8 @@ _NEAR_WAY, _NEAR_TURN = 1.0, 1.0
 _PAIRS, _LEAST_PAIRS = 80, 10
 """Pairs of scans that are looked at, at most and at least."""
 _LATE: Final = (0.0, 0.1, 0.2, 0.3, 0.4)
-"""s; scans may be stamped so late, whatever the sweep: for each one the best counts."""
+"""s; delays of the stamps that are tried with each sweep, as drivers stamp scans late: the delay
+with the best fit counts."""
 _WINDOW, _TURN = 0.2, 0.2
 """m, rad; by which odometry may be off between two scans."""
 _CLEAR: Final = 4.0
@@ -96,10 +94,6 @@ def _fit(
     samples: LidarSamples, straight: Sample, bent: Sample, sweep: Sweep | None, late: float
 ) -> float:
     """Return how well a bent scan fits a straight one, where it fits best, 0..1."""
-    place = samples.points(straight, sweep, late)
-    if not (np.hypot(place[:, 0], place[:, 1]) < _REACH).any():
-        return 0.0
-    matcher = CorrelativeMatcher(place, _REACH)
-    around = samples.between(straight, bent, late)
-    match = matcher.best(samples.points(bent, sweep, late), around, _WINDOW, _TURN, 0.0)
+    place, points = (samples.points(each, sweep, late) for each in (straight, bent))
+    match = laid_on(place, points, samples.between(straight, bent, late), _WINDOW, _TURN)
     return 0.0 if match is None else match.score
