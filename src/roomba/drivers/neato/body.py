@@ -321,7 +321,8 @@ class NeatoBody:
         at = self._heard_at()
         with self._lock:
             self._planned.take(at, command)
-        self._floor.go(at, *((0.0, 0.0) if command is None else (command.way, command.top_speed)))
+        way, speed = (0.0, 0.0) if command is None else (command.way, command.top_speed)
+        self._floor.go(at, way, speed)
 
     def _set_power(self, power: tuple[bool, int]) -> None:
         """Switch brush and fan, where they change: they rest while the robot stands."""

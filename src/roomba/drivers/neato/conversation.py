@@ -45,7 +45,7 @@ class Conversation:
 
     @property
     def is_bridged(self) -> bool:
-        """Whether the line tells whole answers."""
+        """Whether the robot answers through a bridge, which sends on whole answers."""
         return self._per_byte > 0.0
 
     @property

@@ -27,15 +27,14 @@ class PlannedWheels:
         """Take a command that the robot heard at a time, s; None: it stands at once."""
         base, speed = self.ways(at), self._speed(at)
         self._at, self._base, self._command = at, base, command
-        self._began_with = 0.0 if command is None else min(speed, 1e-3 * command.speed)
+        self._began_with = 0.0 if command is None else min(speed, command.top_speed)
 
     def ways(self, now: float) -> Ways:
         """Return how far the wheels are to have come at a time, s."""
         command = self._command
         if command is None:
             return self._base
-        longer = 1e-3 * max(abs(command.left), abs(command.right))
-        share = min(1.0, self._way(now, 1e-3 * command.speed) / longer)
+        share = min(1.0, self._way(now, command.top_speed) / command.way)
         left, right = 1e-3 * command.left * share, 1e-3 * command.right * share
         return self._base[0] + left, self._base[1] + right
 
@@ -50,7 +49,6 @@ class PlannedWheels:
         command = self._command
         if command is None:
             return 0.0
-        speed = 1e-3 * command.speed
-        if 1e3 * self._way(now, speed) >= max(abs(command.left), abs(command.right)):
+        if self._way(now, command.top_speed) >= command.way:
             return 0.0
-        return min(speed, self._began_with + GAIN * max(0.0, now - self._at))
+        return min(command.top_speed, self._began_with + GAIN * max(0.0, now - self._at))
