@@ -8,6 +8,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 TWO_PI = 2.0 * math.pi
 
 
@@ -57,6 +60,17 @@ class Pose:
             self.y + sine * other.x + cosine * other.y,
             wrap_angle(self.theta + other.theta),
         )
+
+    def transform(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return points, given in this pose's frame, in the frame that this pose is given in.
+
+        float64 [n, 2 or more]: x, y, m, and what else there is of each, which stays as it is.
+        """
+        cosine, sine = math.cos(self.theta), math.sin(self.theta)
+        moved = points.copy()
+        moved[:, 0] = self.x + cosine * points[:, 0] - sine * points[:, 1]
+        moved[:, 1] = self.y + sine * points[:, 0] + cosine * points[:, 1]
+        return moved
 
     def inverse(self) -> Pose:
         """Return the pose that undoes this one: ``p.compose(p.inverse())`` is the identity."""

@@ -1,5 +1,6 @@
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -36,6 +37,18 @@ def test_composition_turns_then_goes() -> None:
     ahead = Pose(1.0, 2.0, math.pi / 2).compose(Pose(3.0, 0.0, 0.1))
     assert (ahead.x, ahead.y) == pytest.approx((1.0, 5.0))
     assert ahead.theta == pytest.approx(math.pi / 2 + 0.1)
+
+
+@given(poses, st.lists(st.tuples(metres, metres, metres), min_size=1, max_size=4))
+def test_points_are_transformed_as_poses_are_composed(
+    pose: Pose, rows: list[tuple[float, float, float]]
+) -> None:
+    points = np.array(rows)
+    moved = pose.transform(points)
+    for (x, y, height), row in zip(rows, moved.tolist(), strict=True):
+        composed = pose.compose(Pose(x, y))
+        assert row == pytest.approx([composed.x, composed.y, height])
+    assert np.array_equal(points, rows)
 
 
 def test_bearing_is_positive_to_the_left() -> None:

@@ -3,9 +3,9 @@
 The meaning of every field is that of map_server's ``image_loader.cpp``, with three differences
 that keep unknown floor from being taken for free: a transparent pixel of any colour is unknown (in
 map_server's trinary mode the alpha channel is averaged in as if it were a colour), raw values above
-100 are unknown (map_server lets them wrap around), and so is map_saver's grey of 205 in a picture
-of map_saver's greys, whatever ``free_thresh`` is: that of Nav2 writes 0.25 by default, by which its
-own unknown would be free (navigation2, issue 5138).
+100 are unknown (map_server lets them wrap around), and map_saver's grey of 205 is unknown in a
+picture that has no greys but map_saver's. Nav2's map_saver writes a ``free_thresh`` of 0.25 by
+default, by which that grey would be free (navigation2, issue 5138).
 """
 
 from __future__ import annotations

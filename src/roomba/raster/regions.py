@@ -32,6 +32,17 @@ def numbered_regions(mask: Mask) -> Labels:
     return labels
 
 
+def large_regions(mask: Mask, resolution: float, least: float) -> Mask:
+    """Return the true cells, ``resolution`` m wide, in regions of ``least`` m2 or more.
+
+    Regions are those of :func:`numbered_regions`.
+    """
+    labels = numbered_regions(mask)
+    is_large = np.bincount(labels.ravel()) * resolution**2 >= least
+    is_large[0] = False
+    return np.asarray(is_large[labels])
+
+
 @allocating_entry
 def _grow(mask: Mask, heights: NDArray[np.int16], most: int, grown: Mask) -> None:
     """Set the cells that have a true cell near enough in their column or one beside it.

@@ -28,7 +28,6 @@ from roomba.world.engine.lidar.scan_kernels import scan_faces
 from roomba.world.engine.state.arrays import FACE, HOME, Edges, Rows
 from roomba.world.home.home import Home
 from roomba.world.home.surface import Finish
-from roomba.world.home.turned import placed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,7 +87,7 @@ class Lidar:
         if poses.ndim != 2 or poses.shape[1] != 3:
             raise ValueError(f"expected poses of shape [poses, 3], got {poses.shape}")
         if self._axes is not None:
-            poses = placed(poses, self._axes.inverse())
+            poses = self._axes.inverse().transform(poses)
             poses[:, 2] -= self._axes.theta
         x_min, x_max, y_min, y_max = self.frame.extent
         x, y = poses[:, 0], poses[:, 1]

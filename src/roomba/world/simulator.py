@@ -24,7 +24,6 @@ from roomba.world.engine.state.arrays import Fault, Infrared, Rows, State
 from roomba.world.fleet import Fleet
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM, DirtField
 from roomba.world.home.home import Home, MovingKind
-from roomba.world.home.turned import placed
 from roomba.world.observation import Bumper, Cliff, Observation, Wheels
 from roomba.world.power import battery_state, noise_level
 
@@ -124,13 +123,13 @@ class Simulator:
         if self.home.turned is None:
             return things
         things[:, 2] += self.home.axes.theta
-        return placed(things, self.home.axes)
+        return self.home.axes.transform(things)
 
     @property
     def discs(self) -> NDArray[np.float64]:
         """Round things that were put down, float64 [discs, 3]: x, y, radius, m."""
         discs = self._fleet.discs(0)
-        return discs if self.home.turned is None else placed(discs, self.home.axes)
+        return discs if self.home.turned is None else self.home.axes.transform(discs)
 
     def step(self, wanted: Twist, dt: float) -> Observation:
         """Let ``dt`` s pass with the command ``wanted``; return the observation after it.

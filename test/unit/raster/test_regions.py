@@ -1,11 +1,13 @@
 import cv2
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from numpy.typing import NDArray
+from scipy import ndimage
 
-from roomba.raster.regions import dilated, join, numbered_regions, root_of
+from roomba.raster.regions import dilated, join, large_regions, numbered_regions, root_of
 
 masks = arrays(np.bool_, array_shapes(min_dims=2, max_dims=2, max_side=20))
 
@@ -38,6 +40,23 @@ def test_regions_agree_with_opencv_up_to_their_numbers(mask: NDArray[np.bool_]) 
     assert len(pairs) == len({a for a, _ in pairs}) == len({b for _, b in pairs})
     assert ours.max(initial=0) == count - 1
     assert np.array_equal(ours > 0, mask)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_large_regions_are_those_that_scipy_finds(seed: int) -> None:
+    mask = np.random.default_rng(seed).random((60, 80)) < 0.55
+    labels, count = ndimage.label(mask)
+    expected = np.zeros_like(mask)
+    for label in range(1, count + 1):
+        if np.count_nonzero(labels == label) >= 20:
+            expected |= labels == label
+    resolution = 0.02
+    assert np.array_equal(large_regions(mask, resolution, 19.5 * resolution**2), expected)
+    assert 0 < np.count_nonzero(expected) < np.count_nonzero(mask)
+
+
+def test_no_region_is_large_in_an_empty_mask() -> None:
+    assert not large_regions(np.zeros((3, 3), np.bool_), 1.0, 0.0).any()
 
 
 @given(st.lists(st.tuples(st.integers(0, 19), st.integers(0, 19)), max_size=30))

@@ -11,8 +11,8 @@ from roomba.commands.trials.runs import docking_config, mission_config, robot_co
 from roomba.commands.trials.trial import Trial
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.rooms.zones import Zones
+from roomba.raster.regions import large_regions
 from roomba.world.home.home import Home
-from roomba.world.home.raster import largest_component
 
 LEAST_PIECE: Final = 1.0
 """m²; no room is smaller, and what is lies between or behind furniture: it is not told."""
@@ -59,10 +59,7 @@ def unreached_in(context: PlanningContext) -> Unreached:
     floor = context.floor
     cell = floor.frame.resolution**2
     left = floor.swept_from(floor.fits) & ~context.coverable()
-    unreached = np.zeros_like(left)
-    while np.count_nonzero(piece := largest_component(left)) * cell >= LEAST_PIECE:
-        unreached |= piece
-        left &= ~piece
+    unreached = large_regions(left, floor.frame.resolution, LEAST_PIECE)
     area = float(np.count_nonzero(unreached)) * cell
     if context.rooms is None or not area:
         return Unreached(area)

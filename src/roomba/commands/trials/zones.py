@@ -16,7 +16,6 @@ from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.storage.zones import load_zones
-from roomba.world.home.turned import placed
 
 ZONES_NAME: Final = "zones.yaml"
 """The file of a home's zones in its folder."""
@@ -40,7 +39,7 @@ def _turned(zone: Zone, degrees: float) -> Zone:
     """Return a zone of a home's folder where it lies in the turned home."""
     if not degrees:
         return zone
-    points = placed(np.array(zone.points), Pose(0.0, 0.0, math.radians(degrees)))
+    points = Pose(0.0, 0.0, math.radians(degrees)).transform(np.array(zone.points))
     return replace(zone, points=tuple((x, y) for x, y in points.tolist()))
 
 

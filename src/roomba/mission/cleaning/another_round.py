@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 from roomba.configuration.mission import CleaningConfig
 from roomba.grid import GridFrame
 from roomba.mission.cleaning.missed import is_hidden
-from roomba.mission.cleaning.worth import PlanOver, is_worth_its_way, large_patches
+from roomba.mission.cleaning.worth import PlanOver, is_worth_its_way
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import patches_of
 from roomba.planning.path.costmap import Point, RoundObstacle
 from roomba.planning.path.planner import NoPathError
+from roomba.raster.regions import large_regions
 
 Mask = NDArray[np.bool_]
 
@@ -59,5 +60,5 @@ def worth_another_round(
     is_enough = 1.0 - np.count_nonzero(left) / max(wanted, 1) >= config.enough
     least = config.least_for_round if is_enough else config.least_patch
     worth = config.worth_way if is_enough else config.worth_way_to_enough
-    patches = large_patches(left, frame, least)
+    patches = large_regions(left, frame.resolution, least)
     return patches & (patches.any() and is_worth_its_way(plan_over, patches, frame, worth))

@@ -30,7 +30,6 @@ from roomba.mission.cleaning.second_pass import SecondPass
 from roomba.mission.cleaning.stages import Stage, edges_of
 from roomba.mission.cleaning.worth import (
     PlanOver,
-    large_patches,
     made_once,
     plan_worth_its_way,
     slivers_of,
@@ -42,6 +41,7 @@ from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.path.costmap import RoundObstacle
 from roomba.planning.path.planner import NoPathError
 from roomba.planning.path.polyline import Path
+from roomba.raster.regions import large_regions
 from roomba.vocabulary import CleanMode, RoomWay
 
 Floats = NDArray[np.float64]
@@ -148,7 +148,7 @@ class Cleaning:
             & ~self.ledger.clean
             & self._context.reachable(staging, lasting)
         )
-        large = large_patches(left, self.ledger.coverage.frame, self._config.least_area_to_retry)
+        large = self._large(left, self._config.least_area_to_retry)
         if not large.any():
             return False
         self.ledger.add(Stage("what was out of reach", large))
@@ -236,7 +236,7 @@ class Cleaning:
         floor = planner.floor.with_obstacles(obstacles).coverable(at)
         # Edges are driven along on the whole map, by which the place is known better.
         todo = self.ledger.untried & floor & ~edges_of(floor, self._context)
-        todo = large_patches(todo, self.ledger.coverage.frame, self._config.least_while_growing)
+        todo = self._large(todo, self._config.least_while_growing)
         if not todo.any():
             return None
         self.ledger.note_tried(todo)
@@ -278,7 +278,7 @@ class Cleaning:
         """
         ledger, config, at = self.ledger, self._config, (here.x, here.y)
         if self._rounds.takes_anew():
-            large = large_patches(left, ledger.coverage.frame, config.least_for_round)
+            large = self._large(left, config.least_for_round)
             if large.any():
                 return large
         if self._rounds.is_first:
@@ -340,6 +340,10 @@ class Cleaning:
         floor = todo & self._context.reachable((here.x, here.y), obstacles)
         slivers = slivers_of(floor, self.ledger.coverage.along(rest), frame, config.least_for_round)
         return plan_worth_its_way(plan_over, todo, slivers, frame, config.worth_way)
+
+    def _large(self, floor: Mask, least: float) -> Mask:
+        """Return what of a floor is in patches of ``least`` m2 or more."""
+        return large_regions(floor, self.ledger.coverage.frame.resolution, least)
 
     def _plan_over(
         self, stage: Stage, todo: Mask, here: Pose, obstacles: list[RoundObstacle]

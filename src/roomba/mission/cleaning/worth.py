@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from roomba.grid import GridFrame
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.path.planner import NoPathError
-from roomba.raster.regions import numbered_regions
+from roomba.raster.regions import large_regions
 
 Mask = NDArray[np.bool_]
 PlanOver = Callable[[Mask], CoveragePlan]
@@ -30,14 +30,6 @@ def made_once(plan_over: PlanOver) -> PlanOver:
     return over
 
 
-def large_patches(floor: Mask, frame: GridFrame, least: float) -> Mask:
-    """Return what of a floor, bool over ``frame``, is in patches of ``least`` m2 or more."""
-    labels = numbered_regions(floor)
-    is_large = np.bincount(labels.ravel()) * frame.resolution**2 >= least
-    is_large[0] = False
-    return np.asarray(is_large[labels])
-
-
 def slivers_of(floor: Mask, ahead: Mask, frame: GridFrame, least: float) -> Mask:
     """Return what of a floor is not ``ahead`` and in patches of less than ``least`` m2.
 
@@ -46,7 +38,7 @@ def slivers_of(floor: Mask, ahead: Mask, frame: GridFrame, least: float) -> Mask
     sliver beside it it takes one more.
     """
     behind = floor & ~ahead
-    return behind & ~large_patches(behind, frame, least)
+    return behind & ~large_regions(behind, frame.resolution, least)
 
 
 def plan_worth_its_way(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Final
 
@@ -42,9 +41,7 @@ class Trail:
 
     def move(self, moved: Pose) -> None:
         """Go on in another frame, in which this one lies at ``moved``."""
-        cosine, sine = math.cos(moved.theta), math.sin(moved.theta)
-        turned = self._places @ np.array([[cosine, sine], [-sine, cosine]])
-        self._places[:] = turned + np.array([moved.x, moved.y])
+        self._places[:] = moved.transform(self._places)
 
     def forget(self) -> None:
         """The robot was carried: there is no way back."""

@@ -58,7 +58,7 @@ def match_floors(new: FloorRecord, old: FloorRecord, config: FloorsConfig) -> Fl
     starts.append(old.station)
     field, walls = SurfaceField.of(new.occupancy), _walls(old.occupancy)
     ends = np.zeros((len(walls), 4))
-    ends[:, :2] = _moved(walls, old.station.inverse())
+    ends[:, :2] = old.station.inverse().transform(walls)
     back = old.station.inverse()
     found = [
         _compared(new, old, _aligned(field, ends, start).compose(back), config) for start in starts
@@ -78,9 +78,9 @@ def _compared(
     new: FloorRecord, old: FloorRecord, old_in_new: Pose, config: FloorsConfig
 ) -> FloorMatch:
     new_in_old, near = old_in_new.inverse(), config.same_wall
-    agree, compared = _agreeing(_moved(_walls(old.occupancy), old_in_new), new.occupancy, near)
-    also, more = _agreeing(_moved(_walls(new.occupancy), new_in_old), old.occupancy, near)
-    floor = _moved(_middles(old.occupancy.frame, old.occupancy.values == FREE), old_in_new)
+    agree, compared = _agreeing(old_in_new.transform(_walls(old.occupancy)), new.occupancy, near)
+    also, more = _agreeing(new_in_old.transform(_walls(new.occupancy)), old.occupancy, near)
+    floor = old_in_new.transform(_middles(old.occupancy.frame, old.occupancy.values == FREE))
     free = int(np.count_nonzero(_values_at(new.occupancy, floor) == FREE))
     smaller = min(len(floor), int(np.count_nonzero(new.occupancy.values == FREE)))
     walls_share, floor_share = (agree + also) / max(compared + more, 1), free / max(smaller, 1)
@@ -108,14 +108,6 @@ def _walls(occupancy: OccupancyMap) -> Floats:
 
 def _middles(frame: GridFrame, cells: NDArray[np.bool_]) -> Floats:
     return np.column_stack(frame.centres(*np.nonzero(cells)))
-
-
-def _moved(points: Floats, pose: Pose) -> Floats:
-    """Return points, [n, 2], that are given in the frame of a pose."""
-    cosine, sine = np.cos(pose.theta), np.sin(pose.theta)
-    moved: Floats = points @ np.array([[cosine, sine], [-sine, cosine]])
-    moved += np.array([pose.x, pose.y])
-    return moved
 
 
 def _values_at(occupancy: OccupancyMap, points: Floats) -> Floats:

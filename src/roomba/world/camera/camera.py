@@ -25,7 +25,6 @@ from roomba.world.camera.scene.arrays import FloorDirt, Ray, SceneArrays, ViewTa
 from roomba.world.camera.scene.scene import Scene
 from roomba.world.camera.scene.texture_atlas import tone
 from roomba.world.camera.view import view_tables, workspace
-from roomba.world.home.turned import placed
 
 __all__ = ["Camera", "Picture", "Scene"]
 
@@ -128,7 +127,7 @@ class Camera:
         axes = self._scene.axes
         if axes is None or rows.ndim != 2 or rows.shape[1] < 3:
             return rows
-        rows = placed(rows, axes.inverse())
+        rows = axes.inverse().transform(rows)
         if turns:
             rows[:, 2] -= axes.theta
         return rows

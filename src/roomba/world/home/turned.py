@@ -77,9 +77,8 @@ def turned_frame(frame: GridFrame, angle: float) -> GridFrame:
     lie on cells.
     """
     x_min, x_max, y_min, y_max = frame.extent
-    corners = placed(
-        np.array([[x_min, y_min], [x_max, y_min], [x_max, y_max], [x_min, y_max]]),
-        Pose(0.0, 0.0, angle),
+    corners = Pose(0.0, 0.0, angle).transform(
+        np.array([[x_min, y_min], [x_max, y_min], [x_max, y_max], [x_min, y_max]])
     )
     size, first = frame.resolution, corners[0]
     low = np.floor((corners.min(axis=0) - first) / size + 1e-6)
@@ -87,18 +86,6 @@ def turned_frame(frame: GridFrame, angle: float) -> GridFrame:
     columns, rows = (high - low).astype(int).tolist()
     x, y = (first + low * size).tolist()
     return GridFrame(size, x, y, rows, columns)
-
-
-def placed(rows: Floats, axes: Pose) -> Floats:
-    """Return rows x, y, ... of the frame at ``axes`` in the frame that ``axes`` is in.
-
-    float64 [n, 2 or more]; what follows x and y stays as it is.
-    """
-    cosine, sine = math.cos(axes.theta), math.sin(axes.theta)
-    moved = rows.copy()
-    moved[:, 0] = axes.x + cosine * rows[:, 0] - sine * rows[:, 1]
-    moved[:, 1] = axes.y + sine * rows[:, 0] + cosine * rows[:, 1]
-    return moved
 
 
 def _grids(home: Home, frame: GridFrame, angle: float) -> dict[str, Any]:

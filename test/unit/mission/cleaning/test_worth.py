@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from roomba.grid import GridFrame
 from roomba.mission.cleaning.worth import (
     is_worth_its_way,
-    large_patches,
     made_once,
     plan_worth_its_way,
     slivers_of,
@@ -39,18 +37,6 @@ SLIVER = (slice(30, 31), slice(10, 70))
 
 def a_way_of(length: float) -> CoveragePlan:
     return CoveragePlan(np.array([(0.0, 0.0), (length, 0.0)]))
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_large_patches_are_those_that_scipy_finds(seed: int) -> None:
-    floor = np.random.default_rng(seed).random(FRAME.shape) < 0.55
-    labels, count = ndimage.label(floor)
-    expected = np.zeros_like(floor)
-    for label in range(1, count + 1):
-        if np.count_nonzero(labels == label) >= 20:
-            expected |= labels == label
-    assert (large_patches(floor, FRAME, 19.5 * CELL) == expected).all()
-    assert 0 < np.count_nonzero(expected) < np.count_nonzero(floor)
 
 
 def test_slivers_are_small_patches_that_are_not_ahead() -> None:

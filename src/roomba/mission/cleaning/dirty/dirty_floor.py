@@ -15,7 +15,7 @@ from roomba.mission.cleaning.dirty.watch_kernels import WATCH, may_be_dirty
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.swept.dirt_map import CELL, DirtMap
 from roomba.planning.path.costmap import Point
-from roomba.raster.regions import Labels, dilated, numbered_regions
+from roomba.raster.regions import Labels, dilated, large_regions, numbered_regions
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -61,7 +61,7 @@ class DirtyFloor:
 
     def left(self, coverage: CoverageMap, floor: Mask) -> list[DirtyPatch]:
         """Return the dirty patches of a swept floor that were not swept again, each once."""
-        cells = _large(self._dirty() & ~self._again, self._config.least_dirty)
+        cells = large_regions(self._dirty() & ~self._again, CELL, self._config.least_dirty)
         self._again |= cells
         self.done |= cells
         return self._each(cells, numbered_regions(cells), coverage, floor)
@@ -83,7 +83,7 @@ class DirtyFloor:
         """
         self._measure(now)
         cells = self.dirt.cells_from(float(self.watch["dirty_from"][0])) & ~self.done
-        cells = _large(cells, self._config.least_dirty)
+        cells = large_regions(cells, CELL, self._config.least_dirty)
         if not cells.any():
             return []
         patches = numbered_regions(dilated(cells, _AROUND))
@@ -154,11 +154,3 @@ class DirtyFloor:
         are_whole: Mask = missed <= _MISSED * wanted
         are_whole[0] = False
         return are_whole
-
-
-def _large(cells: Mask, least: float) -> Mask:
-    """Return what of some cells of a dirt map is in patches of ``least`` m2 or more."""
-    labels = numbered_regions(cells)
-    is_large = np.bincount(labels.ravel()) * CELL**2 >= least
-    is_large[0] = False
-    return np.asarray(is_large[labels])
