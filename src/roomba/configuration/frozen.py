@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, TypeVar
 
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    model_validator,
+)
 from pydantic_core import ErrorDetails
 
 from roomba.errors import ConfigError
@@ -107,7 +113,7 @@ def validated(
     ``unknown`` is what the line says of a key that the model does not have.
     """
     try:
-        return model.model_validate(raw)
+        made = model.model_validate(raw)
     except ValidationError as error:
         first = error.errors()[0]
         name = ".".join(str(part) for part in _place_in(raw, first))
@@ -126,6 +132,23 @@ def validated(
                 told = first["msg"].replace("Input should be", "expected")
                 reason = f"{told}, got {first['input']!r}"
         raise ConfigError(f"{where}{name}: {reason}" if name else f"{where}{reason}") from error
+    for reason in truths_as_numbers(raw, made):
+        raise ConfigError(f"{where}{reason}")
+    return made
+
+
+def truths_as_numbers(raw: Any, made: Any, name: str = "") -> Iterator[str]:
+    """Yield what is wrong with numbers that were ``made`` of truths: pydantic takes them so."""
+    if isinstance(raw, bool) and isinstance(made, int | float) and not isinstance(made, bool):
+        got = "true, which yes and on are too" if raw else "false, which no and off are too"
+        yield f"{name}: expected a number, got {got}"
+    elif isinstance(raw, Mapping) and isinstance(made, BaseModel):
+        for key, value in raw.items():
+            part = getattr(made, str(key), None)
+            yield from truths_as_numbers(value, part, f"{name}.{key}" if name else str(key))
+    elif isinstance(raw, list | tuple) and isinstance(made, list | tuple):
+        for value, part in zip(raw, made, strict=False):
+            yield from truths_as_numbers(value, part, name)
 
 
 def _place_in(raw: Any, error: ErrorDetails) -> list[int | str]:

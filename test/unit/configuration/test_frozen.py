@@ -36,6 +36,8 @@ class Whole(Frozen):
     """A part of a whole."""
 
     part: Ordered = Ordered()
+    places: tuple[float, ...] = ()
+    is_whole: bool = True
 
 
 @pytest.mark.parametrize("values", [(1.0, 2.0, 3.0), (2.0, 2.0, 3.0)])
@@ -57,6 +59,11 @@ def test_fields_out_of_order_are_refused(values: tuple[float, float, float]) -> 
     [
         ({"part": {"low": 5}}, "part: expected low <= middle < high, got 5.0, 2.0, 3.0"),
         ({"part": {"low": "x"}}, "part.low: expected a valid number, unable to parse"),
+        (
+            {"part": {"low": True}},
+            "part.low: expected a number, got true, which yes and on are too",
+        ),
+        ({"places": [1, False]}, "places: expected a number, got false, which no and off are too"),
         ({"part": {"wings": 2}}, "part.wings: no such key, got 2"),
         ([1, 2], "expected keys and values (`key: value`), got [1, 2]"),
         ({"part": 3}, "part: expected keys and values (`key: value`), got 3"),
@@ -69,6 +76,10 @@ def test_a_refusal_is_one_line_that_names_the_key_once(raw: dict[str, Any], said
     assert message.startswith(f"a.yaml: {said}")
     assert message.count("got") == 1
     assert "\n" not in message
+
+
+def test_what_may_be_true_is_taken() -> None:
+    assert not validated(Whole, {"is_whole": False}, "").is_whole
 
 
 @pytest.mark.parametrize(

@@ -62,6 +62,8 @@ def test_a_secret_that_others_can_read_is_refused(tmp_path: Path, mode: int) -> 
         ("mqtt: {host: a, pasword: hunter-2-the-cat}", "mqtt.pasword: "),
         ("mqtt: {host: a, password: hunter-2-the-cat}", "mqtt: expected a user"),
         ("mqtt: {host: a, port: 0}", "mqtt.port: "),
+        ("mqtt: {host: a, port: on}", "mqtt.port: expected a number, got true"),
+        ("mqtt:\n  host: a\n  hunter-2-the-cat: 1\n  hunter-2-the-cat: 2", "yaml:4: expected each"),
         ("mqtt: {host: a, topics: '#'}", "mqtt.topics: "),
         ("mqtt: {host: a, robot: Two Words}", "mqtt.robot: "),
         ("mqtt: {host: ''}", "mqtt.host: "),
