@@ -67,10 +67,7 @@ class Cleaning:
         self._context, self._config = context, config
         self.ledger = CoverageLedger(request, context, dirt, here)
         if not (self.ledger.coverage.wanted_cells or self.explores):
-            raise CleanRefusedError(
-                "expected floor that can be reached, got none: it is outside of the map, in "
-                "furniture, or in a no-go zone"
-            )
+            raise CleanRefusedError(_why_nothing(context))
         self.dirty = DirtyFloor(dirt, config)
         """What is so dirty that it is swept once more."""
         self._second_pass = SecondPass(self.dirty, self.ledger, config)
@@ -377,3 +374,16 @@ class Cleaning:
 def _points_of(plan: CoveragePlan) -> Floats | None:
     """Return the points of a plan, float64 [n, 2], m; None for one that sweeps nothing."""
     return plan.points if plan.length > 0.0 and len(plan.points) > 2 else None
+
+
+def _why_nothing(context: PlanningContext) -> str:
+    """Return why there is no floor to clean, and what to do."""
+    if context.coverable().any():
+        return (
+            "expected floor that can be reached, got none: it is outside of the map, in furniture, "
+            "or in a no-go zone"
+        )
+    return (
+        "expected a way from the charging station onto the floor, got none: the station faces what "
+        "is solid, or a no-go zone lies before it; turn it, or move one of them"
+    )
