@@ -46,7 +46,10 @@ def outcomes(monkeypatch: pytest.MonkeyPatch) -> dict[int, Outcome]:
         ("--home nowhere", "expected the name of a home there"),
         ("--home flat --room cellar", "got 'cellar'"),
         ("--home empty --spot 90 90", "expected floor that can be reached"),
-        ("--home studio --station 0 0 0", "expected a way from the charging station onto the floor"),
+        (
+            "--home studio --station 0 0 0",
+            "expected a way from the charging station onto the floor",
+        ),
         ("--home flat --bag a.bag", "--bag: expected a Python with ROS"),
         ("--seed x", "expected a whole number"),
     ],
