@@ -19,7 +19,11 @@ _PIECE: Final = 4096
 
 
 class LineError(RoombaError):
-    """The line is gone, or the robot at its other end does not answer."""
+    """The line is gone, or the robot at its other end does not answer, or not as it must."""
+
+    trouble = "the robot cannot be reached"
+    """What a person is told first; the page knows the beginnings."""
+    remedy = "Plug its line in and switch it on"
 
 
 class Line(Protocol):

@@ -150,7 +150,4 @@ class LineBody:
 def _told(error: LineError) -> str:
     why = str(error).rstrip(". ")
     end = "" if why.endswith("?") else "."
-    return (
-        f"the robot cannot be reached: {why}{end} Plug its line in and switch it on: it goes on by "
-        "itself"
-    )
+    return f"{error.trouble}: {why}{end} {error.remedy}: it goes on by itself"

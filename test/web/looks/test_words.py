@@ -7,6 +7,10 @@ from typing import Any
 import pytest
 from web.conftest import SIZES, Opened
 
+from roomba.drivers.create2.obedience import DisobeyedError
+from roomba.drivers.line import LineError
+from roomba.drivers.neato.questions import UntoldError
+
 SAY = """async ([name, ...given]) => (await import("/words.js"))[name](...given)"""
 FAIL = """async (last) => {
     const { get, set } = await import("/store.js"), state = get("state");
@@ -31,6 +35,24 @@ def test_the_headline_says_what_it_does(opened: Opened) -> None:
     assert headline(state("cleaning", 0.3)) == "Cleaning · Hall"
     assert headline(state("cleaning", 0.3, queue=["hall", "bath"])) == "Cleaning · Hall"
     assert headline(state("cleaning", 0.3, queue=["bath"])) == "On its way to Bath"
+
+
+@PHONE
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (LineError, "Cannot reach the robot"),
+        (UntoldError, "The robot stands: a sensor is silent"),
+        (DisobeyedError, "The robot does not obey"),
+    ],
+)
+def test_trouble_of_a_line_is_the_headline(
+    opened: Opened, error: type[LineError], said: str
+) -> None:
+    told = state("cleaning", 0.3, message=f"{error.trouble}: expected an answer")
+    assert opened.page.evaluate(SAY, ["headline", "live", told]) == said
+    doubted = {**state("cleaning", 0.3), "doubt": told["vacuum"]["message"]}
+    assert opened.page.evaluate(SAY, ["headline", "live", doubted]) == said
 
 
 @PHONE

@@ -19,7 +19,7 @@ from roomba.drivers.create2 import commands
 from roomba.drivers.create2.dead_man import PADDING as LONG_PADDING
 from roomba.drivers.create2.dead_man import STOP, DeadManSwitch, Switch
 from roomba.drivers.create2.frames import FrameReader
-from roomba.drivers.create2.obedience import Obedience
+from roomba.drivers.create2.obedience import DisobeyedError, Obedience
 from roomba.drivers.create2.odometry import EncoderOdometry
 from roomba.drivers.create2.open_interface import OpenMode, Packet
 from roomba.drivers.create2.telling import ALL, FAST, SLOW, Create2State, state_of
@@ -43,10 +43,6 @@ _GONE: Final = 0.5
 """s without a frame, after which the line counts as gone."""
 _FIRST: Final = 0.5
 """s, for the first frame at each rate."""
-_DISOBEYS: Final = (
-    "the wheels do not turn as they are told: switch the robot off, and look whether the wire "
-    "to it is broken"
-)
 _TURNS: Final = 5
 """Of as many commands on a slow line one is followed by the packets that may be old."""
 
@@ -179,7 +175,7 @@ class Create2Body:
             if now - self._heard > _GONE:
                 raise LineError(f"expected a frame each 15 ms, got none for {_GONE:g} s")
             if self._obedience.is_lost(now, self._twist, self._odometry.twist):
-                raise LineError(_DISOBEYS)
+                raise DisobeyedError("its wheels do not turn as they are told")
             if now >= self._due:
                 self._due = now + _PERIOD
                 self._send(self._line, now)

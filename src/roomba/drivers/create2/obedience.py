@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from roomba.drivers.line import LineError
 from roomba.geometry import STANDSTILL, Twist
 
 _FASTER: Final = 0.05
@@ -13,6 +14,13 @@ _PATIENCE: Final = 0.5
 """s; wheels that are told to stand do so much sooner."""
 _LASTING: Final = 3.0
 """s since it was told to drive, after which wheels that turn are pushed by hand."""
+
+
+class DisobeyedError(LineError):
+    """The robot tells what it senses, and does not hear what it is told."""
+
+    trouble = "the robot does not obey"
+    remedy = "Switch it off, look whether the wire to it is broken, and switch it on"
 
 
 class Obedience:

@@ -20,6 +20,9 @@ _MOST_FAILURES: Final = 2
 class UntoldError(LineError):
     """The robot is there, and does not tell what it must; the message says what."""
 
+    trouble = "the robot stands, as it does not tell what it senses"
+    remedy = "Look at that sensor, or switch the robot off and on"
+
 
 @dataclass(slots=True, eq=False)
 class Question:

@@ -5,7 +5,11 @@ const LATER = 7200; // s from which minutes do not matter
 const MOVES = 0.02; // m/s
 const FULL = 0.995; // of a battery
 const NOTHING = 0.01; // of the floor that was wanted
-const UNREACHED = /^the robot cannot be reached/; // a robot on a line
+const TROUBLES = [ // of a robot on a line: how its message begins, and the headline
+  ["the robot cannot be reached", "Cannot reach the robot"],
+  ["the robot stands, as it does not tell what it senses", "The robot stands: a sensor is silent"],
+  ["the robot does not obey", "The robot does not obey"],
+];
 
 /** Return the headline for a state. */
 export function headline(link, state) {
@@ -13,7 +17,8 @@ export function headline(link, state) {
   if (link === "gone") return "The robot does not answer";
   if (!state || link === "reconnecting") return "Connecting again …";
   if (state.replay) return `Recorded: ${headline(link, { ...state, replay: null })}`;
-  if (UNREACHED.test(state.vacuum.message) || UNREACHED.test(state.doubt)) return "Cannot reach the robot";
+  const trouble = TROUBLES.find(([begin]) => [state.vacuum.message, state.doubt].some((told) => told?.startsWith(begin)));
+  if (trouble) return trouble[1];
   const { vacuum } = state, room = (vacuum.room ? ` · ${title(vacuum.room)}` : "") + (vacuum.is_on_carpet ? " · on carpet" : "");
   const togo = vacuum.seconds_to_go > 0 && vacuum.state === "cleaning" ? ` · ${duration(vacuum.seconds_to_go)} to go` : "";
   if (state.truth?.lifted) return "Lifted off the floor";
