@@ -106,6 +106,7 @@ class BumpingClient:
             raise RequestRefusedError(_NO_MAP)
 
         def begin(robot: BumpingRobot) -> None:
+            self._require_free(robot)
             robot.brain.clean()
             self._clean = _CleanUnderWay(robot)
 
@@ -113,7 +114,12 @@ class BumpingClient:
 
     def dock(self) -> None:
         """Go to the charging station."""
-        self._obey(lambda robot: robot.brain.dock())
+
+        def dock(robot: BumpingRobot) -> None:
+            self._require_free(robot)
+            robot.brain.dock()
+
+        self._obey(dock)
 
     def pause(self) -> None:
         """Stand until told to go on."""
@@ -202,6 +208,13 @@ class BumpingClient:
     def undo_rooms(self) -> None:
         """Refuse it."""
         raise RequestRefusedError(_NO_MAP)
+
+    def _require_free(self, robot: BumpingRobot) -> None:
+        """Refuse what would drive as soon as the emergency stop is released."""
+        if robot.brain.state is BumpingState.EMERGENCY:
+            raise RequestRefusedError(
+                f"the emergency stop holds the drive ({self._stop.reason}); release it first"
+            )
 
     def _obey(self, command: Callable[[BumpingRobot], None]) -> None:
         def obey(robot: BumpingRobot) -> None:

@@ -103,12 +103,17 @@ def test_the_emergency_stop_holds_the_robot_that_is_started_anew(tmp_path: Path)
         assert client.robot().held == "child in the way"
         assert phase(client) == "emergency stop"
         before = client.robot()
-        client.clean(CleanOrder())
+        for drives_off in (client.dock, lambda: client.clean(CleanOrder())):
+            with pytest.raises(RequestRefusedError, match=r"child in the way.*release it first"):
+                drives_off()
         wait_until(lambda: client.robot().time > before.time + 3.0, 20.0, "its time passes")
         assert client.robot().held == "child in the way"
         assert math.dist(client.robot().pose[:2], before.pose[:2]) < 0.01
         client.release()
         assert client.robot().held == ""
+        released = client.robot().time
+        wait_until(lambda: client.robot().time > released + 3.0, 20.0, "its time passes")
+        assert phase(client) == "docked"
     with lives(tmp_path) as client:
         assert client.robot().held == ""
         client.emergency_stop("")
