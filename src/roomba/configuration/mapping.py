@@ -213,6 +213,8 @@ class MappingConfig(Frozen):
     least_link_turn: Angle = 0.0015
     occupied_share: Ratio = 0.3
     occupied_beams: AtLeastOne = 2
+    least_floor: NotNegative = 0.05
+    """m2; smaller patches of free cells, cut off from the others, lie behind surfaces."""
     redrawn_shift: Positive = 0.01
     farthest: Length = 30.0
     """What is farther is drawn, but nothing is matched to it."""

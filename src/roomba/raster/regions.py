@@ -25,19 +25,22 @@ def dilated(mask: Mask, reach: Mask) -> Mask:
     return grown
 
 
-def numbered_regions(mask: Mask) -> Labels:
-    """Return the regions of true cells connected over sides, numbered from 1; 0 elsewhere."""
+def numbered_regions(mask: Mask, *, by_corners: bool = False) -> Labels:
+    """Return the regions of true cells connected over sides, numbered from 1; 0 elsewhere.
+
+    ``by_corners`` they are connected over corners as well.
+    """
     labels: Labels = np.zeros(mask.shape, np.int32)
-    _number(np.ascontiguousarray(mask), labels)
+    _number(np.ascontiguousarray(mask), by_corners, labels)
     return labels
 
 
-def large_regions(mask: Mask, resolution: float, least: float) -> Mask:
+def large_regions(mask: Mask, resolution: float, least: float, *, by_corners: bool = False) -> Mask:
     """Return the true cells, ``resolution`` m wide, in regions of ``least`` m2 or more.
 
     Regions are those of :func:`numbered_regions`.
     """
-    labels = numbered_regions(mask)
+    labels = numbered_regions(mask, by_corners=by_corners)
     is_large = np.bincount(labels.ravel()) * resolution**2 >= least
     is_large[0] = False
     return np.asarray(is_large[labels])
@@ -98,7 +101,7 @@ def join(parents: Labels, one: int, other: int) -> int:
 
 
 @allocating_entry
-def _number(mask: Mask, labels: Labels) -> None:
+def _number(mask: Mask, by_corners: bool, labels: Labels) -> None:
     """Two passes with union-find; the numbers are in the order of the regions' first cells."""
     rows, columns = mask.shape
     parents = np.zeros(rows * columns // 2 + 2, np.int32)
@@ -109,6 +112,12 @@ def _number(mask: Mask, labels: Labels) -> None:
                 continue
             above = labels[row - 1, column] if row > 0 else 0
             before = labels[row, column - 1] if column > 0 else 0
+            if by_corners and above == 0 and row > 0:
+                # With a true cell above these two are of its region already.
+                if before == 0 and column > 0:
+                    before = labels[row - 1, column - 1]
+                if column + 1 < columns:
+                    above = labels[row - 1, column + 1]
             if above == 0 and before == 0:
                 count += 1
                 parents[count] = count

@@ -32,10 +32,13 @@ def test_growing_by_a_disc_agrees_with_opencv(
     assert np.array_equal(dilated(mask, reach), theirs.astype(bool))
 
 
-@given(masks)
-def test_regions_agree_with_opencv_up_to_their_numbers(mask: NDArray[np.bool_]) -> None:
-    ours = numbered_regions(mask)
-    count, theirs = cv2.connectedComponents(mask.astype(np.uint8), connectivity=4)
+@given(masks, st.booleans())
+def test_regions_agree_with_opencv_up_to_their_numbers(
+    mask: NDArray[np.bool_], by_corners: bool
+) -> None:
+    ours = numbered_regions(mask, by_corners=by_corners)
+    connectivity = 8 if by_corners else 4
+    count, theirs = cv2.connectedComponents(mask.astype(np.uint8), connectivity=connectivity)
     pairs = set(zip(ours.ravel().tolist(), theirs.ravel().tolist(), strict=True))
     assert len(pairs) == len({a for a, _ in pairs}) == len({b for _, b in pairs})
     assert ours.max(initial=0) == count - 1
@@ -53,6 +56,12 @@ def test_large_regions_are_those_that_scipy_finds(seed: int) -> None:
     resolution = 0.02
     assert np.array_equal(large_regions(mask, resolution, 19.5 * resolution**2), expected)
     assert 0 < np.count_nonzero(expected) < np.count_nonzero(mask)
+
+
+def test_cells_that_meet_at_a_corner_may_be_one_large_region() -> None:
+    mask = np.eye(4, dtype=np.bool_)
+    assert not large_regions(mask, 1.0, 2.0).any()
+    assert np.array_equal(large_regions(mask, 1.0, 4.0, by_corners=True), mask)
 
 
 def test_no_region_is_large_in_an_empty_mask() -> None:

@@ -77,7 +77,9 @@ class BlindMap:
 
     def occupancy(self) -> OccupancyMap:
         """Return the map as it is now; raises ValueError before the first scan."""
-        return self._sheet.occupancy(self._config.occupied_share, self._config.occupied_beams)
+        return self._sheet.occupancy(
+            self._config.occupied_share, self._config.occupied_beams, self._config.least_floor
+        )
 
     def _is_another(self, here: Pose) -> bool:
         if self._drawn is None:

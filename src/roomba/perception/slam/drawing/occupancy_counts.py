@@ -17,6 +17,7 @@ from roomba.perception.slam.drawing.drawing_kernels import (
     draw,
     occupancy,
 )
+from roomba.perception.slam.drawing.seen_surfaces import only_seen
 
 Floats = NDArray[np.float64]
 Offsets = NDArray[np.float32]
@@ -58,10 +59,11 @@ class OccupancyCounts:
         """Take a scan away that was drawn."""
         draw(self._arrays, points, lidar, pose, INTO_EDGE, -1)
 
-    def occupancy(self, share: float, least: int) -> OccupancyMap:
+    def occupancy(self, share: float, least: int, least_floor: float = 0.0) -> OccupancyMap:
         """Return the map of what was drawn; see :func:`.drawing_kernels.occupancy`.
 
-        Raises ValueError while nothing was drawn.
+        What lies behind surfaces is left out, as :func:`.seen_surfaces.only_seen` does. Raises
+        ValueError while nothing was drawn.
         """
         first_row, last_row, first_column, last_column = self._arrays.bounds.tolist()
         if last_row < first_row:
@@ -77,7 +79,7 @@ class OccupancyCounts:
             self._phase[1] + (self._row + first_row - MARGIN) * size,
             *shape,
         )
-        return OccupancyMap(frame, values)
+        return only_seen(OccupancyMap(frame, values), least_floor)
 
     def _lay(
         self, hits: Counts, passes: Counts, offsets: Offsets, bounds: NDArray[np.int64]

@@ -55,7 +55,9 @@ class SubmapDrawing:
     def occupancy(self) -> OccupancyMap:
         """Return the map as the graph has it now; raises ValueError before the first keyframe."""
         self._redraw_moved()
-        return self._counts.occupancy(self._config.occupied_share, self._config.occupied_beams)
+        return self._counts.occupancy(
+            self._config.occupied_share, self._config.occupied_beams, self._config.least_floor
+        )
 
     def redraw(self) -> None:
         """Draw all keyframes into new occupancy counts, where they are thought to be now."""
