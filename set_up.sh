@@ -155,7 +155,12 @@ compile_all() {
 }
 
 enter_what_there_is() {
-  if [[ -r $VENV/.stamp-runtime ]]; then enter_environment; else enter_library; fi
+  # Of what needs no ROS the environment of ROS may be there, and no workspace yet.
+  if [[ -r $VENV/.stamp-runtime && -r $WORKSPACE/devel/setup.bash ]]; then
+    enter_environment
+  else
+    enter_library
+  fi
 }
 
 # ---------------------------------------------------------------- all steps

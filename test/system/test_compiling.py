@@ -99,6 +99,15 @@ def test_a_command_goes_on_while_the_rest_is_compiled_and_says_so(checkout: Chec
     assert checkout.calls == []
 
 
+def test_with_the_packages_of_ros_and_no_workspace_yet_it_compiles_all_the_same(
+    checkout: Checkout,
+) -> None:
+    (checkout.folder / ".venv/.stamp-library").rename(checkout.folder / ".venv/.stamp-runtime")
+    done, told = checkout.does("set_up library")
+    assert done, told
+    checkout.wait(checkout.is_complete)
+
+
 def test_to_go_back_to_a_branch_compiles_nothing(checkout: Checkout) -> None:
     assert checkout.does("set_up library")[0]
     checkout.wait(checkout.is_complete)
