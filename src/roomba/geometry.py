@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 TWO_PI = 2.0 * math.pi
+FARTHEST = 1e5
+"""m; from the origin of its frame no place of a home is farther."""
 
 
 def wrap_angle(angle: float) -> float:

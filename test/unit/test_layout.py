@@ -119,7 +119,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
         "system/owned/test_line_faults.py",
         "unplugged, plugged in",
     ),
-    "roomba/drivers/line": ("unit/drivers/neato/test_body.py", "a line needs both of its ends"),
     "roomba/emulators/create2/sensing": ("unit/emulators/create2/test_robot.py", PART),
     "roomba/emulators/create2/server": ("realtime/test_create2_body.py", "as the line"),
     "roomba/emulators/lidars/sender": ("realtime/test_create2_body.py", "as the line"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 import termios
 from typing import Final, Protocol
 
@@ -14,6 +15,8 @@ _GONE: Final = (serial.SerialException, OSError, termios.error, TypeError)
 """What pyserial raises when a device was unplugged; TypeError when another thread closed it."""
 _NO_PINS: Final = (errno.ENOTTY, errno.EINVAL)
 """What a device without such pins answers."""
+_EXCLUSIVE: Final = True if os.name == "posix" else None
+"""Of two programs on one line each would take bytes from the other, and both would drive."""
 _PIECE: Final = 4096
 """Bytes that are read at once at most."""
 
@@ -48,8 +51,15 @@ class SerialLine:
     def __init__(self, port: str, baud: int) -> None:
         """Open it; raises LineError with what to do."""
         try:
-            self._serial = serial.Serial(port, baud, timeout=0.0, write_timeout=1.0)
+            self._serial = serial.Serial(
+                port, baud, timeout=0.0, write_timeout=1.0, exclusive=_EXCLUSIVE
+            )
         except (serial.SerialException, ValueError) as error:
+            if getattr(error, "errno", None) == errno.EAGAIN:
+                raise LineError(
+                    f"expected a robot on {port}, got a line that another program has open; end "
+                    "that one first"
+                ) from error
             raise LineError(
                 f"expected a robot on {port}, got: {error}. Is it plugged in and switched on, and "
                 "may you open it (group dialout)?"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -26,6 +25,7 @@ from roomba.history.run import (
     Word,
     kind_of,
     turning_of,
+    untold,
 )
 from roomba.history.unfinished import RunSoFar, UnfinishedFile, interrupted_runs
 
@@ -193,10 +193,10 @@ class _RunUnderWay:
             self._words.append(word)
         if not is_news and now - self._rows[-1][0] < TRACE_STEP - 1e-6:
             return
-        battery = vacuum.battery if math.isfinite(vacuum.battery) else -1.0
+        battery, dirt = untold(vacuum.battery), untold(view.dirt)
         progress = (vacuum.covered, vacuum.wanted, vacuum.seconds_to_go)
         sweeps = float(vacuum.wanted > 0.0 and vacuum.phase in _SWEEPS)
-        self._rows.append((now, *view.pose, view.speed, battery, view.dirt, *progress, sweeps))
+        self._rows.append((now, *view.pose, view.speed, battery, dirt, *progress, sweeps))
 
     def so_far(self) -> RunSoFar:
         """Return what was seen."""

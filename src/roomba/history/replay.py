@@ -21,7 +21,7 @@ from roomba.client.protocol import (
 )
 from roomba.geometry import wrap_angle
 from roomba.grid import GridFrame
-from roomba.history.run import TRACE, RunFigures, RunRecording
+from roomba.history.run import TRACE, RunFigures, RunRecording, told
 from roomba.history.run_file import RunFileError
 from roomba.perception.swept.visits import Visits
 
@@ -110,7 +110,6 @@ class RecordedRobot:
         at = self.timeline().at
         row, pose = self._row_at(at)
         word = self._recording.words[max(bisect_right(self._word_times, at) - 1, 0)]
-        battery = row["battery"] if row["battery"] >= 0.0 else float("nan")
         wanted = row["wanted"]
         snapshot = VacuumSnapshot(
             word.state,
@@ -121,14 +120,14 @@ class RecordedRobot:
             wanted,
             row["covered"] / wanted if wanted > 0.0 else 0.0,
             row["to_go"],
-            battery,
+            told(row["battery"]),
         )
         return view.RobotView(
             time=at,
             pose=pose,
             doubt=word.doubt,
             speed=row["speed"],
-            dirt=row["dirt"],
+            dirt=told(row["dirt"]),
             held="",
             vacuum=snapshot,
             scan=_NO_POINTS,

@@ -19,6 +19,8 @@ TRACE: Final = (
 )  # fmt: skip
 """Columns of a trace: s since the run began, m, rad, m/s, 0..1, g, m2, m2, s, and 1 while floor is
 swept."""
+UNTOLD: Final = -1.0
+"""Stands in a trace for battery or dirt where the robot cannot tell it."""
 TRACE_STEP: Final = 0.5
 """s of the robot's clock between two rows of a trace."""
 REQUEST: Final = "request"
@@ -136,3 +138,13 @@ def turning_of(trace: Floats) -> float:
     """Return how much the robot turned between the rows of a trace, rad."""
     turns = np.diff(trace[:, TRACE.index("theta")].astype(np.float64))
     return float(np.abs((turns + math.pi) % math.tau - math.pi).sum())
+
+
+def untold(value: float) -> float:
+    """Return what stands in a trace for a value that is NaN where the robot cannot tell it."""
+    return value if math.isfinite(value) else UNTOLD
+
+
+def told(value: float) -> float:
+    """Return the value that stands in a trace, NaN where the robot could not tell it."""
+    return value if value >= 0.0 else math.nan

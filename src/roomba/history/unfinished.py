@@ -33,6 +33,7 @@ from roomba.history.run import (
     RunSource,
     Word,
     kind_of,
+    told,
     turning_of,
 )
 
@@ -92,7 +93,7 @@ class RunSoFar:
             last["wanted"],
             float(np.hypot(steps[:, 0], steps[:, 1]).sum()),
             turning_of(trace),
-            last["dirt"],
+            told(last["dirt"]),
             math.nan,
         )
         return figures, RunRecording(trace, tuple(self.words), self.home, self.layers)

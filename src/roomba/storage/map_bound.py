@@ -15,12 +15,13 @@ from roomba.errors import RoombaError
 from roomba.files.bounded import read_bytes
 from roomba.files.kept import KeptFileError, read_kept, unsealed, write_kept
 from roomba.files.plain_yaml import load_yaml
+from roomba.geometry import FARTHEST
 from roomba.grid import OccupancyMap
 
 Tell = Callable[[str], object]
 """Is told in a sentence when a damaged file was set aside."""
-Number = Annotated[float, Field(ge=-1e5, le=1e5)]
-"""m; farther from the origin no home is."""
+Number = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
+"""m."""
 
 
 class Entry(BaseModel):

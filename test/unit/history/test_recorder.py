@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from unit.history.seen import HOME, REPORT, SOURCE, layer, view
 
@@ -13,6 +15,7 @@ from roomba.client.protocol import CleanReport, ErrandOutcome
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper, RunRecorder
 from roomba.history.run import RunFigures, RunRecording
+from roomba.history.unfinished import UnfinishedFile
 
 
 def run_of(recorder: RunRecorder, report: CleanReport) -> Iterator[tuple[RunFigures, RunRecording]]:
@@ -38,6 +41,19 @@ def test_one_run_is_one_record() -> None:
     assert set(recording.column("battery")) == {-1.0}
     assert [word.phase for word in recording.words] == ["cleaning", "docked"]
     assert set(recording.layers) == {"map", "coverage"}
+
+
+def test_dirt_that_the_robot_cannot_tell_hinders_nothing(tmp_path: Path) -> None:
+    recorder, file = RunRecorder(SOURCE), UnfinishedFile(tmp_path)
+    for time in (0.0, 1.0, 2.0):
+        recorder.look(replace(view(time, "cleaning"), dirt=math.nan), HOME, layer)
+    run = recorder.so_far
+    assert run is not None
+    file.keep(run, {}, dict)
+    assert list(tmp_path.iterdir())
+    figures, recording = run.interrupted()
+    assert math.isnan(figures.dirt)
+    assert np.isfinite(recording.trace).all()
 
 
 def test_a_run_is_kept_with_what_it_was_asked_for_by_and_the_next_is_not() -> None:

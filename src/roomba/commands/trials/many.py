@@ -52,7 +52,7 @@ def figures_of(trial: Trial) -> Outcome:
         return run_trial(trial).figures
     except RoombaError as error:
         return str(error)
-    except Exception as error:  # the other trials go on
+    except (Exception, SystemExit) as error:  # the other trials go on
         return f"a fault of the program: {error!r}"
 
 

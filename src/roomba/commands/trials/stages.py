@@ -6,6 +6,7 @@ import functools
 import importlib
 import importlib.util
 import sys
+import traceback
 from collections.abc import Callable, Iterable
 from dataclasses import fields
 from pathlib import Path
@@ -23,7 +24,7 @@ _OF_ONE_LINE: Final = ("connection", "polish", "rounding")
 
 
 class StageError(RoombaError):
-    """A stage gave what is no line of places."""
+    """A stage failed, or gave what is no line of places."""
 
 
 def stages_of(paths: Iterable[tuple[str, str]], code: Path | None = None) -> CoverageStages:
@@ -48,8 +49,9 @@ def _module_of(name: str, path: str, code: Path | None) -> Any:
     module, sign, function = path.partition(":")
     if not (module and sign and function):
         raise UsageError(f"stages: {name}: expected MODULE:FUNCTION, got {path!r}")
-    if code is not None and str(code) not in sys.path:
-        sys.path.append(str(code))
+    if code is not None and sys.path[:1] != [str(code)]:
+        # Before the current folder: a file there may have the same name.
+        sys.path.insert(0, str(code))
     try:
         return importlib.import_module(module)
     except (Exception, SystemExit) as error:  # a module of others may raise anything, or end
@@ -77,7 +79,10 @@ def _checked(name: str, path: str, stage: Callable[..., Any]) -> Callable[..., A
 
     @functools.wraps(stage)
     def checked(*arguments: Any) -> Any:
-        given = stage(*arguments)
+        try:
+            given = stage(*arguments)
+        except (Exception, SystemExit) as error:  # code of others may raise anything, or end
+            raise StageError(f"{path}: {error!r}{_place_of(error)}") from error
         lines = [given] if name in _OF_ONE_LINE else given
         if not isinstance(lines, list) or not all(map(_is_line, lines)):
             what = "an array" if name in _OF_ONE_LINE else "a list of arrays"
@@ -88,6 +93,12 @@ def _checked(name: str, path: str, stage: Callable[..., Any]) -> Callable[..., A
         return given
 
     return checked
+
+
+def _place_of(error: BaseException) -> str:
+    """Return the file and line that an error was raised in, in words."""
+    raised = traceback.extract_tb(error.__traceback__)[-1]
+    return f" ({raised.filename}, line {raised.lineno})"
 
 
 def _is_line(line: object) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Final
@@ -13,6 +12,7 @@ import shapely
 from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
+from roomba.geometry import FARTHEST
 from roomba.grid import OCCUPIED, GridFrame, OccupancyMap
 from roomba.vocabulary import LONGEST_NAME, MOST_CORNERS, MOST_ZONES, fault_of_name, listed
 
@@ -64,8 +64,10 @@ class Zone:
                 f"zone {self.name!r}: expected {least} to {MOST_CORNERS} points, got "
                 f"{len(self.points)}"
             )
-        if not all(math.isfinite(value) for point in self.points for value in point):
-            raise ZonesError(f"zone {self.name!r}: expected finite numbers, m, got {self.points}")
+        if not all(abs(value) <= FARTHEST for point in self.points for value in point):
+            raise ZonesError(
+                f"zone {self.name!r}: expected numbers of at most {FARTHEST:g} m, got {self.points}"
+            )
         shape = self._outline
         if not shape.is_valid:
             reason = shapely.is_valid_reason(shape)

@@ -21,6 +21,8 @@ def nothing(left, middles, radius, config): return []
 def text(left, middles, radius, config): return "no lines"
 def whole(left, middles, radius, config): return [np.zeros((2, 2), np.int64)]
 def wild(*arguments): return np.array([(0.0, np.nan)])
+def breaks(*arguments): return {}["no such key"]
+def leaves(*arguments): raise SystemExit(0)
 """
 
 
@@ -92,6 +94,28 @@ def test_what_the_next_stage_cannot_take_is_told(
     stages = stages_of([(name, f"made_stages:{function}")], code)
     with pytest.raises(StageError, match=f"made_stages:{function}: expected {said}"):
         given(getattr(stages, name))
+
+
+@pytest.mark.parametrize(
+    ("function", "said"),
+    [("breaks", r"KeyError\('no such key'\)"), ("leaves", r"SystemExit\(0\)")],
+)
+def test_a_stage_that_fails_or_ends_the_program_is_told_with_its_line(
+    code: Path, function: str, said: str
+) -> None:
+    line = 1 + MODULE.splitlines().index(next(x for x in MODULE.splitlines() if function in x))
+    stages = stages_of([("swaths", f"made_stages:{function}")], code)
+    with pytest.raises(StageError, match=rf"made_stages:{function}: {said} \(.*, line {line}\)"):
+        given(stages.swaths)
+
+
+def test_a_module_of_the_folder_comes_before_one_of_the_same_name(
+    code: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "stages_there_twice.py").write_text("def f(*a): return ['of another folder']\n")
+    (code / "stages_there_twice.py").write_text("def f(*a): return []\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert given(stages_of([("swaths", "stages_there_twice:f")], code).swaths) == []
 
 
 def test_a_run_is_made_by_them() -> None:

@@ -55,6 +55,6 @@ def carried_out(run: CampaignRun) -> RunEnd:
             raise
         except RoombaError as error:
             failure = str(error)
-        except Exception as error:  # the other runs go on
+        except (Exception, SystemExit) as error:  # the other runs go on
             failure = f"a fault of the program: {error!r}"
         return RunEnd(figures, failure, f"{socket.gethostname()}:{os.getpid()}", began)
