@@ -8,7 +8,7 @@ import threading
 import rospy
 from geometry_msgs.msg import Twist as TwistMessage
 from roomba_robot.msg import RobotPosition
-from std_msgs.msg import Bool, Float32
+from std_msgs.msg import Bool, Float32, String
 
 from roomba.clock import is_recent
 from roomba.control.position_loop import PositionLoop
@@ -29,6 +29,7 @@ from roomba_ros.runtime.parameters import (
     read_nodes_config,
     read_robot_config,
 )
+from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe
 
 _AHEAD = 10.0
@@ -48,8 +49,9 @@ class PositionPubNode:
     :class:`RoomTopics` tell.
     Subscribes: ``change_position`` (RobotPosition, setpoint), ``change_heading`` (Float32, rad, map
     frame, streamed: turn to it on the spot instead), ``look_around`` (Bool, streamed while
-    the mission could go on if the place were known), and what :class:`LocalizationTopics` and
-    :class:`RoomTopics` hear.
+    the mission could go on if the place were known), ``emergency_stop`` (String: while it says a
+    reason no setpoint is taken, and the one under way is forgotten), and what
+    :class:`LocalizationTopics` and :class:`RoomTopics` hear.
     Services: those of :class:`LocalizationTopics` and :class:`RoomTopics`.
     Parameters: ``initial_post_x``, ``initial_post_y``, ``initial_post_theta`` (where odometry
     began), ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``; ``~look_around`` (true: it
@@ -73,6 +75,7 @@ class PositionPubNode:
         self._stops_left = 0
         self._look_asked = -math.inf
         self._heading = (-math.inf, 0.0)
+        self._held = ""
         self._place = LocalizationTopics(self._config, nodes)
         self._place.start()
         self._rooms = RoomTopics()
@@ -85,6 +88,8 @@ class PositionPubNode:
         )
         subscribe("change_heading", Float32, number_of, self._on_heading, tcp_nodelay=True)
         subscribe("look_around", Bool, data_of, self._on_look_around)
+        drive = OnlyFrom(SPEED_NODE)
+        subscribe("emergency_stop", String, data_of, self._on_hold, queue_size=10, senders=drive)
 
     def tick(self, now: float) -> None:
         """Publish the pose, and drive towards the setpoint."""
@@ -94,7 +99,11 @@ class PositionPubNode:
             return
         self._maps.tick(now, estimate)
         self._drop_vanished_wish(now)
-        if not estimate.knowledge.is_usable:
+        if self._held:
+            # Releasing the stop is no order to drive on.
+            self._forget_wish()
+            twist = None
+        elif not estimate.knowledge.is_usable:
             self._forget_wish()
             twist = self._twist_to_look_around(now)
         elif self._is_fresh(now, self._heading[0]):
@@ -180,6 +189,10 @@ class PositionPubNode:
             self._command.publish(TwistMessage())
 
     def _on_wish(self, target: tuple[float, float]) -> None:
+        if self._held:
+            raise MessageError(
+                f"the emergency stop holds the drive ({self._held}); release it, and tell it again"
+            )
         values = self._parameters.values
         if not values.allows(*target):
             raise MessageError(
@@ -191,6 +204,9 @@ class PositionPubNode:
 
     def _on_heading(self, heading: float) -> None:
         self._heading = (rospy.get_time(), heading)
+
+    def _on_hold(self, reason: str) -> None:
+        self._held = reason
 
     def _on_look_around(self, is_wanted: bool) -> None:
         self._look_asked = rospy.get_time() if is_wanted else -math.inf

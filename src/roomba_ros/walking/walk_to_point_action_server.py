@@ -16,7 +16,7 @@ from move_base_msgs.msg import MoveBaseGoal as MoveBaseGoalMessage
 from nav_msgs.msg import OccupancyGrid, Path
 from nav_msgs.srv import GetPlan, GetPlanRequest, GetPlanResponse
 from roomba_robot.msg import RobotPosition
-from std_msgs.msg import Float32
+from std_msgs.msg import Float32, String
 
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, wrap_angle
@@ -28,6 +28,7 @@ from roomba.perception.matching.surface_field import SurfaceField
 from roomba.planning.path.planner import PathPlanner
 from roomba.robot.lookout import Lookout
 from roomba_ros.convert.common import header, map_of, path_message, pose_in_map
+from roomba_ros.convert.values import data_of
 from roomba_ros.runtime.action_goal import GoalIdentity, server_of
 from roomba_ros.runtime.alone import refuse_second
 from roomba_ros.runtime.node import require_master, run_node
@@ -38,6 +39,7 @@ from roomba_ros.runtime.parameters import (
     read_robot_config,
     read_thing_config,
 )
+from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe
 from roomba_ros.senses.senses import HeardSenses
 from roomba_ros.walking.walk_goals import MoveBaseGoal, WalkGoal, WalkToPointGoal, checked_goal
@@ -58,9 +60,11 @@ class _Job:
     turned_by: float | None = None
     """When it has turned at the goal at the latest; None before it is there."""
     rest_by: float | None = None
-    """When a cancelled walk stands at the latest; None while it is wanted."""
+    """When a walk that ends stands at the latest; None while it is wanted."""
     free_at: float | None = None
-    """When a cancelled walk leaves the drive to others; None before it stands."""
+    """When a walk that ends leaves the drive to others; None before it stands."""
+    given_up_for: str = ""
+    """Why a walk that ends is given up; empty for one that was cancelled."""
 
 
 class WalkToPointActionServer:
@@ -76,7 +80,8 @@ class WalkToPointActionServer:
     end), ``plan`` (Path, latched), ``walk_to_point/{feedback,result,status}``,
     ``move_base/{goal,feedback,result,status}``.
     Subscribes: ``map``, ``walk_to_point/{goal,cancel}``, ``move_base/{goal,cancel}``,
-    ``move_base_simple/goal`` (PoseStamped: becomes a goal of ``move_base``), and what
+    ``move_base_simple/goal`` (PoseStamped: becomes a goal of ``move_base``), ``emergency_stop``
+    (String: while it says a reason no goal is taken, and one under way is given up), and what
     :class:`HeardSenses` hears, of the body ``odom``, ``imu``, ``scan``, ``bumper`` and ``cliff``.
     Services: ``make_plan`` (GetPlan: the path to a point, without walking it).
     Parameters: ``robot_max_speed``, ``min_cordinate``, ``max_cordinate``, ``robot_config``,
@@ -103,6 +108,7 @@ class WalkToPointActionServer:
         self._goals: deque[WalkGoal] = deque()
         self._cancels: deque[GoalIdentity] = deque()
         self._job: _Job | None = None
+        self._held = ""
         self._cruise_speed, self._speed_ticks = math.nan, 0
         self._change_position = rospy.Publisher(
             "change_position", RobotPosition, queue_size=1, tcp_nodelay=True
@@ -115,6 +121,8 @@ class WalkToPointActionServer:
         )
         self._plan = rospy.Publisher("plan", Path, queue_size=1, latch=True)
         subscribe("map", OccupancyGrid, map_of, self._on_map)
+        drive = OnlyFrom(SPEED_NODE)
+        subscribe("emergency_stop", String, data_of, self._on_hold, queue_size=10, senders=drive)
         self._senses.start()
         rospy.Service("make_plan", GetPlan, self._on_make_plan)
         self._servers = [
@@ -136,6 +144,7 @@ class WalkToPointActionServer:
         self._serve_when_ready(senses)
         self._take_goals(senses)
         self._obey_cancels()
+        self._obey_emergency_stop()
         if self._job is not None and senses is not None:
             self._walk_on(self._job, senses)
 
@@ -192,6 +201,10 @@ class WalkToPointActionServer:
 
     def _begin(self, goal: tuple[float, float], senses: Senses | None) -> Walk:
         self._require_allowed(*goal)
+        if self._held:
+            raise RoombaError(
+                f"the emergency stop holds the drive ({self._held}); release it first"
+            )
         if senses is None or self._planner is None:
             raise RoombaError(
                 "the robot does not know its map and position yet; is home_sim_node running?"
@@ -228,6 +241,13 @@ class WalkToPointActionServer:
             job = self._job
             if job is not None and job.goal.identity == cancelled:
                 job.rest_by = rospy.get_time() + self._nodes.walk_end.longest_braking
+
+    def _obey_emergency_stop(self) -> None:
+        """Give the walk under way up: releasing the stop is no order to drive on."""
+        reason, job = self._held, self._job
+        if reason and job is not None and not job.given_up_for:
+            job.given_up_for = f"the emergency stop holds the drive: {reason}"
+            job.rest_by = job.rest_by or rospy.get_time() + self._nodes.walk_end.longest_braking
 
     def _walk_on(self, job: _Job, senses: Senses) -> None:
         if job.rest_by is not None:
@@ -289,7 +309,7 @@ class WalkToPointActionServer:
             job.goal.given_up(time_spent, f"it is there, but {wrong:.2f} rad were not turned")
 
     def _come_to_rest(self, job: _Job, senses: Senses, rest_by: float) -> None:
-        """Stop a cancelled walk: speed 0 at once, then its place is the setpoint.
+        """Stop a walk that ends: speed 0 at once, then its place is the setpoint.
 
         The speed is freed after that arrived: else the robot would drive to the old one.
         """
@@ -306,7 +326,11 @@ class WalkToPointActionServer:
             return
         self._change_speed.publish(self._parameters.values.robot_max_speed)
         self._job = None
-        job.goal.cancelled(job.walk.time_spent(senses.now), "cancelled")
+        time_spent = job.walk.time_spent(senses.now)
+        if job.given_up_for:
+            job.goal.given_up(time_spent, job.given_up_for)
+        else:
+            job.goal.cancelled(time_spent, "cancelled")
 
     def _tell_feedback(self, job: _Job, senses: Senses, distance_left: float) -> None:
         now = senses.now
@@ -344,6 +368,9 @@ class WalkToPointActionServer:
         except (RoombaError, ValueError) as error:
             raise rospy.ServiceException(str(error)) from error
         return GetPlanResponse(path_message(now, path.points, "map"))
+
+    def _on_hold(self, reason: str) -> None:
+        self._held = reason
 
     def _on_map(self, occupancy: OccupancyMap) -> None:
         walk = self._config.walk

@@ -13,6 +13,7 @@ from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped, Twist
 from nav_msgs.msg import Odometry
 from roomba_robot.msg import RobotPosition
+from roomba_robot.srv import EmergencyStop
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
@@ -75,6 +76,24 @@ def test_the_pose_is_where_odometry_began_and_the_way_since(graph: RosGraph) -> 
     assert probe.next("/pose", PoseStamped).header.frame_id == "map"
     transform = probe.next("/tf", TFMessage).transforms[0]
     assert (transform.header.frame_id, transform.child_frame_id) == ("map", "odom")
+
+
+def test_the_emergency_stop_forgets_a_wish_and_takes_no_other(graph: RosGraph) -> None:
+    probe, node = start(graph)
+    graph.rosrun("speed_pub_node.py")
+    stop = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
+    stop.wait_for_service(30.0)
+    probe.send("/odom", odometry(0.0, 0.0))
+    probe.send("/change_position", RobotPosition(1.0, 0.0))
+    wait_until(lambda: probe.next("/cmd_vel", Twist).linear.x > 0.0, 30.0, "it drives")
+    assert stop(True, "a child came in").success
+    wait_until(lambda: is_silent(probe, "/cmd_vel"), 30.0, "it wants to drive no more")
+    probe.send("/change_position", RobotPosition(1.0, 0.0))
+    wait_until(lambda: "release it, and tell it again" in node.output, 30.0, "it is refused")
+    assert stop(False, "").success
+    assert is_silent(probe, "/cmd_vel")
+    probe.send("/change_position", RobotPosition(1.0, 0.0))
+    wait_until(lambda: probe.next("/cmd_vel", Twist).linear.x > 0.0, 30.0, "it drives again")
 
 
 def test_wishes_that_are_no_places_are_refused(at_origin: RosGraph) -> None:

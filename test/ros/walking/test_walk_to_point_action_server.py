@@ -1,6 +1,7 @@
 import math
 import signal
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
@@ -19,6 +20,7 @@ from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseGoal
 from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from roomba_robot.msg import RobotPosition, WalkToPointActionGoal
+from roomba_robot.srv import EmergencyStop
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32
 
@@ -67,6 +69,32 @@ def test_without_map_and_pose_a_goal_is_rejected_with_the_reason(graph: RosGraph
     walker.send(1.0, 1.0)
     assert walker.ends(30.0) == 5
     assert "map and position" in walker.text
+
+
+def test_the_emergency_stop_ends_a_walk_and_takes_no_other(graph: RosGraph) -> None:
+    """Releasing it is no order to drive: what was asked for before is asked for again."""
+    graph.rosrun(SCRIPT)
+    graph.rosrun("speed_pub_node.py")
+    probe = Probe(graph)
+    probe.send("/map", room())
+    stand(probe, stamped(0.0, 0.0))
+    walker = Walker()
+    stop = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
+    stop.wait_for_service(30.0)
+    walker.send(1.0, 0.0)
+    probe.next("/change_position", RobotPosition)
+    assert stop(True, "a child came in").success
+    assert walker.ends(30.0) == GoalStatus.ABORTED
+    assert "a child came in" in walker.text
+    walker.send(1.0, 0.0)
+    assert walker.ends(30.0) == GoalStatus.REJECTED
+    assert "release it first" in walker.text
+    before = probe.counts["/change_position"]
+    assert stop(False, "").success
+    time.sleep(1.0)
+    assert probe.counts["/change_position"] == before
+    walker.send(1.0, 0.0)
+    probe.next("/change_position", RobotPosition)
 
 
 def stamped(x: float, y: float, frame: str = "map") -> PoseStamped:
