@@ -66,8 +66,13 @@ def run_node(name: str, make: Callable[[], Node]) -> None:
     progress.start(name)
 
     def tick(now: float) -> None:
-        node.tick(now)
-        progress.tell(now)
+        try:
+            node.tick(now)
+            progress.tell(now)
+        except (rospy.ROSException, ValueError):
+            # Another node may want this one to end: the connections are closed in another thread.
+            if not rospy.core.is_shutdown_requested():
+                raise
 
     Ticker(node.period, told_to_end).run(tick)
     leave(0)

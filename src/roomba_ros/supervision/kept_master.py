@@ -63,7 +63,8 @@ def be_master(port: int, file: Path) -> None:
 def memory_of(handler: Any) -> Memory:
     """Return what a master knows: parameters, and who publishes, subscribes and serves what.
 
-    Registrations are lists of name, node, address of the node, and type or address of the service.
+    Watchers go by a parameter, and are told when it changes. Registrations are lists of name, node,
+    address of the node, and type or address of the service.
     """
     with handler.param_server.lock:
         parameters = copy.deepcopy(handler.param_server.parameters)
@@ -72,6 +73,7 @@ def memory_of(handler: Any) -> Memory:
         return {
             "parameters": parameters,
             "publishers": [[*row, types.get(row[0], "*")] for row in _rows(handler.publishers.map)],
+            "watchers": _rows(handler.param_subscribers.map),
             "subscribers": [
                 [*row, types.get(row[0], "*")] for row in _rows(handler.subscribers.map)
             ],
@@ -91,7 +93,9 @@ def remind(handler: Any, memory: Memory) -> None:
     """Let a new master know what the one before it knew, of the nodes that are still there."""
     handler.param_server.parameters = memory["parameters"]
     addresses = {
-        row[2] for part in ("publishers", "subscribers", "services") for row in memory[part]
+        row[2]
+        for part in ("publishers", "subscribers", "services", "watchers")
+        for row in memory[part]
     }
     there = {address for address in addresses if _listens(address)}
     for part, register in (
@@ -104,6 +108,9 @@ def remind(handler: Any, memory: Memory) -> None:
     for service, node, address, place in memory["services"]:
         if address in there:
             handler.registerService(node, service, place, address)
+    for parameter, node, address in memory["watchers"]:
+        if address in there:
+            handler.subscribeParam(node, address, parameter)
 
 
 def _listens(address: str) -> bool:

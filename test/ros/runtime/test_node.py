@@ -45,6 +45,26 @@ class Asking:
 
 run_node("asking", Asking)
 """
+KILLED = """
+import time
+import rospy
+from roomba_ros.runtime.node import run_node
+from std_msgs.msg import Empty
+
+class Speaking:
+    period = 0.05
+    def start(self):
+        self.said = rospy.Publisher("said", Empty, queue_size=1)
+        # Its topics are closed by then, and it is not told yet that it is to end.
+        rospy.core.add_preshutdown_hook(lambda reason: time.sleep(0.5))
+    def tick(self, now):
+        self.said.publish()
+        print("ticks", flush=True)
+    def stop(self):
+        print("stopped", flush=True)
+
+run_node("speaking", Speaking)
+"""
 ENDED = 1.8
 """s of wall time until the supervisor would tell it more firmly."""
 
@@ -74,3 +94,12 @@ def test_a_service_that_is_not_there_is_not_waited_for(graph: RosGraph) -> None:
     wait_until(lambda: "asks" in program.output, 30.0, "it waits")
     program.send_to_leader(signal.SIGINT)
     promised(lambda: program.status is not None, ENDED, "it has ended")
+
+
+def test_a_node_that_another_one_ends_in_a_tick_ends_without_an_error(graph: RosGraph) -> None:
+    program = graph.run(sys.executable, "-c", KILLED)
+    wait_until(lambda: "ticks" in program.output, 30.0, "it runs")
+    graph.run("rosnode", "kill", "/speaking")
+    assert program.ends(30.0) == 0
+    assert "Traceback" not in program.output
+    assert "stopped" in program.output

@@ -69,6 +69,17 @@ def test_all_is_known_to_the_next_one_and_new_clients_find_it(own: RosGraph) -> 
     assert speaker.status is None
 
 
+def test_a_node_that_goes_by_a_parameter_still_hears_of_it(own: RosGraph) -> None:
+    master = started(own)
+    own.set_param("/most", 1.0)
+    Probe(own)
+    assert rospy.get_param_cached("/most") == 1.0
+    killed(own, master, "/most/")
+    started(own)
+    own.set_param("/most", 2.0)
+    wait_until(lambda: rospy.get_param_cached("/most") == 2.0, 20.0, "it hears of it")
+
+
 def test_a_node_that_ended_meanwhile_is_forgotten(own: RosGraph) -> None:
     master = started(own)
     speaker = own.run("rostopic", "pub", "-l", "/said", "std_msgs/String", "back")
