@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, Final
 
 from roomba.client.household import TotalsView
@@ -103,6 +104,7 @@ class HistoryKeeper:
         self._tell = ToldOnce(tell)
         self._unfinished = UnfinishedFile(history.path.parent)
         self._has_looked = False
+        self._set_aside: Path | None = None
         self._totals: TotalsView | None = None
 
     def note(self, wish: Mapping[str, Any] | None) -> None:
@@ -111,6 +113,12 @@ class HistoryKeeper:
 
     def look(self, view: RobotView, home: HomeView, layer: Layers) -> None:
         """Take a look, and keep a run that it was the end of."""
+        self._look(view, home, layer)
+        if self.history.set_aside is not self._set_aside:
+            self._set_aside = self.history.set_aside
+            self._tell(f"the history was damaged; it is set aside as {self._set_aside}")
+
+    def _look(self, view: RobotView, home: HomeView, layer: Layers) -> None:
         if not self._has_looked:
             self._has_looked = True
             self._take_up(view)
@@ -118,14 +126,12 @@ class HistoryKeeper:
         if ended is None:
             self._keep_so_far(home, layer)
             return
-        before, trouble = self.history.set_aside, ""
+        trouble = ""
         try:
             self.history.add(*ended)
         except RoombaError as error:
             trouble = f"the run was not kept: {error}"
         self._totals = None
-        if self.history.set_aside is not before:
-            trouble = f"the history was damaged; it is set aside as {self.history.set_aside}"
         self._unfinished.remove()
         self._tell(trouble)
 

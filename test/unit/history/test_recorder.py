@@ -111,3 +111,16 @@ def test_runs_are_kept_and_trouble_is_told(tmp_path: Path) -> None:
     blocked.look(view(0.0, "cleaning"), HOME, layer)
     blocked.look(view(9.0, "docked", REPORT), HOME, layer)
     assert "not kept" in told[1]
+
+
+def test_damage_that_is_found_when_sums_are_asked_for_is_told_as_well(tmp_path: Path) -> None:
+    told: list[str] = []
+    history = History(tmp_path)
+    HistoryKeeper(history, SOURCE, told.append).totals()
+    history.path.write_bytes(b"x" * 5000)
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, told.append)
+    keeper.totals()
+    for second in range(3):
+        keeper.look(view(float(second), "docked"), HOME, layer)
+    assert len(told) == 1
+    assert "it is set aside as" in told[0]

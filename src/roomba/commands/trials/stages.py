@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import importlib
 import importlib.util
@@ -9,6 +10,7 @@ import sys
 import traceback
 from collections.abc import Callable, Iterable
 from dataclasses import fields
+from modulefinder import ModuleFinder
 from pathlib import Path
 from typing import Any, Final
 
@@ -37,10 +39,22 @@ def stages_of(paths: Iterable[tuple[str, str]], code: Path | None = None) -> Cov
     return CoverageStages(**chosen) if chosen else OUR_STAGES
 
 
-def file_of_stage(name: str, path: str, code: Path | None = None) -> Path | None:
-    """Return the file that a stage is in, None for one that has none; raises UsageError."""
+def files_of_stage(name: str, path: str, code: Path | None = None) -> dict[str, Path]:
+    """Return the file that a stage is in, and those beside it that it imports, by their names.
+
+    None for a stage that is in no file. Raises UsageError.
+    """
     module = _module_of(name, path, code)
-    return None if module.__file__ is None else Path(module.__file__)
+    if module.__file__ is None:
+        return {}
+    file = Path(module.__file__)
+    root = code if code is not None and code in file.parents else file.parent
+    finder = ModuleFinder([str(root)])
+    with contextlib.suppress(ImportError):  # a relative import: what was found until there counts
+        finder.run_script(str(file))
+    modules: Iterable[Any] = finder.modules.values()
+    found = (Path(each.__file__) for each in modules if each.__file__)
+    return {str(each.relative_to(root)): each for each in (file, *found) if root in each.parents}
 
 
 def _module_of(name: str, path: str, code: Path | None) -> Any:
@@ -89,6 +103,10 @@ def _checked(name: str, path: str, stage: Callable[..., Any]) -> Callable[..., A
             raise StageError(
                 f"{path}: expected {what}, float64 [n >= 1, 2], of finite places, in cells, got "
                 f"{_description(given)}"
+            )
+        if name == "order" and arguments[0] and not lines:
+            raise StageError(
+                f"{path}: expected the {len(arguments[0])} pieces in some order, got none of them"
             )
         return given
 

@@ -10,7 +10,7 @@ import pytest
 
 from roomba.commands.options import UsageError
 from roomba.commands.trials.runs import run_trial
-from roomba.commands.trials.stages import StageError, file_of_stage, stages_of
+from roomba.commands.trials.stages import StageError, files_of_stage, stages_of
 from roomba.commands.trials.trial import Trial
 from roomba.planning.coverage.stages import OUR_STAGES
 
@@ -46,7 +46,29 @@ def test_one_of_a_folder_takes_the_place_of_ours(code: Path) -> None:
     stages = stages_of([("swaths", "made_stages:nothing")], code)
     assert given(stages.swaths) == []
     assert stages.order is OUR_STAGES.order
-    assert file_of_stage("swaths", "made_stages:nothing", code) == code / "made_stages.py"
+    files = files_of_stage("swaths", "made_stages:nothing", code)
+    assert files == {"made_stages.py": code / "made_stages.py"}
+
+
+def test_the_files_of_a_stage_are_those_that_it_imports_too(code: Path) -> None:
+    (code / "stages_by_others.py").write_text("import numpy\nimport other_file\nf = other_file.f\n")
+    (code / "other_file.py").write_text("from a_package.inner import f\n")
+    (code / "a_package").mkdir()
+    (code / "a_package/__init__.py").write_text("")
+    (code / "a_package/inner.py").write_text("def f(*a): return []\n")
+    (code / "not_imported.py").write_text("")
+    files = files_of_stage("swaths", "stages_by_others:f", code)
+    assert sorted(files) == [
+        "a_package/__init__.py", "a_package/inner.py", "other_file.py", "stages_by_others.py",
+    ]  # fmt: skip
+    assert all(path == code / name for name, path in files.items())
+
+
+def test_an_order_of_nothing_is_refused(code: Path) -> None:
+    piece = np.zeros((2, 2))
+    order: Any = stages_of([("order", "made_stages:nothing")], code).order
+    with pytest.raises(StageError, match="expected the 2 pieces in some order, got none"):
+        order([piece, piece], (0.0, 0.0), 1.0, None)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from roomba.commands.campaign.running.specification import Campaign
 from roomba.commands.options import UsageError
-from roomba.commands.trials.stages import file_of_stage
+from roomba.commands.trials.stages import files_of_stage
 from roomba.commands.trials.trial import RANDOM, Trial
 from roomba.compiled_sources import PACKAGE, Sources
 from roomba.errors import RoombaError
@@ -102,10 +102,10 @@ def content_of(trial: Trial) -> str:
         folder = Path(trial.home) if Path(trial.home).is_absolute() else HOMES / trial.home
         files += [(path.name, path) for path in sorted(folder.iterdir()) if path.is_file()]
     for name, stage in trial.stages:
-        path = file_of_stage(name, stage, trial.code)
-        if path is None:
+        found = files_of_stage(name, stage, trial.code)
+        if not found:
             raise UsageError(f"stages: {name}: expected a module with a file, got {stage!r}")
-        files.append((stage, path))
+        files += [(f"{stage} {file}", path) for file, path in sorted(found.items())]
     return _hash_of_files(files)
 
 
