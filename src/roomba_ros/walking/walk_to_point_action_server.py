@@ -57,6 +57,8 @@ class _Job:
     walk: Walk
     feedback_period: float
     feedback_due: float
+    setpoint: tuple[float, float] | None = None
+    """The newest one that was told, m; None before the first."""
     turned_by: float | None = None
     """When it has turned at the goal at the latest; None before it is there."""
     rest_by: float | None = None
@@ -265,6 +267,7 @@ class WalkToPointActionServer:
             self._show_plan(senses.now, job.walk)
         self._tell_cruise_speed(step.cruise_speed)
         # While its place is not known the setpoint moves nothing, but tells that the walk goes on.
+        job.setpoint = step.setpoint
         self._change_position.publish(RobotPosition(*step.setpoint))
         if step.state is WalkState.ASTRAY:
             return
@@ -309,13 +312,16 @@ class WalkToPointActionServer:
             job.goal.given_up(time_spent, f"it is there, but {wrong:.2f} rad were not turned")
 
     def _come_to_rest(self, job: _Job, senses: Senses, rest_by: float) -> None:
-        """Stop a walk that ends: speed 0 at once, then its place is the setpoint.
+        """Stop a walk that ends: speed 0 at once, and when it stands its place is the setpoint.
 
-        The speed is freed after that arrived: else the robot would drive to the old one.
+        Until then the last setpoint is told on: a stream that falls silent counts as lost. The
+        speed is freed after its own place arrived: else the robot would drive to the old one.
         """
         end = self._nodes.walk_end
         if job.free_at is None:
             self._change_speed.publish(0.0)
+            if job.setpoint is not None:
+                self._change_position.publish(RobotPosition(*job.setpoint))
             if abs(senses.twist.linear) <= end.standstill or senses.now >= rest_by:
                 job.free_at = senses.now + end.heard_by
             return

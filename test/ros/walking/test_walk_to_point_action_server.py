@@ -71,32 +71,6 @@ def test_without_map_and_pose_a_goal_is_rejected_with_the_reason(graph: RosGraph
     assert "map and position" in walker.text
 
 
-def test_the_emergency_stop_ends_a_walk_and_takes_no_other(graph: RosGraph) -> None:
-    """Releasing it is no order to drive: what was asked for before is asked for again."""
-    graph.rosrun(SCRIPT)
-    graph.rosrun("speed_pub_node.py")
-    probe = Probe(graph)
-    probe.send("/map", room())
-    stand(probe, stamped(0.0, 0.0))
-    walker = Walker()
-    stop = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
-    stop.wait_for_service(30.0)
-    walker.send(1.0, 0.0)
-    probe.next("/change_position", RobotPosition)
-    assert stop(True, "a child came in").success
-    assert walker.ends(30.0) == GoalStatus.ABORTED
-    assert "a child came in" in walker.text
-    walker.send(1.0, 0.0)
-    assert walker.ends(30.0) == GoalStatus.REJECTED
-    assert "release it first" in walker.text
-    before = probe.counts["/change_position"]
-    assert stop(False, "").success
-    time.sleep(1.0)
-    assert probe.counts["/change_position"] == before
-    walker.send(1.0, 0.0)
-    probe.next("/change_position", RobotPosition)
-
-
 def stamped(x: float, y: float, frame: str = "map") -> PoseStamped:
     message = PoseStamped()
     message.header.frame_id = frame
@@ -241,6 +215,32 @@ def standing_robot(probe: Probe, things: list[tuple[float, float, float]]) -> It
     finally:
         ended.set()
         teller.join()
+
+
+def test_the_emergency_stop_ends_a_walk_and_takes_no_other(graph: RosGraph) -> None:
+    """Releasing it is no order to drive: what was asked for before is asked for again."""
+    graph.rosrun(SCRIPT)
+    graph.rosrun("speed_pub_node.py")
+    probe = Probe(graph)
+    probe.send("/map", room())
+    stop = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
+    stop.wait_for_service(30.0)
+    walker = Walker()
+    with standing_robot(probe, []):
+        walker.send(1.0, 0.0)
+        probe.next("/change_position", RobotPosition)
+        assert stop(True, "a child came in").success
+        assert walker.ends(30.0) == GoalStatus.ABORTED
+        assert "a child came in" in walker.text
+        walker.send(1.0, 0.0)
+        assert walker.ends(30.0) == GoalStatus.REJECTED
+        assert "release it first" in walker.text
+        before = probe.counts["/change_position"]
+        assert stop(False, "").success
+        time.sleep(1.0)
+        assert probe.counts["/change_position"] == before
+        walker.send(1.0, 0.0)
+        probe.next("/change_position", RobotPosition)
 
 
 def nearest(path: Path, x: float, y: float) -> float:
