@@ -224,9 +224,9 @@ def test_the_emergency_stop_ends_a_walk_and_takes_no_other(graph: RosGraph) -> N
     probe = Probe(graph)
     probe.send("/map", room())
     stop = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
-    stop.wait_for_service(30.0)
-    walker = Walker()
     with standing_robot(probe, []):
+        walker = Walker()
+        stop.wait_for_service(30.0)
         walker.send(1.0, 0.0)
         probe.next("/change_position", RobotPosition)
         assert stop(True, "a child came in").success

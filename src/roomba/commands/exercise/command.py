@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -65,13 +68,19 @@ def _checked(exercise: Exercise, file: Path) -> int:
     if not file.is_file():
         raise UsageError(f"expected your answer in {file}, there is no such file")
     command = [sys.executable, "-m", exercise.check, str(file.resolve())]
-    try:
-        status = subprocess.run(command, timeout=exercise.deadline, check=False).returncode
-    except subprocess.TimeoutExpired:
-        print(
-            f"not yet: it has not ended after {exercise.deadline:g} s; does a loop go on for ever?"
-        )
-        return NOT_YET
+    with subprocess.Popen(command, start_new_session=True) as check:
+        try:
+            status = check.wait(exercise.deadline)
+        except subprocess.TimeoutExpired:
+            print(
+                f"not yet: it has not ended after {exercise.deadline:g} s; does a loop go on for "
+                "ever?"
+            )
+            return NOT_YET
+        finally:
+            # What the answer began, too; also after Ctrl-C, which goes to this process alone.
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(check.pid, signal.SIGKILL)
     if status not in (PASSED, NOT_YET):
         print(f"not yet: your program ended the check, with status {status}")
     return 0 if status == PASSED else NOT_YET

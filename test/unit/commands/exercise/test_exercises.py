@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from fixtures.thoroughness import core_first
+from fixtures.waiting import promised
 
 from roomba.commands.exercise.command import main
 from roomba.commands.exercise.course import COURSE
@@ -70,16 +71,26 @@ def test_a_file_of_another_kind_is_told_what_it_lacks(
     assert told in capfd.readouterr().out
 
 
-def test_an_answer_that_never_ends_is_ended(
+def test_an_answer_that_never_ends_is_ended_with_what_it_began(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = tmp_path / "shortest_path.py"
-    file.write_text("while True:\n    pass\n", "utf-8")
+    begun = tmp_path / "begun"
+    lines = (
+        "import subprocess",
+        "child = subprocess.Popen(['sleep', '600'])",
+        f"open({str(begun)!r}, 'w').write(str(child.pid))",
+        "while True: pass",
+    )
+    file.write_text("\n".join(lines), "utf-8")
     number = NUMBERS["shortest_path"]
-    short = [type(each)(each.name, each.about, each.check, 1.0) for each in COURSE]
+    short = [type(each)(each.name, each.about, each.check, 3.0) for each in COURSE]
     monkeypatch.setattr("roomba.commands.exercise.command.COURSE", short)
     assert main([str(number), "--check", "--file", str(file)]) == 1
     assert "does a loop go on for ever?" in capfd.readouterr().out
+    child = Path("/proc", begun.read_text("utf-8"), "stat")
+    # One that was killed may not be waited for yet.
+    promised(lambda: not child.exists() or " Z " in child.read_text(), 5.0, "it is ended")
 
 
 def test_all_are_listed_and_a_file_of_the_learner_is_kept(
