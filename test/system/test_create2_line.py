@@ -13,6 +13,7 @@ import pytest
 from fixtures.robots.create2_rig import Create2Rig, create2_in_studio
 from fixtures.waiting import wait_until
 
+from roomba.drivers.create2.obedience import DisobeyedError
 from roomba.geometry import Pose, Twist
 
 PROMISE = 0.5
@@ -104,7 +105,9 @@ def test_a_robot_that_does_not_hear_its_driver_is_told_of(rig: Create2Rig) -> No
     rig.server.is_deaf = True
     rig.drive_until(Twist(), lambda: bool(rig.errors), "it is noticed")
     assert rig.moves
-    assert "switch the robot off" in str(rig.errors[0])
+    (error, *_) = rig.errors
+    assert isinstance(error, DisobeyedError)
+    assert "wire" in error.remedy
 
 
 def test_a_cable_that_is_pulled_while_it_drives_nothing_makes_up_for(tmp_path: Path) -> None:

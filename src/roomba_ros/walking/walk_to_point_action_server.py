@@ -62,11 +62,9 @@ class _Job:
     turned_by: float | None = None
     """When it has turned at the goal at the latest; None before it is there."""
     rest_by: float | None = None
-    """When a walk that ends stands at the latest; None while it is wanted."""
+    """When a cancelled walk stands at the latest; None while it is wanted."""
     free_at: float | None = None
-    """When a walk that ends leaves the drive to others; None before it stands."""
-    given_up_for: str = ""
-    """Why a walk that ends is given up; empty for one that was cancelled."""
+    """When a cancelled walk leaves the drive to others; None before it stands."""
 
 
 class WalkToPointActionServer:
@@ -247,9 +245,11 @@ class WalkToPointActionServer:
     def _obey_emergency_stop(self) -> None:
         """Give the walk under way up: releasing the stop is no order to drive on."""
         reason, job = self._held, self._job
-        if reason and job is not None and not job.given_up_for:
-            job.given_up_for = f"the emergency stop holds the drive: {reason}"
-            job.rest_by = job.rest_by or rospy.get_time() + self._nodes.walk_end.longest_braking
+        if reason and job is not None:
+            self._job = None
+            self._change_speed.publish(self._parameters.values.robot_max_speed)
+            time_spent = job.walk.time_spent(rospy.get_time())
+            job.goal.given_up(time_spent, f"the emergency stop holds the drive: {reason}")
 
     def _walk_on(self, job: _Job, senses: Senses) -> None:
         if job.rest_by is not None:
@@ -312,7 +312,7 @@ class WalkToPointActionServer:
             job.goal.given_up(time_spent, f"it is there, but {wrong:.2f} rad were not turned")
 
     def _come_to_rest(self, job: _Job, senses: Senses, rest_by: float) -> None:
-        """Stop a walk that ends: speed 0 at once, and when it stands its place is the setpoint.
+        """Stop a cancelled walk: speed 0 at once, and when it stands its place is the setpoint.
 
         Until then the last setpoint is told on: a stream that falls silent counts as lost. The
         speed is freed after its own place arrived: else the robot would drive to the old one.
@@ -332,11 +332,7 @@ class WalkToPointActionServer:
             return
         self._change_speed.publish(self._parameters.values.robot_max_speed)
         self._job = None
-        time_spent = job.walk.time_spent(senses.now)
-        if job.given_up_for:
-            job.goal.given_up(time_spent, job.given_up_for)
-        else:
-            job.goal.cancelled(time_spent, "cancelled")
+        job.goal.cancelled(job.walk.time_spent(senses.now), "cancelled")
 
     def _tell_feedback(self, job: _Job, senses: Senses, distance_left: float) -> None:
         now = senses.now

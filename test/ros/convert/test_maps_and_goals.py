@@ -125,7 +125,7 @@ def test_outlines_and_zones_with_numbers_that_are_not_finite_are_refused(number:
         outlines_of(message)
     zone = zones(4)
     zone.zones[0].points[1].x = number
-    with pytest.raises(MessageError, match="zone 'bowl': expected finite numbers"):
+    with pytest.raises(MessageError, match="zone 'bowl': expected numbers of at most"):
         zones_of(zone)
 
 

@@ -222,15 +222,6 @@ def three_cells(*labels: int, value: int = FREE) -> StoredMap:
         (three_cells(1, 0, 1), "in one piece"),
         (three_cells(1, 1, 0, value=OCCUPIED), "free floor in room 'a'"),
         (three_cells(1, 1, 0, value=101), "values from -1 to 100"),
-        (
-            StoredMap(
-                three_cells(1, 1, 0).occupancy,
-                Pose(),
-                None,
-                Zones((Zone("far", ZoneKind.WALL, ((0.0, 0.0), (2e5, 0.0))),)),
-            ),
-            "less than or equal to 100000",
-        ),
     ],
 )
 def test_what_files_cannot_hold_is_refused_and_not_lost_in_silence(

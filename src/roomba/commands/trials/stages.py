@@ -42,7 +42,7 @@ def stages_of(paths: Iterable[tuple[str, str]], code: Path | None = None) -> Cov
 def files_of_stage(name: str, path: str, code: Path | None = None) -> dict[str, Path]:
     """Return the file that a stage is in, and those beside it that it imports, by their names.
 
-    None for a stage that is in no file. Raises UsageError.
+    Empty for a stage that is in no file. Raises UsageError.
     """
     module = _module_of(name, path, code)
     if module.__file__ is None:

@@ -53,6 +53,7 @@ def test_a_create2_and_its_lidar_are_on_lines_of_their_own(tmp_path: Path) -> No
         robot.write(bytes([128, 142, 35]))
         assert robot.read(10.0) == b"\x01"
         assert HEAD in lidar.read(10.0) + lidar.read(10.0)
+        robot.close()
         other = SerialLine(os.fspath(link), 115_200)
         other.write(bytes([142, 35]))
         assert other.read(0.5) == b""

@@ -129,7 +129,7 @@ class LidarSamples:
 def laid_on(
     place: Floats, points: Floats, around: Floats, window: float, turn: float
 ) -> CorrelativeMatch | None:
-    """Lay the points of a scan on those of another one, ``place``, without any odometry.
+    """Lay the points of a scan on those of another one, ``place``.
 
     Both are as :meth:`LidarSamples.points` returns them. Returns the best pose within ``window``,
     m, and ``turn``, rad, of the pose ``around`` [3] in the frame of ``place``; None if one of them
