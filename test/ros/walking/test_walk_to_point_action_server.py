@@ -186,11 +186,15 @@ def scan_of_room(stamp: rospy.Time, things: list[tuple[float, float, float]]) ->
 
 
 @contextmanager
-def standing_robot(probe: Probe, things: list[tuple[float, float, float]]) -> Iterator[None]:
+def standing_robot(
+    probe: Probe, things: list[tuple[float, float, float]], speed: float = 0.0
+) -> Iterator[list[float]]:
     """Tell pose, odometry and scans of a robot in the middle of the room, scans 10 times a second.
 
-    What is in ``things`` it sees from then on.
+    What is in ``things`` it sees from then on. Its wheels tell the newest of the speeds that are
+    given back, m/s; the first one is ``speed``.
     """
+    speeds = [speed]
     ended = threading.Event()
     poses, scans = probe.publisher("/pose", PoseStamped), probe.publisher("/scan", LaserScan)
     wheels = probe.publisher("/odom", Odometry)
@@ -205,16 +209,38 @@ def standing_robot(probe: Probe, things: list[tuple[float, float, float]]) -> It
                 scans.publish(scan_of_room(pose.header.stamp, list(things)))
             odometry = Odometry(header=pose.header)
             odometry.pose.pose.orientation.w = 1.0
+            odometry.twist.twist.linear.x = speeds[-1]
             wheels.publish(odometry)
             poses.publish(pose)
 
     teller = threading.Thread(target=tell, daemon=True)
     teller.start()
     try:
-        yield
+        yield speeds
     finally:
         ended.set()
         teller.join()
+
+
+def test_while_a_cancelled_walk_brakes_its_setpoint_is_told_on(graph: RosGraph) -> None:
+    """A stream that falls silent counts as one whose sender vanished."""
+    graph.rosrun(SCRIPT)
+    probe = Probe(graph)
+    told: list[tuple[str, float]] = []
+    rospy.Subscriber("/change_speed", Float32, lambda m: told.append(("speed", m.data)))
+    rospy.Subscriber("/change_position", RobotPosition, lambda m: told.append(("to", m.pos_x)))
+    probe.send("/map", room())
+    with standing_robot(probe, [], 0.3) as speeds:
+        walker = Walker()
+        walker.send(1.0, 0.0)
+        wait_until(lambda: len([what for what, _ in told if what == "to"]) > 5, 30.0, "it walks")
+        walker.cancel()
+        wait_until(lambda: told.count(("speed", 0.0)) > 5, 30.0, "it brakes")
+        speeds.append(0.0)
+        assert walker.ends(30.0) == GoalStatus.PREEMPTED
+    braking = told[told.index(("speed", 0.0)) :]
+    ahead = [x for what, x in braking if what == "to" and x > 0.05]
+    assert len(ahead) >= 4
 
 
 def test_the_emergency_stop_ends_a_walk_and_takes_no_other(graph: RosGraph) -> None:
