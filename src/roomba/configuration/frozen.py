@@ -22,7 +22,7 @@ from pydantic_core import ErrorDetails
 from roomba.errors import ConfigError
 from roomba.files.bounded import read_text
 from roomba.files.plain_yaml import load_with_nodes
-from roomba.files.strict_yaml import told_of_repeated_key
+from roomba.files.strict_yaml import repeated_key
 
 _LARGEST: Final = 1e9
 
@@ -100,8 +100,8 @@ def read_yaml(path: Path) -> Any:
         ) from error
     except (OSError, yaml.YAMLError) as error:
         raise ConfigError(f"{path}: cannot be read as YAML: {error}") from error
-    if told := told_of_repeated_key(root):
-        raise ConfigError(f"{path}:{told}")
+    if repeated := repeated_key(root):
+        raise ConfigError(f"{path}:{repeated.told}")
     return {} if raw is None else raw
 
 

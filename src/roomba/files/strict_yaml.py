@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ValidationError
 from yaml import MappingNode, Node, ScalarNode, SequenceNode, YAMLError
@@ -81,17 +81,29 @@ def read_yaml(path: Path) -> YamlFile:
         problem = getattr(error, "problem", None) or str(error).splitlines()[0]
         raise HomeError(f"{path}:{line}: expected YAML, got something else: {problem}") from error
     file = YamlFile(path, data, root)
-    if told := told_of_repeated_key(root):
-        raise HomeError(f"{path}:{told}")
+    if repeated := repeated_key(root):
+        raise HomeError(f"{path}:{repeated.told}")
     if not isinstance(data, dict):
         raise file.error((), f"expected keys and values (`key: value`), got {_shown(data)}")
     return file
 
 
-def told_of_repeated_key(root: Node | None) -> str:
-    """Return the line of a key that its mapping has twice, and what to do, as "LINE: TEXT".
+class RepeatedKey(NamedTuple):
+    """A key that its mapping has twice, and the line of the second one."""
 
-    YAML lets the last of the two win in silence. Nothing where each key is there once.
+    line: int
+    name: str
+
+    @property
+    def told(self) -> str:
+        """Its line and what to do, as "LINE: TEXT"."""
+        return f"{self.line}: expected each key once, got {self.name!r} again; remove one of them"
+
+
+def repeated_key(root: Node | None) -> RepeatedKey | None:
+    """Return a key that its mapping has twice, None where each is there once.
+
+    YAML lets the last of the two win in silence.
     """
     seen: set[int] = set()
     left = [] if root is None else [root]
@@ -107,12 +119,9 @@ def told_of_repeated_key(root: Node | None) -> str:
             keys: set[str] = set()
             for key in [key for key, _ in node.value if isinstance(key, ScalarNode)]:
                 if key.value in keys:
-                    return (
-                        f"{key.start_mark.line + 1}: expected each key once, got {key.value!r} "
-                        "again; remove one of them"
-                    )
+                    return RepeatedKey(key.start_mark.line + 1, key.value)
                 keys.add(key.value)
-    return ""
+    return None
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:

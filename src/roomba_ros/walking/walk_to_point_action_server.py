@@ -150,11 +150,14 @@ class WalkToPointActionServer:
 
     def stop(self) -> None:
         """End the goal under way; the robot stops because its setpoint's sender is gone."""
+        self._give_up("the action server was told to end")
+
+    def _give_up(self, reason: str) -> None:
+        """End the goal under way at once, if there is one."""
         job, self._job = self._job, None
         if job is not None:
             self._change_speed.publish(self._parameters.values.robot_max_speed)
-            time_spent = job.walk.time_spent(rospy.get_time())
-            job.goal.given_up(time_spent, "the action server was told to end")
+            job.goal.given_up(job.walk.time_spent(rospy.get_time()), reason)
 
     def _use_newer_map(self) -> None:
         """Plan on the newest map; a walk under way goes on by the one that it was planned on."""
@@ -244,12 +247,8 @@ class WalkToPointActionServer:
 
     def _obey_emergency_stop(self) -> None:
         """Give the walk under way up: releasing the stop is no order to drive on."""
-        reason, job = self._held, self._job
-        if reason and job is not None:
-            self._job = None
-            self._change_speed.publish(self._parameters.values.robot_max_speed)
-            time_spent = job.walk.time_spent(rospy.get_time())
-            job.goal.given_up(time_spent, f"the emergency stop holds the drive: {reason}")
+        if reason := self._held:
+            self._give_up(f"the emergency stop holds the drive: {reason}")
 
     def _walk_on(self, job: _Job, senses: Senses) -> None:
         if job.rest_by is not None:

@@ -1,7 +1,6 @@
 import math
 import signal
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
@@ -9,7 +8,7 @@ from pathlib import Path as FilePath
 
 import numpy as np
 import rospy
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from fixtures.graph import RosGraph
 from fixtures.nodes.node_compositions import started
 from fixtures.probe import Probe, Walker
@@ -249,6 +248,7 @@ def test_the_emergency_stop_ends_a_walk_and_takes_no_other(graph: RosGraph) -> N
     graph.rosrun("speed_pub_node.py")
     probe = Probe(graph)
     probe.send("/map", room())
+    probe.hear("/walk_to_point/status", GoalStatusArray)
     stop = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
     with standing_robot(probe, []):
         walker = Walker()
@@ -261,9 +261,10 @@ def test_the_emergency_stop_ends_a_walk_and_takes_no_other(graph: RosGraph) -> N
         walker.send(1.0, 0.0)
         assert walker.ends(30.0) == GoalStatus.REJECTED
         assert "release it first" in walker.text
-        before = probe.counts["/change_position"]
+        before, told = probe.counts["/change_position"], probe.counts["/walk_to_point/status"]
         assert stop(False, "").success
-        time.sleep(1.0)
+        # Five times a second.
+        wait_until(lambda: probe.counts["/walk_to_point/status"] > told + 5, 30.0, "time passes")
         assert probe.counts["/change_position"] == before
         walker.send(1.0, 0.0)
         probe.next("/change_position", RobotPosition)

@@ -15,7 +15,7 @@ from roomba.client.events import EVENT_KINDS
 from roomba.configuration.frozen import Frozen, truths_as_numbers
 from roomba.errors import ConfigError
 from roomba.files.plain_yaml import load_with_nodes
-from roomba.files.strict_yaml import told_of_repeated_key
+from roomba.files.strict_yaml import repeated_key
 
 Topic = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*$", max_length=60)]
 Word = Annotated[str, Field(pattern=r"^[a-z0-9_]+$", max_length=40)]
@@ -117,9 +117,9 @@ def read_settings(path: Path) -> SmartHomeConfig:
     text, found = _read(path)
     try:
         raw, root = load_with_nodes(text)
-        if told := told_of_repeated_key(root):
-            line = told.partition(":")[0]
-            raise ConfigError(f"{path}:{line}: expected each key once, got one again; remove one")
+        if repeated := repeated_key(root):
+            where = f"{path}:{repeated.line}"
+            raise ConfigError(f"{where}: expected each key once, got one again; remove one")
         config = SmartHomeConfig.model_validate(raw or {})
         for reason in truths_as_numbers(raw, config):
             raise ConfigError(f"{path}: {reason}")

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import contextlib
 import datetime as dt
 import math
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fixtures.waiting import wait_until
+from unit.headless.live.living import living
 
 from roomba.client.plain import home_from, home_of
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
@@ -85,14 +86,8 @@ def test_the_emergency_stop_holds_until_it_is_released(client: LiveClient) -> No
     assert client.robot().held == ""
 
 
-@contextlib.contextmanager
-def lives(stops: Path) -> Iterator[LiveClient]:
-    """A robot that keeps its emergency stop in a folder; its program just ends in the end."""
-    client = live_client("studio", seed=1, speed=40.0, knows_map=True)
-    client.keep_stop(stops)
-    client.start()
-    yield client
-    client.end()
+def lives(stops: Path) -> AbstractContextManager[LiveClient]:
+    return living(live_client("studio", seed=1, speed=40.0, knows_map=True), stops)
 
 
 def test_the_emergency_stop_holds_the_robot_that_is_started_anew(tmp_path: Path) -> None:

@@ -63,10 +63,7 @@ def matched(home: Home, ends: Floats, guess: Floats, covariance: Floats) -> tupl
 
 def placed(ends: Floats, pose: Floats) -> Floats:
     """Return the ends of beams, float64 [n, 2], on the map, of a robot at a pose [3]."""
-    cosine, sine = np.cos(pose[2]), np.sin(pose[2])
-    turn = np.array([[cosine, sine], [-sine, cosine]])
-    on_map: Floats = ends[:, :2] @ turn + pose[:2]
-    return on_map
+    return Pose(*pose.tolist()).transform(ends[:, :2])
 
 
 @drawn

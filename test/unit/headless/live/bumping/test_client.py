@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import pytest
 from fixtures.bumping import BumpingHome
 from fixtures.waiting import wait_until
+from unit.headless.live.living import living
 
 from roomba.client.protocol import ErrandOutcome, RequestRefusedError
 from roomba.client.view import CleanOrder, LayerName
@@ -83,15 +84,10 @@ def test_told_to_stop_it_stays_and_its_clean_is_told_as_stopped(client: BumpingC
     wait_until(lambda: math.dist(client.robot().pose[:2], before[:2]) > 0.02, 10.0, "it drives")
 
 
-@contextlib.contextmanager
-def lives(stops: Path) -> Iterator[BumpingClient]:
-    """A robot that keeps its emergency stop in a folder; its program just ends in the end."""
+def lives(stops: Path) -> AbstractContextManager[BumpingClient]:
     home = BumpingHome("studio", 1)
-    client = BumpingClient("studio", BumpingRobot(home.body, home.brain), speed=50.0)
-    client.keep_stop(stops)
-    client.start()
-    yield client
-    client.end()
+    robot = BumpingRobot(home.body, home.brain)
+    return living(BumpingClient("studio", robot, speed=50.0), stops)
 
 
 def test_the_emergency_stop_holds_the_robot_that_is_started_anew(tmp_path: Path) -> None:
