@@ -60,11 +60,10 @@ build_workspace() {
 
 # ---------------------------------------------------------------- step: compiled loops
 
-# What all files with compiled functions hold. Each state of them that was compiled has a stamp: to go back to a branch
-# compiles nothing. What other files hold in it is seen when it is loaded (src/roomba/compiled_sources.py).
+# What all files with compiled functions hold, and all that they import. Each state of them that was compiled has a stamp: to
+# go back to a branch compiles nothing.
 compiled_hash() {
-  (cd "$REPOSITORY" && { grep -rlE --include='*.py' 'compilation import' src/roomba | sort | xargs sha256sum; } |
-    hash_of "$(environment_stamp)")
+  PYTHONPATH=$REPOSITORY/src "$VENV/bin/python3" -m roomba.compiled_sources | hash_of "$(environment_stamp)"
 }
 
 # Prints the stamp of the environment that there is, with ROS or without.

@@ -15,16 +15,18 @@ Division by zero is not looked for: it gives what the processor makes of it.
 from __future__ import annotations
 
 import contextlib
+import functools
 import importlib
+import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from numba import njit
+from numba import config, njit
 from numba.extending import register_jitable
 
-from roomba.compiled_sources import kept_by_sources
+from roomba.compiled_sources import PACKAGE, Sources
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -34,6 +36,9 @@ _ALLOCATES: Final[dict[str, Any]] = {**_ALWAYS, "_nrt": True}
 _ALLOCATES_NOT: Final[dict[str, Any]] = {**_ALWAYS, "_nrt": False}
 _ANY_ORDER: Final = {"nsz", "arcp", "contract", "reassoc"}
 """Fast math, but for what is not finite: a beam that meets nothing is infinite."""
+_NUMBA: Final[Any] = config
+_KNOWN: Final = "sources.json"
+"""File in numba's folder: what is known of sources, by their path, until they change."""
 _BLAS: Final = "scipy.linalg.cython_blas"
 
 
@@ -113,6 +118,34 @@ def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
             return njit(**options)(function)
 
     return compile_it
+
+
+@contextlib.contextmanager
+def kept_by_sources(file: Path) -> Iterator[None]:
+    """Let numba keep what is compiled meanwhile of a file in the folder for its sources.
+
+    Without a folder that numba was told, and for what stands in no file, it keeps that where it
+    likes. A file of another folder, such as a stage of planning of a user's own, counts with the
+    parts of this package that it imports.
+    """
+    before = _NUMBA.CACHE_DIR
+    if not before or not file.is_file():
+        yield
+        return
+    sources = _sources(before)
+    within = file.relative_to(PACKAGE) if PACKAGE in file.parents else Path("other", file.name)
+    name = ".".join(within.with_suffix("").parts)
+    _NUMBA.CACHE_DIR = os.path.join(before, f"{name}-{sources.key(file)}")
+    sources.remember()
+    try:
+        yield
+    finally:
+        _NUMBA.CACHE_DIR = before
+
+
+@functools.cache
+def _sources(folder: str) -> Sources:
+    return Sources(PACKAGE, Path(folder) / _KNOWN)
 
 
 def _part(function: _Function, options: dict[str, Any]) -> _Function:

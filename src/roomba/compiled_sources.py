@@ -2,34 +2,30 @@
 
 numba keeps what it compiled by the file of a function, and does not see that another file changed
 from which a part or a number of it comes. So each module's code is kept in a folder of its own for
-each state of these sources. Another state, of another branch say, has other folders, and the ones
-of before are there still when one goes back.
+each state of these sources (`roomba.compilation`). Another state, of another branch say, has other
+folders, and the ones of before are there still when one goes back.
+
+``python3 -m roomba.compiled_sources`` prints a name for the state of all of them.
 """
 
 from __future__ import annotations
 
 import contextlib
-import functools
 import hashlib
 import json
-import os
 import re
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 from uuid import uuid4
 
-import numba
-
 PACKAGE: Final = Path(__file__).parent
-_NUMBA: Final[Any] = numba.config
-_KNOWN: Final = "sources.json"
-"""File in numba's folder: what is known of sources, by their path, until they change."""
 _NO_PART: Final = (Path(__file__).name,)
 """Files that have no part in what is compiled, though they are imported for it."""
 _DIGITS: Final = 16
 """Of a hash in the name of a folder."""
+_COMPILES: Final = re.compile(r"^from roomba[\w.]*\.compilation import", re.MULTILINE)
 _IMPORT: Final = re.compile(
     r"^\s*(?:from\s+(?P<of>roomba[\w.]*)\s+import\s+(?P<names>\([^)]*\)|.*)|import\s+(?P<module>roomba[\w.]*))",
     re.MULTILINE,
@@ -58,14 +54,13 @@ class Sources:
         self._known = {} if known is None else _read(known)
         self._found: dict[str, SourceFile] = {}
 
-    def key(self, file: Path) -> str:
-        """Return a name for the state of a file and of all that it imports, directly or not.
+    def key(self, *files: Path) -> str:
+        """Return a name for the state of files and of all that they import, directly or not.
 
-        The file may be one of another folder, which imports from the package.
+        A file may be one of another folder, which imports from the package.
         """
-        is_own = self._package in file.parents
-        first = str(file.relative_to(self._package) if is_own else file.absolute())
-        reached, left = {first}, [first]
+        left = [self._named(file) for file in files]
+        reached = set(left)
         while left:
             more = set(self._source(left.pop()).imports) - reached
             reached |= more
@@ -83,6 +78,10 @@ class Sources:
             self._file.parent.mkdir(parents=True, exist_ok=True)
             written.write_text(json.dumps({at: asdict(it) for at, it in self._known.items()}))
             written.replace(self._file)
+
+    def _named(self, file: Path) -> str:
+        is_own = self._package in file.parents
+        return str(file.relative_to(self._package) if is_own else file.absolute())
 
     def _source(self, at: str) -> SourceFile:
         if at not in self._found:
@@ -130,29 +129,11 @@ def _read(known: Path) -> dict[str, SourceFile]:
         return {}
 
 
-@contextlib.contextmanager
-def kept_by_sources(file: Path) -> Iterator[None]:
-    """Let numba keep what is compiled meanwhile of a file in the folder for its sources.
-
-    Without a folder that numba was told, and for what stands in no file, it keeps that where it
-    likes. A file of another folder, such as a stage of planning of a user's own, counts with the
-    parts of this package that it imports.
-    """
-    before = _NUMBA.CACHE_DIR
-    if not before or not file.is_file():
-        yield
-        return
-    sources = _sources(before)
-    within = file.relative_to(PACKAGE) if PACKAGE in file.parents else Path("other", file.name)
-    name = ".".join(within.with_suffix("").parts)
-    _NUMBA.CACHE_DIR = os.path.join(before, f"{name}-{sources.key(file)}")
-    sources.remember()
-    try:
-        yield
-    finally:
-        _NUMBA.CACHE_DIR = before
+def files_with_compiled_functions(package: Path) -> list[Path]:
+    """Return the files of a package that compile functions, in their order."""
+    files = sorted(package.rglob("*.py"))
+    return [path for path in files if _COMPILES.search(path.read_text(encoding="utf-8"))]
 
 
-@functools.cache
-def _sources(folder: str) -> Sources:
-    return Sources(PACKAGE, Path(folder) / _KNOWN)
+if __name__ == "__main__":
+    print(Sources(PACKAGE).key(*files_with_compiled_functions(PACKAGE)))

@@ -5,17 +5,21 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from fixtures.waiting import promised
 
+from roomba.compiled_sources import PACKAGE
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 MAPPING = "-m roomba.commands.map.warm"
 DEADLINE = 30.0
 """s that a script, or what it began in the background, may take."""
-PYTHON = """#!/bin/sh
+PYTHON = f"""#!/bin/sh
+[ "$2" != roomba.compiled_sources ] || exec {sys.executable} "$@"
 echo "$*" >>calls
 case "$*" in
   *compiling) echo 7 ;;
@@ -23,11 +27,11 @@ case "$*" in
   *first_use*) [ ! -e broken ] ;;
 esac
 """
-"""Stands for Python: notes what it is to run, and maps not before it may."""
+"""Stands for Python: notes what it is to run, and maps not before it may. It knows the sources."""
 
 
 class Checkout:
-    """The scripts of the set-up, one file of a loop, and a Python that compiles nothing."""
+    """The scripts of the set-up, a loop that imports, and a Python that compiles nothing."""
 
     def __init__(self, folder: Path) -> None:
         """Make them as if all other steps were done, without ROS."""
@@ -37,8 +41,14 @@ class Checkout:
         (folder / "src/roomba").mkdir(parents=True)
         (folder / ".venv/bin").mkdir(parents=True)
         (folder / ".venv/.stamp-library").write_text("made\n")
+        for name in ("__init__.py", "compiled_sources.py"):
+            shutil.copy2(PACKAGE / name, folder / "src/roomba")
+        self.number = folder / "src/roomba/number.py"
+        self.number.write_text("NUMBER = 1\n")
         self.loop = folder / "src/roomba/loop.py"
-        self.loop.write_text("from roomba.compilation import entry\n")
+        self.loop.write_text(
+            "from roomba.compilation import entry\nfrom roomba.number import NUMBER\n"
+        )
         program = folder / ".venv/bin/python3"
         program.write_text(PYTHON)
         program.chmod(0o755)
@@ -121,6 +131,15 @@ def test_to_go_back_to_a_branch_compiles_nothing(checkout: Checkout) -> None:
     checkout.loop.write_text(before)
     assert checkout.does("set_up library") == (True, "")
     assert checkout.calls == []
+
+
+def test_what_a_loop_imports_is_of_it_and_other_files_are_not(checkout: Checkout) -> None:
+    assert checkout.does("set_up library")[0]
+    checkout.wait(checkout.is_complete)
+    (checkout.folder / "src/roomba/words.py").write_text("from roomba.number import NUMBER\n")
+    assert checkout.is_complete()
+    checkout.number.write_text("NUMBER = 2\n")
+    assert not checkout.does("compiled_is_current")[0]
 
 
 def test_of_sources_that_changed_meanwhile_nothing_is_said(checkout: Checkout) -> None:

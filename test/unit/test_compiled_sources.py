@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from roomba.compiled_sources import PACKAGE, Sources
+from roomba.compiled_sources import PACKAGE, Sources, files_with_compiled_functions
 
 Answer = tuple[float, int, int]
 """What a compiled function returned, and how often it was loaded and compiled."""
@@ -70,6 +70,22 @@ def test_files_that_import_each_other_have_keys(package: Path) -> None:
     after = Sources(package)
     assert after.key(package / "e.py") != keys[0]
     assert after.key(package / "b.py") != keys[1]
+
+
+def test_the_key_of_files_is_of_all_of_them_in_any_order(package: Path) -> None:
+    files = package / "c/__init__.py", package / "e.py"
+    before = Sources(package).key(*files)
+    assert before == Sources(package).key(*reversed(files))
+    assert before not in {Sources(package).key(each) for each in files}
+    (package / "e.py").write_text("number = 2\n")
+    assert Sources(package).key(*files) != before
+
+
+def test_files_that_compile_functions_import_what_does_it(package: Path) -> None:
+    (package / "b.py").write_text('"""A word of compilation import."""\n')
+    (package / "c/d.py").write_text("from roomba.compilation import part\n")
+    (package / "e.py").write_text("import os\nfrom roomba.x.compilation import (\n  part\n)\n")
+    assert files_with_compiled_functions(package) == [package / "c/d.py", package / "e.py"]
 
 
 def test_a_file_is_read_again_only_when_it_changed(package: Path, tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from typing import Any, Final
 from numba.core import event
 from numba.extending import is_jitted
 
-from roomba.compiled_sources import PACKAGE
+from roomba.compiled_sources import PACKAGE, files_with_compiled_functions
 
 _SELDOM: Final = 10
 """Times as many objects as usual are made until Python looks for garbage: compiling makes millions
@@ -84,8 +84,7 @@ def left_to_compile() -> list[str]:
     """Return the functions of this package of whose sources, as they are, no code is kept."""
     modules = [
         ".".join(("roomba", *path.relative_to(PACKAGE).with_suffix("").parts))
-        for path in sorted(PACKAGE.rglob("*.py"))
-        if "compilation import" in path.read_text(encoding="utf-8")
+        for path in files_with_compiled_functions(PACKAGE)
     ]
     return [
         f"{module}.{name}"
