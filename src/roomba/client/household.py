@@ -96,13 +96,16 @@ class Household(Protocol):
         """Return the plans, and what comes of them."""
 
     def put_plan(self, plan: Plan) -> None:
-        """Add a plan, or replace the one of the same name; its times count from now on."""
+        """Add a plan, or replace the one of the same name; its times count from now on.
+
+        Its rooms are of the present map; those of a plan that is off may be any.
+        """
 
     def remove_plan(self, name: str) -> None:
         """Remove a plan; a clean that it began goes on."""
 
     def put_preset(self, preset: Preset) -> None:
-        """Add a preset, or replace the one of the same name."""
+        """Add a preset, or replace the one of the same name; its rooms are of the present map."""
 
     def remove_preset(self, name: str) -> None:
         """Remove a preset."""

@@ -21,9 +21,11 @@ from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.emptying import is_to_be_emptied
 from roomba.household.folder import KeptValues, Tell
 from roomba.household.local_zone import local_zone
-from roomba.household.plan_keeper import Change, PlanKeeper, removed, replaced
+from roomba.household.plan_changes import Change, removed, replaced
+from roomba.household.plan_keeper import PlanKeeper
+from roomba.household.room_names import require_rooms
 from roomba.household.upkeep_keeper import UpkeepKeeper
-from roomba.plans.plan import Emptying, Plan, Preset, QuietHours
+from roomba.plans.plan import Emptying, Plan, PlannedOrder, Preset, QuietHours
 from roomba.upkeep.parts import Part
 
 _PERIOD: Final = 1.0
@@ -102,7 +104,9 @@ class LiveHousehold:
         return self._plans.view()
 
     def put_plan(self, plan: Plan) -> None:
-        """Add a plan, or replace the one of the same name."""
+        """Add a plan, or replace the one of the same name; one that is off may name any rooms."""
+        if plan.is_on:
+            self._require_rooms(plan.order)
         self._change(lambda all_: replaced(all_, "plans", plan.name, plan))
 
     def remove_plan(self, name: str) -> None:
@@ -111,6 +115,7 @@ class LiveHousehold:
 
     def put_preset(self, preset: Preset) -> None:
         """Add a preset, or replace the one of the same name."""
+        self._require_rooms(preset.order)
         self._change(lambda all_: replaced(all_, "presets", preset.name, preset))
 
     def remove_preset(self, name: str) -> None:
@@ -179,6 +184,11 @@ class LiveHousehold:
         ):
             with contextlib.suppress(RequestRefusedError, RobotUnavailableError):
                 self.robot.empty_at_station()
+
+    def _require_rooms(self, order: PlannedOrder) -> None:
+        # Without a robot that answers its rooms are not known.
+        with contextlib.suppress(RobotUnavailableError):
+            require_rooms(order, self.robot.home().rooms)
 
     def _change(self, change: Change) -> None:
         _kept(lambda: self._plans.change(change))

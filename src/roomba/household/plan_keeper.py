@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import datetime as dt
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Final
 
 from pydantic import ValidationError
@@ -19,13 +19,15 @@ from roomba.client.protocol import (
     RequestRefusedError,
     RobotUnavailableError,
 )
-from roomba.client.view import CleanOrder, RobotView
+from roomba.client.view import CleanOrder, RobotView, RoomView
 from roomba.configuration.household import PlansConfig
 from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.folder import KeptValues
+from roomba.household.plan_changes import Change
+from roomba.household.room_names import names_now
 from roomba.plans.due import DAY, RoomNeed
 from roomba.plans.memory import Memory, Note
-from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset
+from roomba.plans.plan import HouseholdPlans, PlannedOrder
 from roomba.plans.scheduler import Act, Deed, PlanEnd, Scheduler, Situation, next_of
 from roomba.plans.times import quiet_until
 from roomba.vocabulary import CleanMode, listed
@@ -34,8 +36,6 @@ _DONE: Final = (ErrandOutcome.COMPLETED, ErrandOutcome.NOT_DOCKED)
 
 _SHORTEST: Final = 0.01
 """Days; plans that follow on one another sooner are as if they did so after this."""
-
-Change = Callable[[HouseholdPlans], HouseholdPlans]
 
 
 class PlanKeeper:
@@ -60,6 +60,7 @@ class PlanKeeper:
         self._version, self._view_of_version = 0, PlansView()
         self._is_first = True
         self._last: CleanReport | None = None
+        self._rooms: tuple[RoomView, ...] = ()
         self._show()
 
     def view(self) -> PlansView:
@@ -81,12 +82,36 @@ class PlanKeeper:
             if act is not None:
                 self._memory = self._carried_out(scheduler, act, now)
             self._keep_memory(is_changed=has_learned)
+            self._follow_rooms(now)
 
     def _learn(self, view: RobotView | None, now: dt.datetime) -> bool:
         """Learn of the rooms' dirt from a clean that ended since the last look; raises OSError."""
         last = None if view is None else view.last
         is_news = last is not None and last is not self._last and not self._is_first
         return last is not None and is_news and self._dirt.note(last, now)
+
+    def _follow_rooms(self, now: dt.datetime) -> None:
+        """Let plans, presets and what is learned go by the rooms' names as they are now.
+
+        Raises OSError; then it is tried again.
+        """
+        with contextlib.suppress(RobotUnavailableError):
+            rooms = self._robot.home().rooms
+            if rooms == self._rooms:
+                return
+            if names := names_now(self._rooms, rooms):
+                self._rename_rooms(names, now)
+            self._rooms = rooms
+
+    def _rename_rooms(self, names: Mapping[str, str], now: dt.datetime) -> None:
+        self._dirt.rename(names)
+        before, changed = self._write(lambda all_: all_.with_room_names(names))
+        told = listed([f"{name!r} is {new!r}" for name, new in names.items()])
+        for plan in changed.plans:
+            if plan not in before.plans:
+                note = Note(at=now, plan=plan.name, text=f"goes on by other names of rooms: {told}")
+                self._memory = self._memory.noting(note)
+        self._keep_memory(is_changed=True)
 
     def _situation(self, view: RobotView | None) -> Situation:
         if view is None:
@@ -177,18 +202,23 @@ class PlanKeeper:
         What another program changed in their file meanwhile stays.
         """
         with self._lock:
-            before = self._kept.read(self._household)
-            try:
-                changed = HouseholdPlans.model_validate(change(before).model_dump())
-            except ValidationError as error:
-                reason = error.errors()[0]["msg"].removeprefix("Value error, ")
-                raise RequestRefusedError(reason) from error
-            self._kept.write(changed)
-            self._household = changed
+            before, changed = self._write(change)
             self._forget_changed(before, changed)
             scheduler = Scheduler(changed, self._config)
             self._memory = scheduler.keep_to_plans(self._memory, self._now())
             self._keep_memory(is_changed=True)
+
+    def _write(self, change: Change) -> tuple[HouseholdPlans, HouseholdPlans]:
+        """Change the plans on the disk; return how they were there, and how they are."""
+        before = self._kept.read(self._household)
+        try:
+            changed = HouseholdPlans.model_validate(change(before).model_dump())
+        except ValidationError as error:
+            reason = error.errors()[0]["msg"].removeprefix("Value error, ")
+            raise RequestRefusedError(reason) from error
+        self._kept.write(changed)
+        self._household = changed
+        return before, changed
 
     def begin(self, preset: str) -> None:
         """Begin a preset now; raises RequestRefusedError, RobotUnavailableError."""
@@ -255,25 +285,3 @@ def clean_order_of(order: PlannedOrder) -> CleanOrder:
         carpets=order.carpets.value,
         edges=order.edges.value,
     )
-
-
-def replaced(
-    household: HouseholdPlans, kind: str, name: str, value: Plan | Preset
-) -> HouseholdPlans:
-    """Return the household with a plan or preset (``kind`` is plans or presets) in its place."""
-    names = [each.name for each in getattr(household, kind)]
-    values = list(getattr(household, kind))
-    if name in names:
-        values[names.index(name)] = value
-    else:
-        values.append(value)
-    return household.model_copy(update={kind: tuple(values)})
-
-
-def removed(household: HouseholdPlans, kind: str, name: str) -> HouseholdPlans:
-    """Return the household without a plan or preset; raises RequestRefusedError without one."""
-    values = getattr(household, kind)
-    if name not in [each.name for each in values]:
-        names = listed([each.name for each in values])
-        raise RequestRefusedError(f"expected one of {names}, got {name[:80]!r}")
-    return household.model_copy(update={kind: tuple(each for each in values if each.name != name)})

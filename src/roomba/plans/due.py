@@ -6,7 +6,7 @@ It has no clock and asks no robot. Grains are those that the robot's dirt sensor
 from __future__ import annotations
 
 import datetime as dt
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -34,6 +34,12 @@ class DirtRecords(Frozen):
     """All that is learned, by the rooms' names."""
 
     rooms: dict[str, RoomRecord] = Field(default={}, max_length=_MOST_ROOMS)
+
+    def with_room_names(self, names: Mapping[str, str]) -> DirtRecords:
+        """Return the records by other names of rooms; a joined room goes on by its own record."""
+        kept = {name: record for name, record in self.rooms.items() if name not in names}
+        moved = {now: self.rooms[name] for name, now in names.items() if name in self.rooms}
+        return DirtRecords(rooms={**moved, **kept})
 
 
 @dataclass(frozen=True, slots=True)

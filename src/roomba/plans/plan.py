@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime as dt
 import reprlib
 import zoneinfo
+from collections.abc import Mapping
 from enum import Enum
 from typing import Annotated, Any, Final
 
@@ -87,6 +88,11 @@ class PlannedOrder(Frozen):
         if self.only_due and self.mode not in (CleanMode.WHOLE, CleanMode.ROOMS):
             raise ValueError("expected all floor or rooms, of which those that are due are cleaned")
         return self
+
+    def with_room_names(self, names: Mapping[str, str]) -> PlannedOrder:
+        """Return the order with other names of rooms, by the old ones; each room once."""
+        rooms = tuple(dict.fromkeys(names.get(name, name) for name in self.rooms))
+        return self if rooms == self.rooms else self.model_copy(update={"rooms": rooms})
 
 
 class Named(Frozen):
@@ -188,6 +194,17 @@ class HouseholdPlans(Frozen):
             if len(set(names)) < len(names):
                 raise ValueError(f"expected each name once, got {', '.join(names)}")
         return self
+
+    def with_room_names(self, names: Mapping[str, str]) -> HouseholdPlans:
+        """Return the plans and presets with other names of rooms, by the old ones."""
+        update = {
+            kind: tuple(
+                each.model_copy(update={"order": each.order.with_room_names(names)})
+                for each in getattr(self, kind)
+            )
+            for kind in ("plans", "presets")
+        }
+        return self.model_copy(update=update)
 
     @property
     def clock(self) -> zoneinfo.ZoneInfo:

@@ -57,6 +57,11 @@ def map_digest(occupancy: OccupancyMap) -> str:
     return hashlib.sha256(place.encode() + occupancy.values.tobytes()).hexdigest()
 
 
+def map_file_name(digest: str) -> str:
+    """Return by what name files of a map lie in a folder: the first digits of its digest."""
+    return digest[:16]
+
+
 def save_map_bound(
     path: Path, occupancy: OccupancyMap, key: str, entries: list[dict[str, object]], comment: str
 ) -> None:

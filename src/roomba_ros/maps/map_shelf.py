@@ -13,7 +13,7 @@ from roomba.grid import OccupancyMap
 from roomba.perception.floors.carry_over import carry_over
 from roomba.perception.floors.recognition import FloorRecord
 from roomba.perception.floors.same_floor import match_floors
-from roomba.storage.map_bound import map_digest
+from roomba.storage.map_bound import map_digest, map_file_name
 from roomba.storage.map_store import MapStore, MapStoreError, StoredMap
 from roomba.storage.rooms import save_rooms
 from roomba.storage.zones import save_zones
@@ -120,7 +120,7 @@ class MapShelf:
             rospy.logwarn("rooms and zones of the map are not taken over: %s", error)
 
     def _zones_path(self, occupancy: OccupancyMap) -> Path:
-        return self._zones_folder / f"{map_digest(occupancy)[:16]}.yaml"
+        return self._zones_folder / f"{map_file_name(map_digest(occupancy))}.yaml"
 
 
 def _floor_of(stored: StoredMap) -> FloorRecord:

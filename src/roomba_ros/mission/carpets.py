@@ -10,6 +10,7 @@ from roomba_robot.msg import CarpetArray
 from roomba.mission.mission import Mission
 from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.storage.carpets import CarpetsError, load_carpets, save_carpets
+from roomba.storage.map_bound import map_file_name
 from roomba_ros.convert.mission import carpets_message
 from roomba_ros.mission.home import GROWING, KnownHome
 from roomba_ros.runtime.background import Background
@@ -65,4 +66,4 @@ class CarpetTopics:
         )
 
     def _path(self, home: KnownHome) -> Path:
-        return self._folder / f"{home.digest[:16]}.carpets.yaml"
+        return self._folder / f"{map_file_name(home.digest)}.carpets.yaml"

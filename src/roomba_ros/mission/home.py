@@ -34,7 +34,7 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones, ZonesError
-from roomba.storage.map_bound import map_digest
+from roomba.storage.map_bound import map_digest, map_file_name
 from roomba.storage.zones import load_zones, save_zones
 from roomba.vocabulary import listed
 from roomba_ros.convert.common import ToldMap, pose_in_map, told_map_of
@@ -295,7 +295,7 @@ class HomeTopics:
             return None
 
     def _path(self) -> Path:
-        return self._folder / f"{self._digest[:16]}.yaml"
+        return self._folder / f"{map_file_name(self._digest)}.yaml"
 
     def _tell(self) -> None:
         now, zones = rospy.get_time(), self._zones or Zones()

@@ -12,6 +12,7 @@ from roomba_robot.srv import IgnoreLowThing, IgnoreLowThingRequest, IgnoreLowThi
 from roomba.mission.mission import Mission
 from roomba.perception.rooms.low_things import LowThings
 from roomba.storage.low_things import LowThingsError, load_low_things, save_low_things
+from roomba.storage.map_bound import map_file_name
 from roomba_ros.convert.mission import low_things_message
 from roomba_ros.mission.home import GROWING, KnownHome
 from roomba_ros.runtime.background import Background
@@ -72,7 +73,7 @@ class LowThingTopics:
         )
 
     def _path(self) -> Path:
-        return self._folder / f"{self._digest[:16]}.low_things.yaml"
+        return self._folder / f"{map_file_name(self._digest)}.low_things.yaml"
 
     def _on_ignore(self, request: IgnoreLowThingRequest) -> IgnoreLowThingResponse:
         with self._lock:

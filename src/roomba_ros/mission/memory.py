@@ -23,6 +23,7 @@ from roomba.storage.checkpoint import (
     save_checkpoint,
     save_dirt,
 )
+from roomba.storage.map_bound import map_file_name
 from roomba_ros.runtime.background import Background
 
 
@@ -33,8 +34,8 @@ class MissionMemory:
         self, folder: Path, digest: str, config: MemoryConfig, background: Background
     ) -> None:
         """Read and write nothing yet."""
-        self._checkpoint = folder / f"{digest[:16]}.json"
-        self._dirt = folder / f"{digest[:16]}.npz"
+        self._checkpoint = folder / f"{map_file_name(digest)}.json"
+        self._dirt = folder / f"{map_file_name(digest)}.npz"
         self._config, self._background = config, background
         self._not_forgotten = f"the errand is not forgotten in {self._checkpoint.name}"
         self._run = str(rospy.get_param("/run_id", ""))

@@ -27,7 +27,7 @@ from visualization_msgs.msg import MarkerArray
 from roomba.errors import RoombaError, RoomsError
 from roomba.grid import OccupancyMap
 from roomba.perception.rooms.rooms import Rooms, segment
-from roomba.storage.map_bound import map_digest
+from roomba.storage.map_bound import map_digest, map_file_name
 from roomba.storage.rooms import load_rooms, save_rooms
 from roomba_ros.convert.common import map_of
 from roomba_ros.convert.rooms import rooms_markers, rooms_message
@@ -112,7 +112,7 @@ class RoomTopics:
 
     def path_of(self, occupancy: OccupancyMap) -> Path:
         """Return where the rooms of a map are kept."""
-        return self._folder / f"{map_digest(occupancy)[:16]}.yaml"
+        return self._folder / f"{map_file_name(map_digest(occupancy))}.yaml"
 
     def _tell(self, rooms: Rooms) -> None:
         now = rospy.get_time()

@@ -15,18 +15,24 @@ from roomba.client.view import CleanOrder, HomeView, RobotView, RoomView
 from roomba.configuration.household import DueConfig, PlansConfig
 from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.folder import KeptValues
-from roomba.household.plan_keeper import PlanKeeper, replaced
+from roomba.household.plan_changes import replaced
+from roomba.household.plan_keeper import PlanKeeper
 from roomba.plans.plan import Plan, PlannedOrder
 from roomba.vocabulary import CleanMode, RoomDirt
 
 DOCKED = replace(VIEW, vacuum=replace(VIEW.vacuum, state="docked", phase="docked"))
 DUE = Plan(name="daily", order=PlannedOrder(only_due=True), at=(dt.time(9, 0),))
-ROOMS = tuple(RoomView(name, 4.0, (0.0, 0.0), ()) for name in ("kitchen", "den"))
+ROOMS = tuple(
+    RoomView(name, 4.0, (x, 0.0), (((x, 0.0), (x + 1.0, 0.0), (x, 4.0), (x, 0.0)),))
+    for x, name in enumerate(("kitchen", "den"))
+)
 
 
 class RoomyRobot(WrittenRobot):
+    rooms = ROOMS
+
     def home(self) -> HomeView:
-        return replace(HOME, rooms=ROOMS)
+        return replace(HOME, rooms=self.rooms)
 
 
 class Living:
@@ -87,6 +93,19 @@ def test_a_plan_cleans_what_is_due_and_says_why(tmp_path: Path) -> None:
     assert [need["every"] for need in needs] == [1, 2]
     assert needs[1]["reason"] == "it becomes 0.45 times as dirty as kitchen"
     assert living.day(kitchen=1000.0, den=900.0) == [both]
+
+
+def test_what_is_learned_goes_on_by_the_name_of_a_room_now(tmp_path: Path) -> None:
+    living = Living(tmp_path)
+    living.day(kitchen=5000.0, den=5000.0)
+    living.day(kitchen=1000.0, den=450.0)
+    living.robot.rooms = replace(ROOMS[0], name="Küche"), ROOMS[1]
+    living.keeper.look(DOCKED)
+    living.again()
+    living.keeper.look(DOCKED)
+    assert living.day(Küche=1000.0) == [CleanOrder("rooms", ("Küche",), in_order=False)]
+    needs = plans_of(living.keeper.view())["needs"]
+    assert [(need["room"], need["every"]) for need in needs] == [("Küche", 1), ("den", 2)]
 
 
 def test_where_nothing_is_due_nothing_begins_and_that_is_noted(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime as dt
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -13,11 +14,11 @@ from fixtures.waiting import wait_until
 from fixtures.written_robot import VIEW, WrittenRobot
 
 from roomba.client.household import TotalsView
-from roomba.client.protocol import RobotUnavailableError
+from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.commands.play.living import live_client
 from roomba.configuration.household import HouseholdConfig
 from roomba.household.household import LiveHousehold
-from roomba.plans.plan import Plan, PlannedOrder, QuietHours
+from roomba.plans.plan import Plan, PlannedOrder, Preset, QuietHours
 from roomba.ui.state_words import lines_of
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard
@@ -226,6 +227,58 @@ def test_plans_over_the_headless_robot(tmp_path: Path) -> None:
         assert life.household.plans().running == "edges"
         life.robot.stop()
         life.wait_for("stopped by hand")
+    finally:
+        life.household.stop()
+        life.robot.end()
+
+
+def test_plans_and_presets_follow_the_names_of_rooms(tmp_path: Path) -> None:
+    life = Life(tmp_path)
+    try:
+        home, household = life.robot, life.household
+        first = home.home().rooms[0]
+        x, y = first.anchor
+        home.split_room(first.name, (x - 20.0, y), (x + 20.0, y))
+        one, other = (room.name for room in home.home().rooms[:2])
+        order = PlannedOrder(mode=CleanMode.ROOMS, rooms=(one, other))
+        household.put_plan(Plan(name="daily", at=(dt.time(9, 30),), order=order))
+        household.put_preset(Preset(name="now", order=order))
+        due = household.plans().next_at
+
+        def wait_for_rooms(*names: str) -> None:
+            planned = household.plans
+            wait_until(
+                lambda: planned().household.plans[0].order.rooms == names, DEADLINE, f"{names}"
+            )
+            assert planned().household.presets[0].order.rooms == names
+
+        time.sleep(0.1)  # the household looks
+        home.rename_room(one, "Den")
+        wait_for_rooms("Den", other)
+        # Of the same time as before.
+        assert household.plans().next_at == due
+        life.wait_for(f"goes on by other names of rooms: '{one}' is 'Den'")
+        home.undo_rooms()
+        wait_for_rooms(one, other)
+        home.join_rooms((other, one))
+        wait_for_rooms(other)
+        household.begin_preset("now")
+        wait_until(lambda: life.phase() == "cleaning", DEADLINE, "the robot cleans")
+    finally:
+        life.household.stop()
+        life.robot.end()
+
+
+def test_rooms_that_the_map_does_not_have_are_refused(tmp_path: Path) -> None:
+    life = Life(tmp_path)
+    try:
+        order = PlannedOrder(mode=CleanMode.ROOMS, rooms=("attic",))
+        with pytest.raises(RequestRefusedError, match=r"expected rooms of the map.*got 'attic'"):
+            life.household.put_plan(Plan(name="daily", order=order))
+        with pytest.raises(RequestRefusedError, match=r"expected rooms of the map.*got 'attic'"):
+            life.household.put_preset(Preset(name="now", order=order))
+        # A plan of another map can be switched off.
+        life.household.put_plan(Plan(name="daily", order=order, is_on=False))
     finally:
         life.household.stop()
         life.robot.end()

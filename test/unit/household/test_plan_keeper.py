@@ -16,7 +16,8 @@ from roomba.client.view import CleanOrder, RobotView
 from roomba.configuration.household import DueConfig, PlansConfig
 from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.folder import KeptValues
-from roomba.household.plan_keeper import PlanKeeper, removed, replaced
+from roomba.household.plan_changes import removed, replaced
+from roomba.household.plan_keeper import PlanKeeper
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset
 from roomba.vocabulary import CleanMode, FanLevel
 

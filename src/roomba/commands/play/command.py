@@ -28,13 +28,14 @@ from roomba.errors import RoombaError
 from roomba.files.shipped import CONFIGURATION
 from roomba.headless.live.bumping.client import BumpingClient
 from roomba.headless.live.client import LiveClient
+from roomba.headless.live.kept_floor_plan import FOLDER as FLOOR_PLANS
 from roomba.history.database import History
 from roomba.history.folder import history_folder
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
 from roomba.household.folder import household_folder
 from roomba.household.household import LiveHousehold
-from roomba.storage.kept_stop import FOLDER
+from roomba.storage.kept_stop import FOLDER as STOPS
 from roomba.ui.smart_home.switch import Switched, switched_on
 
 PROGRAM: Final = spelled("play")
@@ -71,6 +72,8 @@ def _robot(
     if wanted.robot is None:
         client = wanted_robot(wanted)
         until_end.callback(client.end)
+        if wanted.map == "home":
+            client.keep_plan(household_folder() / FLOOR_PLANS, _warn)
         source = RunSource("play", wanted.home, wanted.seed, repeat)
         return client, source, f"The robot lives in {wanted.home!r}. Its page:"
     life = bumping_life(wanted) if wanted.lidar == "none" else owned_life(wanted, _warn)
@@ -98,7 +101,7 @@ def _live(
         _warn,
         keeper.totals,
     )
-    client.keep_stop(household_folder() / FOLDER)
+    client.keep_stop(household_folder() / STOPS)
     client.start()
     try:
         household.start()

@@ -19,6 +19,7 @@ from roomba.headless.live import playing
 from roomba.headless.live.errands import begin_exploring
 from roomba.headless.live.floor_plan import FloorPlan, made
 from roomba.headless.live.held_stop import HeldStop
+from roomba.headless.live.kept_floor_plan import KeptFloorPlan
 from roomba.headless.live.live_home import LiveHome
 from roomba.headless.live.robot import LiveRobot
 from roomba.headless.live.snapshots import ErrandsEnded, Snapshots
@@ -52,6 +53,7 @@ class LiveClient:
         self._live = LiveRobot(robot, speed, self._observe)
         self._watchers: list[Watcher] = []
         self._stop = HeldStop(self.obey, _hold, _release)
+        self._kept_plan: KeptFloorPlan | None = None
         body = robot.robot.body
         has_camera = live_home.camera is not None
         self._bin_capacity = robot.robot.brush.bin_capacity
@@ -68,6 +70,15 @@ class LiveClient:
         To be called before :meth:`start`.
         """
         self._stop.keep_in(folder, self._live_home.name, self._robot)
+
+    def keep_plan(self, folder: Path, tell: Callable[[str], object]) -> None:
+        """Keep rooms and zones of the map in ``folder``, and go on with those kept before.
+
+        To be called before :meth:`start`, of a robot that knows its map. ``tell`` is told in a
+        sentence what could not be read; raises ZonesError for zones that cannot.
+        """
+        self._kept_plan = KeptFloorPlan(folder, self._robot.mission.context.occupancy, tell)
+        self._snapshots.use(self._robot, self._kept_plan.load(self.plan))
 
     def start(self) -> None:
         """Let the robot live."""
@@ -286,9 +297,25 @@ class LiveClient:
         self._edit(lambda plan: plan.as_before())
 
     def _edit(self, change: Callable[[FloorPlan], FloorPlan]) -> None:
-        """Let the mission go on with other rooms and zones."""
-        seen = self._snapshots
-        self.obey(lambda robot: seen.use(robot, change(seen.plan)))
+        """Let the mission go on with other rooms and zones, once they are kept."""
+
+        def edit(robot: Embodied) -> None:
+            plan = change(self.plan)
+            self._keep(plan)
+            self._snapshots.use(robot, plan)
+
+        self.obey(edit)
+
+    def _keep(self, plan: FloorPlan) -> None:
+        """Keep a changed plan; raises RequestRefusedError where that cannot be."""
+        if self._kept_plan is None:
+            return
+        try:
+            self._kept_plan.save(self.plan, plan)
+        except OSError as error:
+            raise RequestRefusedError(
+                f"rooms and zones cannot be kept: {error}; nothing was changed"
+            ) from error
 
     def spill_dirt(self, x: float, y: float) -> None:
         """Spill a heap of dirt."""

@@ -1,0 +1,28 @@
+"""A plan or preset takes the place of the one of its name, and is removed by its name."""
+
+from __future__ import annotations
+
+import pytest
+
+from roomba.client.protocol import RequestRefusedError
+from roomba.household.plan_changes import removed, replaced
+from roomba.plans.plan import HouseholdPlans, Plan, Preset
+
+PLANS = HouseholdPlans(plans=(Plan(name="a"), Plan(name="b")), presets=(Preset(name="a"),))
+
+
+def test_the_one_of_the_same_name_is_replaced_in_its_place() -> None:
+    changed = replaced(PLANS, "plans", "a", Plan(name="a", is_on=False))
+    assert [(plan.name, plan.is_on) for plan in changed.plans] == [("a", False), ("b", True)]
+    assert changed.presets == PLANS.presets
+
+
+def test_another_one_is_added() -> None:
+    changed = replaced(PLANS, "presets", "c", Preset(name="c"))
+    assert [preset.name for preset in changed.presets] == ["a", "c"]
+
+
+def test_one_is_removed_and_what_there_is_not_is_refused() -> None:
+    assert [plan.name for plan in removed(PLANS, "plans", "a").plans] == ["b"]
+    with pytest.raises(RequestRefusedError, match="one of a, b, got 'c'"):
+        removed(PLANS, "plans", "c")
