@@ -6,6 +6,7 @@ import http.client
 import json
 import urllib.error
 import urllib.request
+from http import HTTPStatus
 from typing import Any, Final
 
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
@@ -33,7 +34,7 @@ class PageApi:
         """Send values to a path of the API, and return the answer.
 
         Raises RequestRefusedError with the server's reason, and RobotUnavailableError if no server
-        of a page answers.
+        of a page answers, or if it tells that its robot does not.
         """
         headers = {"Authorization": f"Bearer {self._token}", "Content-Type": "application/json"}
         content = json.dumps(values or {}).encode()
@@ -45,7 +46,9 @@ class PageApi:
             with self._opener.open(request, timeout=self._patience) as answer:
                 told = json.load(answer)
         except urllib.error.HTTPError as refusal:
-            raise RequestRefusedError(_reason_of(refusal)) from refusal
+            is_silent = refusal.code == HTTPStatus.SERVICE_UNAVAILABLE
+            kind = RobotUnavailableError if is_silent else RequestRefusedError
+            raise kind(_reason_of(refusal)) from refusal
         except (OSError, ValueError, http.client.HTTPException) as error:
             raise RobotUnavailableError(f"the robot cannot be reached: {error}") from error
         if not isinstance(told, dict):

@@ -29,7 +29,7 @@ from roomba.grid import OCCUPIED
 HOME = "home"
 BEFORE_CHEST = Rectangle(2.8, 0.6, 4.4, 1.8)
 LOOKS = 2
-"""Passes before the chest: in the time of one it is seen just often enough to be offered, or not."""
+"""Passes before the chest: in the time of one it is seen often enough to be offered, or not."""
 BY_STATION = Rectangle(0.4, 0.9, 0.9, 1.6)
 CELL = 0.05
 

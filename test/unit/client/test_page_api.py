@@ -16,7 +16,8 @@ from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 ANSWERS = {
     "/api/v1/state": (200, '{"phase": "idle"}'),
     "/api/v1/stop": (409, '{"detail": "it stands already"}'),
-    "/api/v1/gone": (503, "no JSON"),
+    "/api/v1/gone": (404, "no JSON"),
+    "/api/v1/starting": (503, '{"detail": "the robot is starting"}'),
     "/api/v1/list": (200, "[1, 2]"),
     "/api/v1/cut": (200, '{"phase":'),
 }
@@ -70,8 +71,13 @@ def test_values_are_sent_with_the_token(address: str) -> None:
 def test_a_refusal_has_the_reason_of_the_server(address: str) -> None:
     with pytest.raises(RequestRefusedError, match=r"^it stands already$"):
         PageApi(address, "abc").send("stop")
-    with pytest.raises(RequestRefusedError, match="503"):
+    with pytest.raises(RequestRefusedError, match="404"):
         PageApi(address).get("api/v1/gone")
+
+
+def test_a_robot_that_does_not_answer_its_server_is_unavailable(address: str) -> None:
+    with pytest.raises(RobotUnavailableError, match=r"^the robot is starting$"):
+        PageApi(address).get("api/v1/starting")
 
 
 @pytest.mark.parametrize("path", ["list", "cut"])
