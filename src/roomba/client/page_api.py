@@ -47,8 +47,8 @@ class PageApi:
                 told = json.load(answer)
         except urllib.error.HTTPError as refusal:
             is_silent = refusal.code == HTTPStatus.SERVICE_UNAVAILABLE
-            kind = RobotUnavailableError if is_silent else RequestRefusedError
-            raise kind(_reason_of(refusal)) from refusal
+            raised = RobotUnavailableError if is_silent else RequestRefusedError
+            raise raised(_reason_of(refusal)) from refusal
         except (OSError, ValueError, http.client.HTTPException) as error:
             raise RobotUnavailableError(f"the robot cannot be reached: {error}") from error
         if not isinstance(told, dict):

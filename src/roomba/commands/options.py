@@ -6,6 +6,7 @@ import argparse
 import math
 import os
 import re
+import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -17,6 +18,7 @@ Named: TypeAlias = tuple[str, Path | None]
 """An option, and the file that it names."""
 MOST_SEED: Final = 2**63 - 1
 _STANDARD_OUTPUT: Final = "-"
+_HELP: Final = ("-h", "--help")
 
 
 class UsageError(RoombaError):
@@ -31,6 +33,15 @@ class Parser(argparse.ArgumentParser):
         super().__init__(prog=program, allow_abbrev=False, description=description, epilog=epilog)
         # Python's own pattern knows no exponents: -1e-05 would be taken for an option.
         self._negative_number_matcher = re.compile(r"-(\.?\d|inf|nan)")
+
+    def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
+        """Parse a command line; ``--help`` is obeyed wherever it stands, also where a value is due.
+
+        Raises UsageError, and SystemExit for ``--help``.
+        """
+        words = sys.argv[1:] if args is None else args
+        is_help_due = any(word in _HELP for word in words)
+        return super().parse_args(["--help"] if is_help_due else words)
 
     def error(self, message: str) -> NoReturn:
         """Raise UsageError."""

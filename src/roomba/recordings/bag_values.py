@@ -14,9 +14,11 @@ import numpy as np
 
 from roomba.geometry import Pose
 from roomba.perception.matching.mounts import FrameTransform, frame_name
+from roomba.perception.matching.plausible import scan_fault
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.recordings.log import MountOf
 from roomba.recordings.readings import (
+    UNUSABLE_ODOMETRY,
     UNUSABLE_SCANS,
     Kind,
     LidarScan,
@@ -99,21 +101,21 @@ def transforms_in(message: Any) -> Iterator[tuple[float, FrameTransform]]:
 def _scan(message: Any, lidars: LidarBook) -> Value | Refused:
     ranges = np.asarray(message.ranges, np.float32)
     first, step = message.angle_min, message.angle_increment
-    if not (math.isfinite(first) and math.isfinite(step)):
-        return Refused(UNUSABLE_SCANS, f"its angles begin at {first:g} and go on by {step:g} rad")
-    if not len(ranges) or (step == 0.0 and len(ranges) > 1):
-        return Refused(UNUSABLE_SCANS, f"{len(ranges)} beams from {first:g} on by {step:g} rad")
-    nearest, farthest = message.range_min, message.range_max
-    if math.isnan(farthest) or not 0.0 <= nearest < farthest:
-        return Refused(UNUSABLE_SCANS, f"its ranges count from {nearest:g} to {farthest:g} m")
+    fault = scan_fault(ranges, first, step, message.range_min, message.range_max)
+    if fault:
+        return Refused(UNUSABLE_SCANS, fault)
     return LidarScan(ranges, lidars.lidar_of(message))
 
 
 def _odometry(message: Any, lidars: LidarBook) -> Value | Refused:
-    pose = message.pose if isinstance(message, FrameTransform) else _pose(message.pose.pose)
-    if not pose.is_finite:
-        return Refused("messages of odometry", _NOT_FINITE)
-    return Odometry(pose)
+    if isinstance(message, FrameTransform):
+        pose = message.pose
+    else:
+        turn = message.pose.pose.orientation
+        if not any((turn.x, turn.y, turn.z, turn.w)):
+            return Refused(UNUSABLE_ODOMETRY, "its orientation is (0, 0, 0, 0), which is none")
+        pose = _pose(message.pose.pose)
+    return Odometry(pose) if pose.is_finite else Refused(UNUSABLE_ODOMETRY, _NOT_FINITE)
 
 
 def _true_pose(message: Any, lidars: LidarBook) -> Value | Refused:

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from roomba.geometry import Pose, wrap_angle
 from roomba.perception.matching.mounts import FrameTransform
+from roomba.perception.matching.plausible import FARTHEST_ECHO, scan_fault
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.recordings.log import Arrival, Channel, Frames, MountOf
 from roomba.recordings.packed import Unpacked
@@ -51,6 +52,8 @@ _LISTED: Final = 10
 """First words of a file that is no log, in its refusal."""
 _LONGEST: Final = 30
 """Characters of each."""
+_LONGEST_REASON: Final = 80
+"""Characters of why a line cannot be read."""
 _NARROW: Final = (400, 401)
 """Readings of a FLASER over 100 degrees."""
 _ECHO: Final = 0.998
@@ -89,9 +92,13 @@ class _Line(NamedTuple):
     ranges: NDArray[np.float32] | None
 
 
+def _cut(text: str, longest: int) -> str:
+    return text if len(text) <= longest else f"{text[:longest]}…"
+
+
 def _shown(words: Iterable[str]) -> str:
     """Return the first words, each cut: a file of another kind may be one long word, or many."""
-    shown = [word if len(word) <= _LONGEST else f"{word[:_LONGEST]}…" for word in words]
+    shown = [_cut(word, _LONGEST) for word in words]
     return ", ".join(shown[:_LISTED]) + (", …" if len(shown) > _LISTED else "")
 
 
@@ -104,15 +111,20 @@ class CarmenLog:
         self.notes: list[str] = []
         self._parameters: dict[str, float] = {}
         self._broken = 0
+        self._first_broken = ""
         self._other: Counter[str] = Counter()
         self._lines = self._read(path)
-        if not self._lines:
-            raise LogError(
-                f"{path}: expected lines {', '.join(WORDS[:-1])} of a CARMEN log, got none; it has "
-                f"{_shown(self._other) or 'nothing'}"
-            )
         if self._broken:
-            self.notes.append(f"{self._broken} lines of {path.name} cannot be read: left out")
+            self.notes.append(
+                f"{self._broken} lines of {path.name} cannot be read: left out (the first: "
+                f"{self._first_broken})"
+            )
+        if not self._lines:
+            there = self.notes or [f"it has {_shown(self._other) or 'nothing'}"]
+            raise LogError(
+                f"{path}: expected lines {', '.join(WORDS[:-1])} of a CARMEN log, got none; "
+                f"{'; '.join(there)}"
+            )
         self._go_on()
         self._tell_apart()
         largest = max((_largest(line.ranges) for line in self._lines), default=0.0)
@@ -163,11 +175,13 @@ class CarmenLog:
     ) -> Value | Refused:
         if channel.kind is Kind.ODOMETRY and line.odometry is not None:
             return Odometry(line.odometry)
-        if line.fan is None or line.ranges is None or not line.fan.beams:
+        if line.fan is None or line.ranges is None:
             return Refused(UNUSABLE_SCANS, "it has no beams")
-        key = (line.word, line.fan)
+        fan, key = line.fan, (line.word, line.fan)
+        fault = scan_fault(line.ranges, fan.first, fan.step, _NEAREST, fan.farthest or math.inf)
+        if fault:
+            return Refused(UNUSABLE_SCANS, fault)
         if key not in lidars:
-            fan = line.fan
             angles = fan.first + fan.step * np.arange(fan.beams)
             farthest = min(fan.farthest or math.inf, self._farthest)
             mount = mount_of(channel.name, Kind.SCAN)
@@ -179,11 +193,12 @@ class CarmenLog:
         file = Unpacked(path)
         try:
             with file.path.open(encoding="utf-8", errors="replace") as text:
-                return [line for each in text if (line := self._parse(each.split())) is not None]
+                lines = (self._parse(number, each.split()) for number, each in enumerate(text, 1))
+                return [line for line in lines if line is not None]
         finally:
             file.close()
 
-    def _parse(self, words: list[str]) -> _Line | None:
+    def _parse(self, number: int, words: list[str]) -> _Line | None:
         if not words or words[0].startswith("#"):
             return None
         word = words[0]
@@ -196,9 +211,16 @@ class CarmenLog:
                 return parse(words)
             if words[1] in _MOUNT_PARAMETERS:
                 self._parameters[words[1]] = _finite(words[2])
-        except (ValueError, IndexError):
-            self._broken += 1
+        except IndexError:
+            self._note_broken(number, word, f"it has {len(words)} words only")
+        except ValueError as error:
+            self._note_broken(number, word, str(error))
         return None
+
+    def _note_broken(self, number: int, word: str, reason: str) -> None:
+        self._broken += 1
+        if not self._first_broken:
+            self._first_broken = f"line {number}, {word}: {_cut(reason, _LONGEST_REASON)}"
 
     def _go_on(self) -> None:
         """Let times go on where the clock was set back, as between two drives in a file."""
@@ -344,8 +366,7 @@ def _finite(word: str) -> float:
 
 
 def _largest(ranges: NDArray[np.float32] | None) -> float:
-    """Return the largest finite range, m; 0 of none."""
+    """Return the largest range that a lidar may measure, m; 0 of none."""
     if ranges is None:
         return 0.0
-    finite = ranges[np.isfinite(ranges)]
-    return float(finite.max()) if finite.size else 0.0
+    return float(ranges.max(initial=0.0, where=ranges <= FARTHEST_ECHO))

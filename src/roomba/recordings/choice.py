@@ -19,6 +19,12 @@ _TYPES: Final = {
     Kind.ODOMETRY: "nav_msgs/Odometry",
     Kind.GYRO: "sensor_msgs/Imu",
 }
+_WORDS: Final = {
+    Kind.SCAN: "scans of a lidar",
+    Kind.ODOMETRY: "odometry",
+    Kind.GYRO: "readings of a gyro",
+}
+"""What a text has in place of messages of these types."""
 _BESIDE: Final = {
     Kind.LIFTED: ("wheel_drop",),
     Kind.TOLD: ("initialpose", "amcl_pose"),
@@ -62,6 +68,11 @@ class Chosen:
     def has_odometry(self) -> bool:
         """Whether one of them is of odometry."""
         return any(channel.kind is Kind.ODOMETRY for channel in self.channels)
+
+    def without_odometry(self) -> Chosen:
+        """Return the same without a channel of odometry."""
+        kept = (channel for channel in self.channels if channel.kind is not Kind.ODOMETRY)
+        return Chosen(tuple(kept), self.notes)
 
     def name(self, kind: Kind) -> str | None:
         """Return the name of the channel of a kind; None if there is none."""
@@ -158,11 +169,16 @@ def _named(paths: Sequence[Path], channels: Sequence[Channel], kind: Kind, name:
     got = f"it is {there[0].type}" if there else "there is none"
     option = _OPTIONS[kind]
     fitting = " or ".join(f"{option} {each.name}" for each in channels if each.kind is kind)
-    hint = f"try {fitting}" if fitting else f"no other one is {_TYPES[kind]} either"
     is_topic = all(each.name.startswith("/") for each in channels)
+    if is_topic:
+        sought = f"{_TYPES[kind]} on {spellings[-1]}"
+        hint = f"try {fitting}" if fitting else f"no other one is {_TYPES[kind]} either"
+    else:
+        sought = _WORDS[kind] if name == _USUAL[kind] else f"{_WORDS[kind]} in lines {name}"
+        hint = f"try {fitting}" if fitting else "no lines tell any"
     raise LogError(
-        f"{', '.join(map(str, paths))}: expected {_TYPES[kind]} on "
-        f"{spellings[-1] if is_topic else name}, {got}; {hint}. There is {_listed(channels)}"
+        f"{', '.join(map(str, paths))}: expected {sought}, {got}; {hint}. There is "
+        f"{_listed(channels)}"
     )
 
 

@@ -20,6 +20,7 @@ from roomba.recordings.readings import (
     UNUSABLE_SCANS,
     Kind,
     LidarScan,
+    LogError,
     Reading,
     Refused,
     Value,
@@ -50,6 +51,8 @@ class LoggedDrive:
     def __init__(self, paths: Sequence[Path], wanted: Wanted | None = None) -> None:
         """Open; raises LogError."""
         wanted = wanted or Wanted()
+        self.keeps_odometry = wanted.needs_odometry or wanted.odometry is not None
+        """Whether it does not go by scans alone: odometry is needed, or was named."""
         self.counts = StampCounts()
         self.refused: Counter[str] = Counter()
         """How many messages of what could not be used."""
@@ -61,11 +64,21 @@ class LoggedDrive:
             channels = _together(self._logs)
             self.names = frozenset(channel.name for channel in channels)
             """Of all channels, also of those that are not read."""
-            self._chosen = chosen(paths, channels, wanted)
+            self._chosen = self._chosen_of(paths, channels, wanted)
             self._frames = self._told_frames()
             self._mounting = Mounting(self._logs, self._frames.body, wanted)
             self._times, self._arrivals, self._owners, self._order = self._timed()
             self._stack = stack.pop_all()
+
+    def _chosen_of(
+        self, paths: Sequence[Path], channels: Sequence[Channel], wanted: Wanted
+    ) -> Chosen:
+        """Return what to read; raises LogError, which tells as well what could not be read."""
+        try:
+            return chosen(paths, channels, wanted)
+        except LogError as error:
+            notes = [note for log in self._logs for note in log.notes]
+            raise LogError("; ".join([str(error), *notes])) from None
 
     def __enter__(self) -> LoggedDrive:
         """Return itself."""
@@ -96,6 +109,10 @@ class LoggedDrive:
         own = [*self._remarks, *self._mounting.notes]
         return [*self._chosen.notes, *own, *of_logs, *left_out]
 
+    def reason_of(self, what: str) -> str:
+        """Return why the first one of what was refused could not be used; "" of none."""
+        return self._reasons.get(what, "")
+
     @property
     def is_mount_told(self) -> bool:
         """Whether ``--laser`` or a recorded transform told where each lidar is that was read."""
@@ -104,6 +121,13 @@ class LoggedDrive:
     def take_mount(self, shown: Mount) -> None:
         """From now on read scans as of a lidar that is so mounted, where nothing tells."""
         self._mounting.take(shown)
+
+    def leave_odometry(self, reason: str) -> None:
+        """Read no odometry from now on, and tell why."""
+        self._chosen = self._chosen.without_odometry()
+        self.counts = StampCounts()
+        self._remarks = [f"the odometry is not used, it goes by scans alone: {reason}"]
+        self._times, self._arrivals, self._owners, self._order = self._timed()
 
     def take_sweep(self, sweep: Sweep) -> None:
         """Read all scans from now on by ``sweep`` instead of what the driver tells of it."""

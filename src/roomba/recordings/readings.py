@@ -15,6 +15,8 @@ from roomba.perception.matching.scan_view import LidarModel
 
 UNUSABLE_SCANS: Final = "scans that cannot be used"
 """What is refused of the lidar."""
+UNUSABLE_ODOMETRY: Final = "messages of odometry"
+"""What is refused of the odometry."""
 
 
 class LogError(RoombaError):

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 from sensor_msgs.msg import LaserScan
 
+from roomba.perception.matching.plausible import scan_fault
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.readings import ScanReading
-from roomba_ros.convert.errors import MessageError, require_finite
+from roomba_ros.convert.errors import MessageError
 from roomba_ros.convert.mounts import Mount, Mounts
 
 
@@ -34,13 +35,13 @@ class ScanDecoder:
         """Return a scan, of time 0 if that was not told.
 
         Ranges that are not finite met nothing, or failed (REP 117). Raises MessageError for a scan
-        that has no beams, or angles that are none.
+        that can be none.
         """
         ranges = np.array(message.ranges, np.float32)
+        _require_scan(message, ranges)
         return ScanReading(message.header.stamp.to_sec(), ranges, self._lidar_of(message))
 
     def _lidar_of(self, message: LaserScan) -> LidarModel:
-        _require_fan(message)
         mount = self._mount_of(message.header.frame_id)
         key = (
             len(message.ranges),
@@ -64,22 +65,20 @@ def _lidar(message: LaserScan, mount: Mount) -> LidarModel:
     return LidarModel(angles, *ranges, mount.pose, message.time_increment)
 
 
-def _require_fan(message: LaserScan) -> None:
-    """Raise MessageError unless the beams go to as many different directions as there are beams."""
-    beams, first, step = len(message.ranges), message.angle_min, message.angle_increment
-    require_finite("a scan's angles", first, step)
-    if not beams or (step == 0.0 and beams > 1):
-        raise MessageError(
-            f"expected a scan with beams, each at another angle, got {beams} from {first:g} on by "
-            f"{step:g} rad"
-        )
+def _require_scan(message: LaserScan, ranges: NDArray[np.float32]) -> None:
+    """Raise MessageError for a scan that can be none."""
+    fault = scan_fault(
+        ranges,
+        message.angle_min,
+        message.angle_increment,
+        message.range_min,
+        message.range_max,
+    )
+    if fault:
+        raise MessageError(fault)
     # How many beams there are does not follow from angle_max: drivers round it, or leave it out.
+    beams = len(ranges)
     if len(message.intensities) not in (0, beams):
         raise MessageError(
             f"expected {beams} intensities, as there are ranges, got {len(message.intensities)}"
-        )
-    if math.isnan(message.range_max) or not 0.0 <= message.range_min < message.range_max:
-        raise MessageError(
-            f"expected ranges from 0 m or more on up to a larger one, got "
-            f"{message.range_min:g} to {message.range_max:g} m"
         )

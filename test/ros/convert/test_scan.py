@@ -103,12 +103,12 @@ def test_a_range_that_is_no_number_met_nothing(ranges: list[float]) -> None:
 
 @pytest.mark.parametrize("number", BAD)
 def test_angles_and_limits_that_are_no_numbers_are_refused(number: float) -> None:
-    with pytest.raises(MessageError, match="a scan's angles of finite numbers"):
+    with pytest.raises(MessageError, match="expected finite angles"):
         decoder().decode(filled("sensor_msgs/LaserScan", number))
     for field in ("angle_min", "angle_increment"):
         message = scan(4)
         setattr(message, field, number)
-        with pytest.raises(MessageError, match="a scan's angles of finite numbers"):
+        with pytest.raises(MessageError, match="expected finite angles"):
             decoder().decode(message)
     message = scan(4)
     message.range_min = number
@@ -134,6 +134,17 @@ def test_scans_of_the_wrong_size_are_refused() -> None:
     message.angle_increment = 0.0
     with pytest.raises(MessageError, match="each at another angle"):
         decoder().decode(message)
+
+
+def test_scans_in_other_units_are_refused() -> None:
+    degrees = scan(180)
+    degrees.angle_min, degrees.angle_increment = -90.0, 1.0
+    with pytest.raises(MessageError, match="are the angles in degrees"):
+        decoder().decode(degrees)
+    millimetres = scan(4)
+    millimetres.ranges, millimetres.range_max = [2000.0] * 4, 8000.0
+    with pytest.raises(MessageError, match="are they in mm"):
+        decoder().decode(millimetres)
 
 
 @pytest.mark.parametrize("number", BAD)

@@ -59,6 +59,18 @@ def test_a_parser_refuses_in_one_line_and_takes_numbers_below_zero() -> None:
         parser.parse_args(["--where"])
 
 
+@pytest.mark.parametrize("words", [["--bag", "--help"], ["-h"], ["x", "--none", "--help"]])
+def test_help_is_given_wherever_it_is_asked_for(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    parser = Parser("./roomba map", "Make a map.", "Lengths in m.")
+    parser.add_argument("--bag", nargs="+", required=True)
+    with pytest.raises(SystemExit) as ended:
+        parser.parse_args(words)
+    assert ended.value.code == 0
+    assert capsys.readouterr().out.startswith("usage: ./roomba map")
+
+
 def test_figures_go_to_standard_output_or_a_file() -> None:
     assert file_of("-") is None
     assert file_of(None) is None

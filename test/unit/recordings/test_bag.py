@@ -8,11 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures.drives import made_logs
 from fixtures.drives.made_logs import (
     BEGAN,
     LASER,
     PERIOD,
     Item,
+    Messages,
     changed,
     drive,
     write_bag,
@@ -225,6 +227,38 @@ def test_messages_that_make_no_sense_are_refused_with_the_reason(tmp_path: Path)
     refused = [value for _, value in read(log, *log.channels[1:3]) if isinstance(value, Refused)]
     refused += [value for _, value in read(log, *log.channels[:1]) if isinstance(value, Refused)]
     assert {each.what for each in refused} == {"scans that cannot be used", "messages of odometry"}
+    log.close()
+
+
+def test_odometry_without_an_orientation_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def zeros(made: Messages, theta: float) -> object:
+        return made._make("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=0.0, w=0.0)
+
+    monkeypatch.setattr(Messages, "_turn", zeros)
+    items = [item for item in drive(2.0) if item.topic == "/odom"]
+    log = BagLog(write_bag(tmp_path / "made.bag", items, with_mount=False))
+    [odometry] = [each for each in log.channels if each.kind is Kind.ODOMETRY]
+    refused = {value for _, value in read(log, odometry)}
+    assert refused == {
+        Refused("messages of odometry", "its orientation is (0, 0, 0, 0), which is none")
+    }
+    log.close()
+
+
+def test_scans_in_millimetres_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def in_millimetres(number: int, item: Item) -> Item:
+        assert isinstance(item.value, np.ndarray)
+        return replace(item, value=1e3 * item.value)
+
+    items = changed(drive(1.0), "/scan", in_millimetres)
+    monkeypatch.setattr(made_logs, "FARTHEST", 1e3 * made_logs.FARTHEST)
+    log = BagLog(write_bag(tmp_path / "made.bag", items))
+    [scans] = [each for each in log.channels if each.kind is Kind.SCAN]
+    for _, value in read(log, scans):
+        assert isinstance(value, Refused)
+        assert "are they in mm?" in value.reason
     log.close()
 
 

@@ -11,6 +11,7 @@ from fixtures.drives.made_logs import LASER, NO_ECHO, drive, write_carmen
 
 from roomba.geometry import Pose
 from roomba.perception.matching.mounts import Mount, Mounts
+from roomba.perception.matching.plausible import FARTHEST_ECHO
 from roomba.recordings.carmen import BASE, CarmenLog
 from roomba.recordings.drive import LoggedDrive
 from roomba.recordings.log import Channel
@@ -157,7 +158,11 @@ def test_no_echo_is_known_by_the_largest_number_of_the_log(tmp_path: Path) -> No
 def test_broken_lines_are_left_out_and_counted(tmp_path: Path) -> None:
     broken = ["FLASER 5 1.0 2.0", "ODOM nan 0 0 0 0 0 1 h 1", "FLASER x", "ODOM 1 2", "NEWS a b"]
     log = log_of(tmp_path, *broken, FLASER, "FLASER 0 0 0 0 0 0 0 13.0 nohost 1.0")
-    assert log.notes == ["4 lines of made.log cannot be read: left out"]
+    [note] = log.notes
+    assert note == (
+        "4 lines of made.log cannot be read: left out (the first: line 1, FLASER: expected 5 "
+        "ranges, got 2)"
+    )
     assert [(each.name, each.kind) for each in log.channels] == [
         ("FLASER", Kind.SCAN),
         ("FLASER", Kind.ODOMETRY),
@@ -165,7 +170,33 @@ def test_broken_lines_are_left_out_and_counted(tmp_path: Path) -> None:
     ]
     scan, empty = values(log, channel(log, "FLASER", Kind.SCAN))
     assert isinstance(scan, LidarScan)
-    assert empty == Refused("scans that cannot be used", "it has no beams")
+    assert isinstance(empty, Refused)
+    assert empty.what == "scans that cannot be used"
+    assert "expected a scan with beams" in empty.reason
+
+
+def test_a_log_of_broken_lines_alone_is_refused_with_what_is_wrong_with_the_first(
+    tmp_path: Path,
+) -> None:
+    lines = ["# a comment", "FLASER 2 1,0 2,0 0 0 0 0 0 0 1 h 1"]
+    with pytest.raises(LogError, match=r"got none; 1 lines of .* line 2, FLASER: .*'1,0'"):
+        log_of(tmp_path, *lines)
+
+
+def test_scans_in_centimetres_are_refused(tmp_path: Path) -> None:
+    scan = "FLASER 3 400.0 500.0 600.0 0 0 0 0 0 0 12.5 nohost 0.25"
+    log = log_of(tmp_path, scan)
+    [refused] = values(log, channel(log, "FLASER", Kind.SCAN))
+    assert isinstance(refused, Refused)
+    assert "3 of 3 that are farther, 500 m in the middle: are they in mm?" in refused.reason
+
+
+def test_a_lone_beam_that_is_too_far_to_be_true_met_nothing(tmp_path: Path) -> None:
+    scan = "FLASER 3 1.0 2.0 1e7 0 0 0 0 0 0 12.5 nohost 0.25"
+    log = log_of(tmp_path, scan)
+    [value] = values(log, channel(log, "FLASER", Kind.SCAN))
+    assert isinstance(value, LidarScan)
+    assert value.lidar.arrays().farthest <= FARTHEST_ECHO
 
 
 @pytest.mark.parametrize("content", ["x" * 100_000, "\n".join(f"word{n}" for n in range(5000))])

@@ -137,6 +137,24 @@ def test_what_is_missing_is_told_with_what_there_is(
         assert f"{channel.name} ({channel.type}, {channel.messages})" in told
 
 
+def test_of_a_text_log_what_is_missing_is_told_in_its_words() -> None:
+    odometry = Channel("ODOM", Kind.ODOMETRY, "line", 9)
+    for channels, wanted, said in (
+        ([odometry], Wanted(), "expected scans of a lidar, there is none; no lines tell any"),
+        ([odometry], Wanted(scan="FLASER"), "expected scans of a lidar in lines FLASER, there"),
+    ):
+        with pytest.raises(LogError, match=said):
+            chosen([Path("a.log")], channels, wanted)
+
+
+def test_odometry_may_be_left_out_afterwards() -> None:
+    found = chosen(PATHS, [SCAN, ODOM, IMU], Wanted())
+    assert found.has_odometry
+    left = found.without_odometry()
+    assert not left.has_odometry
+    assert list(left.channels) == [each for each in found.channels if each != ODOM]
+
+
 def test_of_very_many_channels_only_some_are_listed() -> None:
     many = [IMAGE._replace(name=f"/image{number}") for number in range(100)]
     with pytest.raises(LogError, match=r"/image29 .*and 70 more$"):

@@ -27,7 +27,7 @@ from roomba.perception.matching.mounts import Mount
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.recordings.choice import Wanted
 from roomba.recordings.drive import LoggedDrive
-from roomba.recordings.readings import LidarScan, Odometry, Reading
+from roomba.recordings.readings import LidarScan, LogError, Odometry, Reading
 from roomba.recordings.sweeps import Sweep
 
 SECONDS = 6.0
@@ -245,6 +245,33 @@ def test_what_is_refused_is_counted_once_though_a_drive_is_read_twice(tmp_path: 
         assert list(recorded.refused_scans.values()) == [30]
 
 
+def test_odometry_can_be_left_out_and_that_is_told(tmp_path: Path) -> None:
+    with LoggedDrive([write_bag(tmp_path / "made.bag", drive(SECONDS))]) as recorded:
+        list(recorded.readings())
+        recorded.leave_odometry("it is in feet")
+        kinds = {type(value) for _, value, _ in recorded.readings()}
+        assert kinds == {LidarScan}
+        assert not recorded.chosen.has_odometry
+        assert "the odometry is not used, it goes by scans alone: it is in feet" in recorded.notes
+
+
+def test_odometry_that_was_named_is_kept(tmp_path: Path) -> None:
+    bag = write_bag(tmp_path / "made.bag", drive(SECONDS))
+    for wanted, keeps in (
+        (Wanted(odometry="/odom", needs_odometry=False), True),
+        (Wanted(needs_odometry=True), True),
+        (Wanted(needs_odometry=False), False),
+    ):
+        with LoggedDrive([bag], wanted) as recorded:
+            assert recorded.keeps_odometry is keeps
+
+
+def test_what_of_a_log_cannot_be_read_is_told_with_what_is_missing(tmp_path: Path) -> None:
+    (tmp_path / "made.log").write_text("FLASER 3 1.0\nODOM 1 2 0 0 0 0 1 h 1\n", "utf-8")
+    with pytest.raises(LogError, match=r"no lines tell any.*; 1 lines of made\.log cannot be read"):
+        LoggedDrive([tmp_path / "made.log"])
+
+
 def test_a_log_and_a_bag_of_the_same_drive_say_the_same(tmp_path: Path) -> None:
     items = drive(SECONDS)
     readings, recorded = read([write_carmen(tmp_path / "made.log", items)])
@@ -271,6 +298,6 @@ def test_what_is_refused_is_counted_with_its_first_reason(tmp_path: Path) -> Non
     )
     readings, recorded = read([write_bag(tmp_path / "made.bag", items)])
     [(what, count)] = recorded.refused_scans.items()
-    assert (count, "0 beams" in what) == (10, True)
+    assert (count, "got 0 from" in what) == (10, True)
     assert sum(isinstance(value, LidarScan) for _, value, _ in readings) == 20
     assert math.isclose(readings[-1].stamp, BEGAN + SECONDS - 0.5 * PERIOD, abs_tol=1e-6)

@@ -13,7 +13,7 @@ from roomba.commands.localize.files import OUTPUT_TOPICS, RowBag, RowFile, RowTa
 from roomba.commands.localize.options import LocalizeOptions
 from roomba.commands.localize.replay import Replay, Row
 from roomba.commands.localize.tally import Tally
-from roomba.commands.map.drive.looking import look_at_lidar
+from roomba.commands.map.drive.looking import look_at_drive
 from roomba.commands.progress import Show
 from roomba.configuration.robot import load_robot_config
 from roomba.files.shipped import CONFIGURATION
@@ -62,7 +62,7 @@ def localized_drive(
     Raises LogError for logs that cannot be read, and OSError for files that cannot be written.
     """
     with LoggedDrive(options.logs, options.wanted) as drive:
-        look_at_lidar(drive)
+        look_at_drive(drive)
         config = load_robot_config(CONFIGURATION / "robot.yaml")
         replay, tally = Replay(occupancy, config, options.start), Tally()
         _replay(drive, replay, tally, options, show)

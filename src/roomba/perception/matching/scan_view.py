@@ -21,6 +21,7 @@ from roomba.perception.matching.fit_kernels import (
     judge,
 )
 from roomba.perception.matching.match_kernels import beam_ends
+from roomba.perception.matching.plausible import FARTHEST_ECHO
 from roomba.perception.matching.reckoned_path import ReckonedPath
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.matching.sweep import SWEEP_WORK, at_once
@@ -75,7 +76,8 @@ class LidarModel:
         self._step = float(angles[1] - angles[0]) if self.beams > 1 else 2.0 * np.pi
         self._directions = np.column_stack((np.cos(angles), np.sin(angles)))
         # Ranges are float32: one as long as the farthest is told for no echo.
-        self._nearest, self._farthest = float(nearest), float(np.float32(farthest))
+        self._nearest = float(nearest)
+        self._farthest = float(np.float32(min(farthest, FARTHEST_ECHO)))
         is_sweep = abs(time_increment) * self.beams <= _LONGEST_SWEEP
         self.time_increment = float(time_increment) if is_sweep else 0.0
         self._arrays: LidarBeams | None = None

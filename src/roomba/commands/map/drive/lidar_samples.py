@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
@@ -62,7 +62,10 @@ class _Path:
 
 
 class LidarSamples:
-    """Scans that were kept, in the order of time; ``period`` is the usual time between two, s."""
+    """Scans that were kept, in the order of time.
+
+    ``period`` is the usual time between two, s, ``odometry_period`` that of odometry; 0 without.
+    """
 
     def __init__(self, readings: Iterable[Reading]) -> None:
         """Keep scans until there are enough, and all odometry till then."""
@@ -86,9 +89,14 @@ class LidarSamples:
         path = np.array(rows).reshape(-1, 4)
         path[:, 3] = np.unwrap(path[:, 3])
         self._path = _Path(path)
-        self.period = float(np.median(np.diff(stamps))) if len(stamps) > 1 else 0.0
+        self.period, self.odometry_period = _period(stamps), _period(path[:, 0])
         self._kept = kept if len(rows) >= _TIMES else []
         self._swept: dict[Sweep, SweptScans] = {}
+
+    @property
+    def has_odometry(self) -> bool:
+        """Whether there is enough odometry to tell anything."""
+        return bool(self._kept)
 
     @cached_property
     def scans(self) -> list[Sample]:
@@ -127,14 +135,19 @@ class LidarSamples:
 
 
 def laid_on(
-    place: Floats, points: Floats, around: Floats, window: float, turn: float
+    place: Floats, points: Floats, around: Floats, window: float, turn: float, least: float = 0.0
 ) -> CorrelativeMatch | None:
     """Lay the points of a scan on those of another one, ``place``.
 
     Both are as :meth:`LidarSamples.points` returns them. Returns the best pose within ``window``,
     m, and ``turn``, rad, of the pose ``around`` [3] in the frame of ``place``; None if one of them
-    shows nothing near, or they fit nowhere.
+    shows nothing near, or they fit nowhere by a mean likelihood of more than ``least``, 0..1.
     """
     if not (np.hypot(place[:, 0], place[:, 1]) < _REACH).any():
         return None
-    return CorrelativeMatcher(place, _REACH).best(points, around, window, turn, 0.0)
+    return CorrelativeMatcher(place, _REACH).best(points, around, window, turn, least)
+
+
+def _period(stamps: Sequence[float] | Floats) -> float:
+    """Return the usual time between two stamps, s; 0 of fewer."""
+    return float(np.median(np.diff(stamps))) if len(stamps) > 1 else 0.0

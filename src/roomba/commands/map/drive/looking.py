@@ -1,4 +1,4 @@
-"""A look at the lidar of a drive before that is followed: what was not told, or told wrong."""
+"""A look at a drive before it is followed: what was not told of it, or told wrong."""
 
 from __future__ import annotations
 
@@ -6,25 +6,46 @@ from typing import Final
 
 from roomba.commands.map.drive.lidar_samples import LidarSamples
 from roomba.commands.map.drive.shown_mount import ShownMount, shown_mount
+from roomba.commands.map.drive.shown_odometry import odometry_fault
 from roomba.commands.map.drive.shown_sweep import shown_sweep
 from roomba.geometry import Pose
 from roomba.perception.matching.mounts import Mount
 from roomba.recordings.drive import LoggedDrive
 from roomba.recordings.mounting import degrees_aside
+from roomba.recordings.readings import UNUSABLE_ODOMETRY
 
 _ANOTHER_WAY: Final = 0.25
 """rad; a lidar that looks so far to a side is not taken to look ahead. Less is what its mounting is
 off, as the map's calibration tells."""
 
 
-def look_at_lidar(drive: LoggedDrive) -> None:
-    """Find out how the lidar is mounted and how it sweeps; have the drive read so, and say so.
-
-    A mount that was told is left as it is. Without odometry nothing is found out.
-    """
+def look_at_drive(drive: LoggedDrive) -> None:
+    """Find out what odometry and lidar are like; have the drive read so, and say so."""
     if not drive.chosen.has_odometry:
         return
     samples = LidarSamples(drive.readings())
+    fault = _odometry_fault(drive, samples)
+    if fault and not drive.keeps_odometry:
+        drive.leave_odometry(fault)
+        return
+    if fault:
+        drive.remark(f"the odometry is doubtful: {fault}")
+    _look_at_lidar(drive, samples)
+
+
+def _odometry_fault(drive: LoggedDrive, samples: LidarSamples) -> str:
+    """Return what is wrong with the odometry; "" if nothing is."""
+    unusable = drive.reason_of(UNUSABLE_ODOMETRY)
+    if unusable and not samples.has_odometry:
+        return f"none of it can be used: {unusable}"
+    return odometry_fault(samples)
+
+
+def _look_at_lidar(drive: LoggedDrive, samples: LidarSamples) -> None:
+    """Find out how the lidar is mounted and how it sweeps.
+
+    A mount that was told is left as it is. Without odometry nothing is found out.
+    """
     shown = shown_mount(samples)
     is_other = shown is not None and _is_other(shown)
     if shown is not None and is_other:

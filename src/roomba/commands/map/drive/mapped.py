@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.commands.map.drive.looking import look_at_lidar
+from roomba.commands.map.drive.looking import look_at_drive
 from roomba.commands.map.drive.replay import MapReplay
 from roomba.commands.progress import Show
 from roomba.configuration.frozen import load_config
@@ -70,7 +70,7 @@ def mapped_drive(logs: Sequence[Path], wanted: Wanted, show: Show) -> MappedDriv
     Raises LogError for logs that cannot be read, or that show too little.
     """
     with LoggedDrive(logs, wanted) as drive:
-        look_at_lidar(drive)
+        look_at_drive(drive)
         start = _first_truth(drive)
         replay, true = _replayed(drive, start or Pose(), show)
         notes = (*drive.notes, *replay.notes)

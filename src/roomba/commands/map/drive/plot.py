@@ -29,7 +29,10 @@ def write_plot(path: Path, done: MappedDrive) -> None:
 
 @drawn
 def picture_of(done: MappedDrive) -> Figure:
-    """Return the picture of a drive: its map, and beside it the one by odometry alone."""
+    """Return the picture of a drive: its map, and beside it the one by odometry alone.
+
+    Without odometry that is the map as if the robot always went on at its pace.
+    """
     blind = done.replay.blind.occupancy()
     area = area_of_maps([done.occupancy, blind])
     figure = empty_figure(_WIDTH, height_for(area, 0.46 * _WIDTH) + _REST)
@@ -40,7 +43,7 @@ def picture_of(done: MappedDrive) -> Figure:
     ours.set_title("its map, the way, and where it began")
     draw_map(theirs, blind)
     draw_way(theirs, done.replay.by_odometry[:, 1:3])
-    theirs.set_title("by odometry alone")
+    theirs.set_title(f"by {'odometry' if done.replay.has_odometry else 'its pace'} alone")
     for axes in (ours, theirs):
         axes.set(xlim=(area[0], area[2]), ylim=(area[1], area[3]))
     figure.suptitle(

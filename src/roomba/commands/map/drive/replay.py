@@ -88,8 +88,16 @@ class MapReplay:
         self._waiting = WaitingScan()
 
     @property
+    def has_odometry(self) -> bool:
+        """Whether the drive has odometry that is used."""
+        return self._by_scans is None
+
+    @property
     def by_odometry(self) -> NDArray[np.float64]:
-        """Rows of t (s), x, y (m), theta (rad) at each scan by odometry alone."""
+        """Rows of t (s), x, y (m), theta (rad) at each scan by odometry alone.
+
+        Without odometry: as if the robot always went on as it did between the scans before.
+        """
         return np.array(self._blind_rows).reshape(-1, 4)
 
     @property

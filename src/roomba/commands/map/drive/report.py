@@ -16,8 +16,9 @@ from roomba.perception.matching.scan_view import LidarModel
 
 @dataclass(frozen=True, slots=True)
 class MappingSummary:
-    """The figures of a drive; s, m, m2. Errors are None where there is no truth.
+    """The figures of a drive; s, m, m2.
 
+    Errors are None where there is no truth, and what odometry alone tells where that is not used.
     ``closure_m`` is how far from its beginning the drive ends, on the map and by odometry alone;
     ``corrected_m`` how far apart the two took the robot to be, at most, while it drove. Of the
     ``scans`` that were used ``scans_unconfirmed`` fitted nothing that was seen before;
@@ -44,8 +45,8 @@ class MappingSummary:
     height_m: float
     free_m2: float
     closure_m: float
-    closure_by_odometry_m: float
-    corrected_m: float
+    closure_by_odometry_m: float | None
+    corrected_m: float | None
     largest_error_m: float | None
     last_error_m: float | None
     largest_error_by_odometry_m: float | None
@@ -61,11 +62,13 @@ class MappingSummary:
 def summary_of(done: MappedDrive, processing: float) -> MappingSummary:
     """Return the figures of a map that took ``processing`` s on the clock."""
     replay, occupancy, mapper = done.replay, done.occupancy, done.replay.mapper
-    online, blind = done.online, replay.by_odometry
+    online, blind, has_odometry = done.online, replay.by_odometry, replay.has_odometry
     cells = np.argwhere(occupancy.values != UNKNOWN)
     high, wide = ((np.ptp(cells, axis=0) + 1) * occupancy.frame.resolution).tolist()
-    ours, theirs = _errors(online, done.true), _errors(blind, done.true)
+    ours = _errors(online, done.true)
+    theirs = _errors(blind, done.true) if has_odometry else (None, None)
     end, blind_end = mapper.pose, replay.blind.pose
+    blind_closure = math.dist((blind_end.x, blind_end.y), blind[0, 1:3].tolist())
     apart = np.hypot(*(online[:, 1:3] - blind[-len(online) :, 1:3]).T)
     return MappingSummary(
         logs=tuple(map(str, done.logs)),
@@ -86,8 +89,8 @@ def summary_of(done: MappedDrive, processing: float) -> MappingSummary:
         height_m=high,
         free_m2=float((occupancy.values == FREE).sum()) * occupancy.frame.resolution**2,
         closure_m=end.distance_to(done.begin.x, done.begin.y),
-        closure_by_odometry_m=math.dist((blind_end.x, blind_end.y), blind[0, 1:3].tolist()),
-        corrected_m=float(apart.max()),
+        closure_by_odometry_m=blind_closure if has_odometry else None,
+        corrected_m=float(apart.max()) if has_odometry else None,
         largest_error_m=ours[0],
         last_error_m=ours[1],
         largest_error_by_odometry_m=theirs[0],
@@ -118,25 +121,35 @@ def lines_of(summary: MappingSummary) -> list[tuple[str, str]]:
             f"{summary.width_m:.2f} x {summary.height_m:.2f} m, {summary.free_m2:.2f} m² of it are "
             "known to be free",
         ),
-        (
-            "end",
-            f"{summary.closure_m:.3f} m from the beginning, by odometry alone "
-            f"{summary.closure_by_odometry_m:.3f} m",
-        ),
+        ("end", _end_words(summary)),
         ("calibration", summary.calibration),
-        ("corrected", f"odometry alone was up to {summary.corrected_m:.3f} m off the map"),
     ]
-    if summary.largest_error_m is not None and summary.last_error_m is not None:
-        lines.append(
-            (
-                "error",
-                f"against the true poses in the bag: {summary.largest_error_m:.3f} m at most, "
-                f"{summary.last_error_m:.3f} m at the end; by odometry alone "
-                f"{summary.largest_error_by_odometry_m:.3f} m, "
-                f"{summary.last_error_by_odometry_m:.3f} m",
-            )
-        )
+    if summary.corrected_m is not None:
+        words = f"odometry alone was up to {summary.corrected_m:.3f} m off the map"
+        lines.append(("corrected", words))
+    if summary.largest_error_m is not None:
+        lines.append(("error", _error_words(summary)))
     return [*lines, *(("note", note) for note in summary.notes)]
+
+
+def _end_words(summary: MappingSummary) -> str:
+    words = f"{summary.closure_m:.3f} m from the beginning"
+    if summary.closure_by_odometry_m is None:
+        return words
+    return f"{words}, by odometry alone {summary.closure_by_odometry_m:.3f} m"
+
+
+def _error_words(summary: MappingSummary) -> str:
+    words = (
+        f"against the true poses in the bag: {summary.largest_error_m:.3f} m at most, "
+        f"{summary.last_error_m:.3f} m at the end"
+    )
+    if summary.largest_error_by_odometry_m is None:
+        return words
+    return (
+        f"{words}; by odometry alone {summary.largest_error_by_odometry_m:.3f} m, "
+        f"{summary.last_error_by_odometry_m:.3f} m"
+    )
 
 
 def _scan_words(summary: MappingSummary) -> str:

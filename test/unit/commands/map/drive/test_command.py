@@ -137,7 +137,9 @@ def test_what_was_not_used_is_told_with_the_reason(
     refused = json.loads(capsys.readouterr().out)["scans_refused"]
     assert len(refused) == 2
     assert refused["scans of times without odometry"] in range(12, 16)
-    assert [n for what, n in refused.items() if "cannot be used (0 beams" in what] == [10]
+    assert [
+        n for what, n in refused.items() if "cannot be used (expected a scan with beams" in what
+    ] == [10]
 
 
 @pytest.mark.parametrize(

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
-from fixtures.drives.made_logs import Item, write_bag
+from fixtures.drives.made_logs import BEGAN, Item, changed, drive, pose_at, write_bag
 from fixtures.drives.turning_drive import BEAM_TIME, turning_drive
 
 from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
-from roomba.commands.map.drive.report import summary_of
+from roomba.commands.map.drive.report import lines_of, summary_of
 from roomba.geometry import Pose, wrap_angle
 from roomba.recordings.choice import Wanted
 
@@ -19,12 +22,14 @@ def mapped(
     path: Path, items: list[Item], wanted: Wanted | None = None, *, with_mount: bool = False
 ) -> MappedDrive:
     bag = write_bag(path / f"{id(items)}.bag", items, with_mount=with_mount)
-    return mapped_drive([bag], wanted or Wanted(), lambda share, words: None)
+    return mapped_drive([bag], wanted or Wanted(needs_odometry=False), lambda share, words: None)
 
 
 def off(done: MappedDrive) -> float:
     """How far the odometry, which is right, was off the map at most, m."""
-    return summary_of(done, 1.0).corrected_m
+    corrected = summary_of(done, 1.0).corrected_m
+    assert corrected is not None
+    return corrected
 
 
 def mount_of(done: MappedDrive) -> list[float]:
@@ -77,6 +82,45 @@ def test_scans_that_are_bent_by_turns_are_straightened_and_that_is_told(tmp_path
     assert done.replay.lidar.time_increment == pytest.approx(BEAM_TIME)
     [note] = done.notes
     assert "from the last to the first" in note
+
+
+def in_feet(number: int, item: Item) -> Item:
+    assert isinstance(item.value, Pose)
+    return replace(item, value=Pose(3.28 * item.value.x, 3.28 * item.value.y, item.value.theta))
+
+
+def no_number(number: int, item: Item) -> Item:
+    return replace(item, value=Pose(math.nan, 0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (in_feet, "it tells ways of "),
+        (no_number, "none of it can be used: its numbers are not finite"),
+    ],
+)
+def test_odometry_that_is_of_no_use_is_left_out_and_that_is_told(
+    tmp_path: Path, spoil: Callable[[int, Item], Item], said: str
+) -> None:
+    done = mapped(tmp_path, changed(drive(), "/odom", spoil), with_mount=True)
+    [note] = [note for note in done.notes if "odometry" in note]
+    assert note.startswith(f"the odometry is not used, it goes by scans alone: {said}")
+    ours = done.trajectory
+    true = np.array([[pose.x, pose.y] for pose in map(pose_at, ours[:, 0] - BEGAN)])
+    lengths = (np.hypot(*(way - way[0]).T) for way in (ours[:, 1:3], true))
+    assert next(lengths) == pytest.approx(next(lengths), abs=0.1)
+    summary = summary_of(done, 1.0)
+    assert summary.corrected_m is None
+    assert not any("odometry alone" in text for _, text in lines_of(summary))
+
+
+def test_odometry_that_was_named_is_used_all_the_same_with_a_word(tmp_path: Path) -> None:
+    wanted = Wanted(odometry="/odom", needs_odometry=False)
+    done = mapped(tmp_path, changed(drive(), "/odom", in_feet), wanted, with_mount=True)
+    [note] = [note for note in done.notes if "odometry" in note]
+    assert note.startswith("the odometry is doubtful: it tells ways of ")
+    assert done.replay.has_odometry
 
 
 def test_of_a_drive_that_is_recorded_right_nothing_is_told(tmp_path: Path) -> None:

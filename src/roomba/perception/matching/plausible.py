@@ -1,0 +1,52 @@
+"""What a scan is refused for: numbers that are those of no planar lidar in m and rad."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+FARTHEST_ECHO: Final = 100.0
+"""m; no planar lidar that a robot carries measures more: what is told to be farther met nothing."""
+_WIDEST: Final = 4.0 * math.pi
+"""rad; no scan goes round more often than twice."""
+
+
+def scan_fault(
+    ranges: NDArray[np.float32], first: float, step: float, nearest: float, farthest: float
+) -> str:
+    """Return what was expected of a scan, and what came; "" if nothing is wrong with it.
+
+    ``ranges`` is float32 [beams], m, the beams go from the angle ``first`` on by ``step``, rad, and
+    ranges count from ``nearest`` to ``farthest``, m. What single beams tell is not looked at: they
+    may have failed.
+    """
+    beams = len(ranges)
+    if not (math.isfinite(first) and math.isfinite(step)):
+        return f"expected finite angles, got beams from {first:g} on by {step:g} rad"
+    if not beams or (step == 0.0 and beams > 1):
+        return (
+            f"expected a scan with beams, each at another angle, got {beams} from {first:g} on by "
+            f"{step:g} rad"
+        )
+    if abs(step) * (beams - 1) > _WIDEST:
+        return (
+            f"expected beams of one turn or two, got {beams} from {first:g} on by {step:g} rad: "
+            "are the angles in degrees?"
+        )
+    if math.isnan(farthest) or not 0.0 <= nearest < farthest:
+        return (
+            "expected ranges from 0 m or more on up to a larger one, got "
+            f"{nearest:g} to {farthest:g} m"
+        )
+    # Comparisons with NaN are false.
+    echoes = ranges[(ranges > 0.0) & (ranges < np.float32(farthest))]
+    far = int(np.count_nonzero(echoes > FARTHEST_ECHO))
+    if 2 * far > len(echoes):
+        return (
+            f"expected ranges up to {FARTHEST_ECHO:g} m, got {far} of {len(echoes)} that are "
+            f"farther, {float(np.median(echoes)):g} m in the middle: are they in mm?"
+        )
+    return ""
