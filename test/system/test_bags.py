@@ -23,8 +23,8 @@ from roomba_robot.msg import Localization, RobotPosition
 from roomba.commands.localize.command import main
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
+from roomba.recordings.bag_format.mending import mend_bag, needs_mending
 from roomba.recordings.bags.exporting import Form, export_bag
-from roomba.recordings.bags.mending import mend_bag, needs_mending
 
 NAMES = ("pose", "amcl")
 

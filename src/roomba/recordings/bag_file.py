@@ -13,6 +13,7 @@ import numpy as np
 from rosbags.rosbag1 import Reader as Reader1
 from rosbags.rosbag2 import Reader as Reader2
 
+from roomba.recordings.bag_format.mending import BagError, mend_bag, needs_mending
 from roomba.recordings.packed import Unpacked
 from roomba.recordings.readings import LogError
 from roomba.recordings.times.stamps import clock_shifts
@@ -20,6 +21,11 @@ from roomba.recordings.times.stamps import clock_shifts
 _SKIPPED: Final = 10**9
 """ns; after what cannot be read it goes on so much later."""
 _MOST_SKIPS: Final = 1000
+_RECOVER: Final = {
+    "end magic": "mcap recover {} -o whole.mcap",
+    "malformed": "sqlite3 {} .recover | sqlite3 whole.db3",
+}
+"""What a reader says of files of ROS 2 that are cut, and the formats' own tools for them."""
 
 _Place = tuple[int, int]
 """Where a message is in a bag: its chunk, and the place in that."""
@@ -55,6 +61,7 @@ class BagFile:
         self._readers: list[Any] = []
         self.is_of_ros_1 = path.is_file() and self._file.path.suffix == ".bag"
         try:
+            self._mend_cut()
             self._first = self._opened()
         except LogError:
             self.close()
@@ -152,6 +159,23 @@ class BagFile:
             self._note("the recorder's clock was set back on the way: the time goes on there")
         return runs
 
+    def _mend_cut(self) -> None:
+        """Read a copy with an index in place of a bag without one; raises LogError."""
+        try:
+            if not (self.is_of_ros_1 and needs_mending(self._file.path)):
+                return
+            self._file.take_copy()
+            mended = mend_bag(self._file.path)
+        except OSError as error:
+            raise LogError(f"{self.path}: cannot be read: {error.strerror}") from None
+        except BagError as error:
+            reason = str(error).replace(str(self._file.path), str(self.path))
+            raise LogError(f"{reason}: its recording or copying was cut short") from None
+        self._note(
+            f"{self.path.name}: its recording or copying was cut short; read are the "
+            f"{mended.messages} messages that are whole"
+        )
+
     def _opened(self) -> Any:
         """Return a new reader that is open; raises LogError."""
         try:
@@ -176,11 +200,10 @@ def _index(reader: Any, connections: Sequence[Any]) -> list[tuple[int, _Place]]:
 def _told(path: Path, error: Exception) -> str:
     """Return why a bag cannot be opened, and what to do about it."""
     reason = str(error) or type(error).__name__
-    if "reindex" in reason:
-        return (
-            f"{path}: the bag has no index: its recording or copying was cut short; mend it by "
-            f"`./roomba exec rosbag reindex {path}`, which keeps the old one as .orig.bag"
-        )
     if isinstance(error, PermissionError):
         return f"{path}: cannot be read: {error.strerror}"
-    return f"{path}: expected a whole bag, it cannot be opened: {reason}"
+    told = f"{path}: expected a whole bag, it cannot be opened: {reason.rstrip('.')}"
+    for sign, tool in _RECOVER.items():
+        if sign in reason:
+            told += f"; if it was cut short, `{tool.format(path)}` saves what is whole"
+    return told

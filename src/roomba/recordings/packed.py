@@ -41,8 +41,17 @@ class Unpacked:
                 "again"
             ) from None
 
+    def take_copy(self) -> None:
+        """Let ``path`` be a file that may be changed, a temporary copy; raises OSError."""
+        if self._folder is not None:
+            return
+        self._folder = tempfile.TemporaryDirectory(prefix="roomba_log_")
+        copy = Path(self._folder.name) / self.path.name
+        shutil.copyfile(self.path, copy)
+        self.path = copy
+
     def close(self) -> None:
-        """Remove what was unpacked."""
+        """Remove what was unpacked, or copied."""
         if self._folder is not None:
             self._folder.cleanup()
 

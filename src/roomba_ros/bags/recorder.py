@@ -10,7 +10,7 @@ from typing import Any, Final
 import rosgraph
 import rospy
 
-from roomba.recordings.bags.records import MessageSource
+from roomba.recordings.bag_format.records import MessageSource
 from roomba.recordings.bags.ring import Message
 from roomba_ros.convert.errors import MessageError
 from roomba_ros.runtime.subscriptions import subscribe

@@ -19,7 +19,7 @@ from roomba_robot.msg import VacuumState
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32, String
 
-from roomba.recordings.bags.mending import mend_bag, needs_mending
+from roomba.recordings.bag_format.mending import mend_bag, needs_mending
 from roomba_ros.bags.record import main
 
 

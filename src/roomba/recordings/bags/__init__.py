@@ -1,1 +1,1 @@
-"""Bags of ROS 1 written without ROS: chunk by chunk, mended after a kill, exported to ROS 2."""
+"""Bags of ROS 1 written without ROS: chunk by chunk, kept in a ring, exported to ROS 2."""

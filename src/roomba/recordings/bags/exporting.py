@@ -12,8 +12,8 @@ from typing import Final
 
 from rosbags.convert import convert
 
-from roomba.recordings.bags.mending import Mended, mend_bag, needs_mending
-from roomba.recordings.bags.records import MAGIC
+from roomba.recordings.bag_format.mending import Mended, mend_bag, needs_mending
+from roomba.recordings.bag_format.records import MAGIC
 from roomba.recordings.readings import LogError
 
 _VERSION: Final = 9
@@ -35,7 +35,7 @@ class Form(Enum):
 def export_bag(source: Path, target: Path, form: Form) -> Mended | None:
     """Write a recording in another form; raises LogError, or OSError.
 
-    A bag whose recorder was killed is mended before, and what came of that is returned.
+    A bag that was cut short is mended before, and what came of that is returned.
     """
     _require_recording(source)
     if target.exists():

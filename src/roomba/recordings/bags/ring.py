@@ -7,7 +7,7 @@ from collections import deque
 from pathlib import Path
 from typing import NamedTuple
 
-from roomba.recordings.bags.records import MessageSource
+from roomba.recordings.bag_format.records import MessageSource
 from roomba.recordings.bags.writer import BagWriter
 
 

@@ -1,7 +1,7 @@
 """A bag of ROS 1 that a kill leaves whole: it grows by chunks, each written at once.
 
 What was flushed is in the file, whatever happens to the program. Only the index at the end comes
-with :meth:`BagWriter.close`; :mod:`roomba.recordings.bags.mending` makes it of the chunks.
+with :meth:`BagWriter.close`; :mod:`roomba.recordings.bag_format.mending` makes it of the chunks.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import os
 from pathlib import Path
 from typing import Final
 
-from roomba.recordings.bags.records import (
+from roomba.recordings.bag_format.records import (
     BEGIN,
     MAGIC,
     ChunkInfo,

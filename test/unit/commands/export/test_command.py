@@ -12,7 +12,7 @@ from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from roomba.commands.export.command import main
-from roomba.recordings.bags.records import MAGIC, MessageSource
+from roomba.recordings.bag_format.records import MAGIC, MessageSource
 from roomba.recordings.bags.writer import BagWriter
 
 

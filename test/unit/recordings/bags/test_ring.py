@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from rosbags.rosbag1 import Reader
 
-from roomba.recordings.bags.records import MessageSource
+from roomba.recordings.bag_format.records import MessageSource
 from roomba.recordings.bags.ring import Message, Ring, keep_newest, save
 
 PLAIN = MessageSource(

@@ -14,10 +14,9 @@ from rosbags.highlevel import AnyReader
 from rosbags.rosbag1 import Reader
 from rosbags.typesys import Stores, get_typestore
 
-from roomba.recordings.bags.mending import mend_bag, needs_mending
-from roomba.recordings.bags.records import MAGIC, MessageSource
+from roomba.recordings.bag_format.mending import mend_bag, needs_mending
+from roomba.recordings.bag_format.records import MessageSource
 from roomba.recordings.bags.writer import BagWriter
-from roomba.recordings.readings import LogError
 
 TEXT = MessageSource(
     "/text", "std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1", "string data\n", "/a"
@@ -103,63 +102,10 @@ def test_a_full_disk_leaves_what_was_whole(tmp_path: Path) -> None:
     assert read(tmp_path / "a.bag") == wrote
 
 
-@pytest.mark.parametrize("lost", [0, 1, 37, 200, 400])
-def test_a_torn_end_is_cut_off(tmp_path: Path, lost: int) -> None:
-    path = tmp_path / "a.bag"
-    bag = BagWriter(path)
-    wrote = fill(bag, 50)
-    whole = bag.size
-    # As after a kill: the file is there, and closed by the system.
-    copy = tmp_path / "b.bag"
-    copy.write_bytes(path.read_bytes()[: whole - lost])
-    bag.close()
-    assert needs_mending(copy)
-    mended = mend_bag(copy)
-    expected = wrote if lost == 0 else [each for each in wrote if each[1] < BEGAN + 4_000_000_000]
-    assert read(copy) == expected
-    assert (mended.messages, mended.chunks) == (len(expected), 5 if lost == 0 else 4)
-    assert (mended.torn == 0) is (lost == 0)
-    assert not needs_mending(copy)
-
-
-def test_a_chunk_that_is_broken_within_is_cut_off(tmp_path: Path) -> None:
-    path = tmp_path / "a.bag"
-    bag = BagWriter(path)
-    wrote = fill(bag, 30)
-    whole = bytearray(path.read_bytes())
-    bag.close()
-    # Of the third chunk: the first name in its data.
-    third = [each for each in range(len(whole)) if whole.startswith(b"op=\x05", each)][2]
-    at = whole.index(b"conn=", third)
-    whole[at : at + 5] = b"cann="
-    (tmp_path / "b.bag").write_bytes(whole)
-    assert mend_bag(tmp_path / "b.bag").chunks == 2
-    assert read(tmp_path / "b.bag") == [each for each in wrote if each[1] < BEGAN + 2_000_000_000]
-
-
-def test_what_is_still_written_is_not_mended(tmp_path: Path) -> None:
-    with BagWriter(tmp_path / "a.bag") as bag:
-        wrote = fill(bag, 20)
-        with pytest.raises(LogError, match="still being recorded"):
-            mend_bag(tmp_path / "a.bag")
-    assert read(tmp_path / "a.bag") == wrote
-
-
-def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
-    other, empty = tmp_path / "other", tmp_path / "empty.bag"
-    other.write_bytes(b"something else")
-    assert not needs_mending(other)
-    with pytest.raises(LogError, match=r"expected a bag of ROS 1"):
-        mend_bag(other)
-    empty.write_bytes(MAGIC)
-    with pytest.raises(LogError, match="no whole chunk"):
-        mend_bag(empty)
-
-
 KILLED = """
 import sys, time
 from pathlib import Path
-from roomba.recordings.bags.records import MessageSource
+from roomba.recordings.bag_format.records import MessageSource
 from roomba.recordings.bags.writer import BagWriter
 md5 = "992ce8a1687cec8c8bd883ec73ca41d1"
 source = MessageSource("/text", "std_msgs/String", md5, "string data\\n")
