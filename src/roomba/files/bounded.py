@@ -36,8 +36,11 @@ def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
 
 
 def read_text(path: Path, most: int = MOST_BYTES) -> str:
-    """Return the text of a file in UTF-8; raises OSError as above, and UnicodeDecodeError."""
-    return read_bytes(path, most).decode("utf-8")
+    """Return the text of a file in UTF-8, without the mark that some editors put before it.
+
+    Raises OSError as above, and UnicodeDecodeError.
+    """
+    return read_bytes(path, most).decode("utf-8-sig")
 
 
 _KINDS: Final = {

@@ -145,6 +145,8 @@ def parse(text: str) -> ValetudoHome:
 
 
 def _validated(text: str) -> _Map:
+    if not text.strip():
+        raise ValetudoError("expected a map of Valetudo in JSON, the file is empty")
     try:
         raw = load_json(text)
     except ValueError as error:

@@ -28,6 +28,8 @@ def test_text_is_utf_8(tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_bytes("Küche".encode())
     assert read_text(path) == "Küche"
+    path.write_bytes("\ufeffKüche".encode())
+    assert read_text(path) == "Küche"
     path.write_bytes(b"\xff")
     with pytest.raises(UnicodeDecodeError):
         read_text(path)

@@ -35,9 +35,10 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"{PROGRAM}: {given.file}: {reason_of(error)}", file=sys.stderr)
         return 2
     zones = len(found.no_go) + len(found.walls)
+    put = "" if found.station is not None else ", where it was put: the map has no charger"
     print(
         f"{folder}: {home.map.free_area:.1f} m² of floor, {len(home.rooms)} rooms, {zones} zones, "
-        f"station at ({home.station.x:.2f}, {home.station.y:.2f})"
+        f"station at ({home.station.x:.2f}, {home.station.y:.2f}){put}"
     )
     if words := unreached_in(home, found).words:
         print(words)

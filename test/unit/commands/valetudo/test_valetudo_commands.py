@@ -98,6 +98,20 @@ def test_a_home_whose_door_is_shut_is_that_of_the_charger_and_the_rest_is_told(
     assert station.x < 0.5 * ROOM / 100.0 - 0.25
 
 
+def test_where_the_station_of_a_map_without_one_was_put_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, folder = foreign(tmp_path / "map.json"), tmp_path / "home"
+    told = json.loads(file.read_text("utf-8"))
+    told["entities"] = []
+    file.write_text(json.dumps(told), "utf-8")
+    assert bring(["valetudo", str(file), "--out", str(folder)]) == 0
+    station = load_home(str(folder), HOMES).station
+    said = capsys.readouterr().out
+    assert f"station at ({station.x:.2f}, {station.y:.2f}), where it was put" in said
+    assert "no charger" in said
+
+
 def test_a_home_comes_back_as_it_was_exported(tmp_path: Path) -> None:
     file, folder = tmp_path / "flat.json", tmp_path / "flat"
     assert export(["valetudo", "flat", "--out", str(file)]) == 0
@@ -137,7 +151,12 @@ def assert_same(before: ValetudoHome, after: ValetudoHome) -> None:
 
 @pytest.mark.parametrize(
     ("content", "reason"),
-    [(b"{}", "expected a map of Valetudo"), (b"\xff\xfe", "UTF-8"), (None, "No such file")],
+    [
+        (b"{}", "expected a map of Valetudo"),
+        (b" \n", "the file is empty"),
+        (b"\xff\xfe", "UTF-8"),
+        (None, "No such file"),
+    ],
 )
 def test_what_is_no_map_is_refused_in_a_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], content: bytes | None, reason: str

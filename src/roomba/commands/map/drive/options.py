@@ -19,6 +19,8 @@ DRIVES: Final = (
     "no ROS."
 )
 """What can be read."""
+_FARTHEST_MOUNT: Final = 10.0
+"""m; no robot is larger."""
 _MOUNT: Final = 3
 """Numbers of --laser."""
 _HANGS: Final = {"upside-down": True, "upright": False}
@@ -111,9 +113,14 @@ def _mount(text: str) -> tuple[Pose, bool | None]:
         numbers = [float(word) for word in (words if is_upside_down is None else words[:-1])]
     except ValueError:
         numbers = []
-    if len(numbers) != _MOUNT or not all(map(math.isfinite, numbers)):
+    # Comparisons with NaN are false.
+    is_mount = len(numbers) == _MOUNT and (
+        math.hypot(*numbers[:2]) <= _FARTHEST_MOUNT and abs(numbers[2]) <= math.tau
+    )
+    if not is_mount:
         raise argparse.ArgumentTypeError(
-            "expected three finite numbers X,Y,YAW (m, m, rad), and at most one of "
-            f"{' or '.join(_HANGS)} after them, got {text!r}"
+            f"expected three numbers X,Y,YAW: at most {_FARTHEST_MOUNT:g} m from the robot's "
+            "middle, and at most 6.29 rad; and at most one of "
+            f"{' or '.join(_HANGS)} after them; got {text!r}"
         )
     return Pose(*numbers), is_upside_down
