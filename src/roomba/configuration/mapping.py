@@ -114,6 +114,9 @@ class FollowingConfig(Frozen):
     piece_way: NotNegative = 0.6
     piece_turn: NotNegative = 2.0
     """and so much driven or turned: then the map goes on in a piece of its own."""
+    standing_deviation: Length = 0.001
+    standing_heading: Angle = 0.0005
+    """Standard deviations, besides those of the way, of dead reckoning between two scans."""
     sure_deviation: Length = 0.01
     sure_heading: Angle = 0.005
     unsure_deviation: Length = 0.1

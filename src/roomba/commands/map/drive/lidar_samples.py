@@ -65,6 +65,8 @@ class LidarSamples:
     """Scans that were kept, in the order of time.
 
     ``period`` is the usual time between two, s, ``odometry_period`` that of odometry; 0 without.
+    ``count`` is how many scans came, also of which odometry tells nothing. With ``has_odometry``
+    there is enough of it to tell anything; if it ``never_changes``, it has one pose alone.
     """
 
     def __init__(self, readings: Iterable[Reading]) -> None:
@@ -73,10 +75,14 @@ class LidarSamples:
         kept: list[tuple[float, LidarScan]] = []
         stamps: list[float] = []
         apart_from: tuple[float, float, float] | None = None
+        self.count = 0
         for stamp, value, _ in readings:
             if isinstance(value, Odometry) and (not rows or stamp > rows[-1][0]):
                 rows.append((stamp, value.pose.x, value.pose.y, value.pose.theta))
-            elif isinstance(value, LidarScan) and rows:
+            elif isinstance(value, LidarScan):
+                self.count += 1
+                if not rows:
+                    continue
                 stamps.append(stamp)
                 now = rows[-1][1:]
                 if apart_from is None or is_apart(
@@ -90,13 +96,10 @@ class LidarSamples:
         path[:, 3] = np.unwrap(path[:, 3])
         self._path = _Path(path)
         self.period, self.odometry_period = _period(stamps), _period(path[:, 0])
-        self._kept = kept if len(rows) >= _TIMES else []
+        self.has_odometry = len(rows) >= _TIMES
+        self.never_changes = self.has_odometry and not np.ptp(path[:, 1:], axis=0).any()
+        self._kept = kept if self.has_odometry else []
         self._swept: dict[Sweep, SweptScans] = {}
-
-    @property
-    def has_odometry(self) -> bool:
-        """Whether there is enough odometry to tell anything."""
-        return bool(self._kept)
 
     @cached_property
     def scans(self) -> list[Sample]:

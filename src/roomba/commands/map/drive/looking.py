@@ -34,11 +34,11 @@ def look_at_drive(drive: LoggedDrive) -> None:
 
 
 def _odometry_fault(drive: LoggedDrive, samples: LidarSamples) -> str:
-    """Return what is wrong with the odometry; "" if nothing is."""
-    unusable = drive.reason_of(UNUSABLE_ODOMETRY)
-    if unusable and not samples.has_odometry:
-        return f"none of it can be used: {unusable}"
-    return odometry_fault(samples)
+    """Return what is wrong with the odometry; "" if nothing is, or there are no scans beside it."""
+    if samples.has_odometry or not samples.count:
+        return odometry_fault(samples)
+    reason = drive.reason_of(UNUSABLE_ODOMETRY)
+    return "hardly any of it can be used" + (f": {reason}" if reason else "")
 
 
 def _look_at_lidar(drive: LoggedDrive, samples: LidarSamples) -> None:

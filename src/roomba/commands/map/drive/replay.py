@@ -31,6 +31,8 @@ _GUESSED: Final = {
     "turn_way_noise": 0.1,
 }
 """m, rad per square root of m, rad: of motion that is only guessed from what was before."""
+_MAY_START: Final = {"standing_deviation": 0.05, "standing_heading": 0.05}
+"""m, rad; of a guessed step of a robot that stood: it may start at any time."""
 _LONGEST: Final = 1.0
 """s; over a longer time a robot does not go on as it did."""
 _LATEST: Final = 1.0
@@ -68,6 +70,8 @@ class MapReplay:
         localization = config.localization
         if not has_odometry:
             localization = localization.model_copy(update=_GUESSED)
+            following = mapping.following.model_copy(update=_MAY_START)
+            mapping = mapping.model_copy(update={"following": following})
         self.mapper = Mapper(mapping, localization, config.gyro, start)
         self.blind = BlindMap(mapping, config.localization, config.gyro, start)
         self.trajectory = Trajectory()

@@ -1,26 +1,31 @@
 """What is wrong with the odometry of a drive, as its scans show: units, axes, and times.
 
 Scans are laid on each other without any odometry, and the moves that they show are compared with
-those that the odometry tells. How the lidar is mounted does not count. Only what no wheels do is
-told: ways or turns of other lengths, or in other directions, most of the time.
+those that the odometry tells. How the lidar is mounted does not count, nor where, as ways are
+compared where the robot hardly turns. Only what no wheels do is told: ways or turns of other
+lengths, or in other directions, most of the time.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roomba.commands.map.drive.lidar_samples import Floats, LidarSamples, laid_on
 
-_SELDOM, _RARER = 2.0, 2.0
-"""s between two messages, as a rule, and times as much as between two scans, from which most scans
-are of times of which no odometry tells."""
+_SELDOM: Final = 2.0
+"""s between two messages, as a rule, from which most scans are of times without odometry."""
+_RARER: Final = 2.0
+"""Times as much as between two scans; if these are as rare, odometry is told for each."""
 _STEP, _STEP_TURN = 0.3, 0.4
 """m, rad; a robot moves no farther between two scans that are laid on each other."""
 _WAY, _TURN = 0.1, 0.15
 """m, rad; moves are compared that scans show to be so long, or turned so far."""
+_STRAIGHT: Final = 0.05
+"""rad; ways are compared of moves that turn less."""
 _FITS: Final = 0.7
 """Mean likelihood of points, from which scans surely lie on each other: 0.8 and more where they are
 dense, 0.1 to 0.5 where they were taken a metre apart, which is farther than they are looked for."""
@@ -42,37 +47,65 @@ _CLEARER: Final = 3.0
 """Times as much as mirrored ways are not, from which ways are taken to be mirrored."""
 
 
+class _Moves(NamedTuple):
+    """Moves of the robot, each [n, 3], x, y, m, and turn, rad.
+
+    As odometry tells them, as it would with x and y swapped, and as scans show them of the lidar.
+    """
+
+    told: Floats
+    mirrored: Floats
+    shown: Floats
+
+    def where(self, which: NDArray[np.bool_]) -> _Moves:
+        """Return some of them."""
+        return _Moves(*(moves[which] for moves in self))
+
+
 def odometry_fault(samples: LidarSamples) -> str:
     """Return what is wrong with the odometry; "" if nothing is, or nothing is clear."""
     period = samples.odometry_period
     if period > max(_SELDOM, _RARER * samples.period):
         return f"it comes once in {period:.1f} s"
-    told, mirrored, shown = _moves(samples)
-    ways_told, ways = (np.hypot(moves[:, 0], moves[:, 1]) for moves in (told, shown))
-    turns_told, turns = (np.abs(moves[:, 2]) for moves in (told, shown))
-    is_far, is_turned = ways > _WAY, turns > _TURN
-    if _disagrees(ways_told[is_far], ways[is_far], _WAY_NOISE):
-        middle = np.median(ways_told[is_far]), np.median(ways[is_far])
-        return "it tells ways of {:.3g} m where scans show {:.2f} m".format(*middle)
-    if _disagrees(turns_told[is_turned], turns[is_turned], _TURN_NOISE):
-        middle = np.median(turns_told[is_turned]), np.median(turns[is_turned])
-        return "it tells turns of {:.2g} rad where scans show {:.2f} rad".format(*middle)
-    if is_far.sum() >= _LEAST:
-        off = _incoherence(told[is_far], shown[is_far])
-        if off > max(_INCOHERENT, _CLEARER * _incoherence(mirrored[is_far], shown[is_far])):
-            return "its ways fit what scans show better if they are mirrored: are x and y swapped?"
-    return ""
+    if samples.never_changes and samples.count > 1:
+        return "it never changes"
+    moves = _moves(samples)
+    turned = np.abs(moves.shown[:, 2])
+    # In a turn a lidar that is not in the robot's middle goes another way.
+    straight = moves.where((_lengths(moves.shown) > _WAY) & (turned < _STRAIGHT))
+    turns = moves.where(turned > _TURN)
+    return _wrong_ways(straight) or _wrong_turns(turns) or _mirrored_ways(straight)
 
 
-def _moves(samples: LidarSamples) -> tuple[Floats, Floats, Floats]:
-    """Return moves as odometry tells them, the same if it had x and y swapped, and as scans show
-    them: each [n, 3], m and rad.
-    """
-    told, mirrored, shown = [], [], []
-    scans = samples.scans
-    first, at = 0, np.zeros(3)
-    tried, fitted = min(len(scans), _MATCHES), 0
-    for number in range(1, tried):
+def _wrong_ways(moves: _Moves) -> str:
+    told, shown = _lengths(moves.told), _lengths(moves.shown)
+    if not _disagrees(told, shown, _WAY_NOISE):
+        return ""
+    return f"it tells ways of {np.median(told):.3g} m where scans show {np.median(shown):.2f} m"
+
+
+def _wrong_turns(moves: _Moves) -> str:
+    told, shown = (np.abs(each[:, 2]) for each in (moves.told, moves.shown))
+    if not _disagrees(told, shown, _TURN_NOISE):
+        return ""
+    return f"it tells turns of {np.median(told):.2f} rad where scans show {np.median(shown):.2f}"
+
+
+def _mirrored_ways(moves: _Moves) -> str:
+    if len(moves.told) < _LEAST:
+        return ""
+    off, mirrored_off = (_incoherence(each, moves.shown) for each in (moves.told, moves.mirrored))
+    if off <= max(_INCOHERENT, _CLEARER * mirrored_off):
+        return ""
+    return "its ways fit what scans show better if they are mirrored: are x and y swapped?"
+
+
+def _moves(samples: LidarSamples) -> _Moves:
+    """Return moves that scans which surely lie on each other show; none if hardly any do."""
+    rows: list[tuple[Floats, Floats, Floats]] = []
+    scans = samples.scans[:_MATCHES]
+    first, at, fitted = 0, np.zeros(3), 0
+    for number in range(1, len(scans)):
         base, sample = scans[first], scans[number]
         match = None
         if sample.stamp - base.stamp <= _LONGEST:
@@ -84,14 +117,16 @@ def _moves(samples: LidarSamples) -> tuple[Floats, Floats, Floats]:
         fitted += 1
         at = match.pose
         if math.hypot(at[0], at[1]) > _WAY or abs(at[2]) > _TURN:
-            move = samples.between(base, sample)
-            told.append(move)
-            mirrored.append(_swapped(move, float(base.pose[2])))
-            shown.append(at)
+            told = samples.between(base, sample)
+            rows.append((told, _swapped(told, float(base.pose[2])), at))
             first, at = number, np.zeros(3)
-    end = len(told) if fitted > _USUAL * tried else 0
-    moves = (np.array(each[:end]).reshape(-1, 3) for each in (told, mirrored, shown))
-    return next(moves), next(moves), next(moves)
+    if fitted < _USUAL * (len(scans) - 1):
+        rows = []
+    return _Moves(*np.array(rows).reshape(-1, 3, 3).transpose(1, 0, 2))
+
+
+def _lengths(moves: Floats) -> Floats:
+    return np.asarray(np.hypot(moves[:, 0], moves[:, 1]))
 
 
 def _swapped(move: Floats, heading: float) -> Floats:

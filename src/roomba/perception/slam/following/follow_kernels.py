@@ -52,6 +52,7 @@ FOLLOWER: Final = np.dtype(
         ("least_close", "f8"),
         ("keyframe_way", "f8"),  # m; a scan is kept that is so far from the newest keyframe,
         ("keyframe_turn", "f8"),  # rad; or turned by so much
+        ("standing", "f8", (3,)),  # m2, rad2; variances of a step that is told to be none
         ("work", "f8", (15 + ALIGN_WORK, 3)),  # what the kernel works in; means nothing between
     ],
     align=True,
@@ -85,7 +86,7 @@ _MANY: Final = 200
 _FAR_REACH: Final = 3
 """Cells of surfels; so far a scan is matched after many misses."""
 _LEAST_SPREAD: Final = (0.001**2, 0.001**2, 0.0005**2)
-"""m2, rad2; the least variance of a prior, also at standstill."""
+"""m2, rad2; of a step that is thought to be surer nothing is learned."""
 
 
 @entry
@@ -115,7 +116,7 @@ def follow(
     for row in range(3):
         for column in range(3):
             covariance[row, column] = follower.spread[row, column]
-        covariance[row, row] += _LEAST_SPREAD[row]
+        covariance[row, row] += follower.standing[row]
     reach = _FAR_REACH if follower.misses >= follower.many_misses else 1
     shows_enough = _match(follower, surfels, points, count, prior, reach, _FIRST_SCALES)
     is_soon = 0.0 < elapsed < _LONGEST

@@ -53,6 +53,8 @@ class ScanFollower:
         row["variance"] = config.point_deviation**2
         self._config = config.following
         row["least_points"] = config.following.least_points
+        standing = config.following.standing_deviation, config.following.standing_heading
+        row["standing"] = standing[0] ** 2, standing[0] ** 2, standing[1] ** 2
         row["many_misses"] = config.following.many_misses
         row["least_met"], row["least_close"] = config.least_met, config.least_close
         row["keyframe_way"], row["keyframe_turn"] = config.keyframe_way, config.keyframe_turn
