@@ -27,8 +27,8 @@ def main(arguments: list[str] | None = None) -> int:
         return 2
     if mended is not None:
         print(
-            f"{source}: it was cut short; it has an index again, with {mended.messages} "
-            f"messages; {mended.torn} bytes of a torn end were cut off"
+            f"{source}: it was cut short, or is still being recorded; exported are the "
+            f"{mended.messages} messages that are whole, left out {mended.torn} bytes of a torn end"
         )
     print(target)
     return 0
@@ -37,8 +37,8 @@ def main(arguments: list[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=PROGRAM,
-        description="A recording for other programs, with the types of its messages. One that "
-        "was cut short gets its index first. (export valetudo HOME: a home as a map.)",
+        description="A recording for other programs, with the types of its messages. Of one "
+        "that was cut short what is whole is exported. (export valetudo HOME: a home as a map.)",
         epilog="Exit status: 0 when it was written, 2 when it was not, with the reason; nothing "
         "is overwritten.",
     )

@@ -86,36 +86,50 @@ class _Content:
         return ChunkInfo(at, min(times), max(times), counts)
 
 
-class _Scan:
-    """The chunks of a bag that are whole, and where the last of them and its index end."""
+class _WholeChunks:
+    """The chunks of a bag that are whole, and where the last of them and its index end.
+
+    One that is broken within stays in the file, and the index does not name it; what it told of
+    connections before it broke counts for those that follow.
+    """
 
     def __init__(self, file: BinaryIO) -> None:
         """Go through the file."""
         self.infos: list[ChunkInfo] = []
         self.connections: dict[int, bytes] = {}
         self.end = 0
-        chunk: tuple[int, _Content | None] | None = None
+        chunk: tuple[int, _Content] | None = None
         wanted = 0
         for each in _records(file):
             if each.op == Op.CHUNK:
-                content = _content_of(each)
-                chunk, wanted = (each.begin, content), len(content.entries) if content else 0
+                content, is_whole = _content_of(each)
+                chunk = (each.begin, content) if is_whole else None
+                wanted = len(content.entries) if is_whole else 0
+                self.connections = content.connections | self.connections
             elif each.op == Op.INDEX:
                 wanted -= 1
             elif each.op != Op.BAG:
                 break
             if wanted > 0:
                 continue
-            # A chunk that is broken within stays in the file, and the index does not name it.
-            if chunk is not None and chunk[1] is not None:
+            if chunk is not None:
                 self.add(*chunk)
             chunk, self.end = None, each.end
 
-    def add(self, at: int, content: _Content | None) -> None:
+    def add(self, at: int, content: _Content) -> None:
         """Count a chunk that begins at a byte of the file."""
-        if content is not None:
-            self.infos.append(content.info(at))
-            self.connections = content.connections | self.connections
+        self.infos.append(content.info(at))
+        self.connections = content.connections | self.connections
+
+    @property
+    def messages(self) -> int:
+        """How many messages they have whose connection is known."""
+        return sum(
+            count
+            for info in self.infos
+            for number, count in info.counts.items()
+            if number in self.connections
+        )
 
 
 def needs_mending(path: Path) -> bool:
@@ -148,36 +162,36 @@ def mend_bag(path: Path) -> Mended:
             raise BagError(f"{path}: it is still being recorded; end that first") from error
         if file.read(len(MAGIC)) != MAGIC:
             raise BagError(f"{path}: expected a bag of ROS 1, version 2.0")
-        scan = _Scan(file)
-        torn = os.fstat(file.fileno()).st_size - scan.end
-        last = _torn_chunk(file, scan.end)
-        if last is None and not scan.infos:
-            raise BagError(f"{path}: expected a recording, it has no whole message")
-        file.seek(scan.end)
-        file.truncate()
+        chunks = _WholeChunks(file)
+        end, torn = chunks.end, os.fstat(file.fileno()).st_size - chunks.end
+        last = _torn_chunk(file, end)
         if last is not None:
             content, chunk = last
             torn -= len(chunk)
-            scan.add(scan.end, content)
+            chunks.add(end, content)
+        if not chunks.messages:
+            raise BagError(f"{path}: expected a recording, it has no whole message")
+        file.seek(end)
+        file.truncate()
+        if last is not None:
             file.write(chunk + content.indexes())
         index_at = file.tell()
-        index = (*scan.connections.values(), *(info.record() for info in scan.infos))
+        index = (*chunks.connections.values(), *(info.record() for info in chunks.infos))
         file.write(b"".join(index))
         file.flush()
         file.seek(len(MAGIC))
-        file.write(bag_record(index_at, len(scan.connections), len(scan.infos)))
-    messages = sum(sum(info.counts.values()) for info in scan.infos)
-    return Mended(len(scan.infos), messages, torn)
+        file.write(bag_record(index_at, len(chunks.connections), len(chunks.infos)))
+    return Mended(len(chunks.infos), chunks.messages, torn)
 
 
-def _content_of(chunk: _Record) -> _Content | None:
-    """Return what a chunk has; None of one that is broken within."""
+def _content_of(chunk: _Record) -> tuple[_Content, bool]:
+    """Return what a chunk has, up to where it is broken within, and whether it is whole."""
     try:
         plain = _UNPACKED[chunk.fields["compression"]](chunk.data)
-        content = _looked_into(plain)
     except _BROKEN:
-        return None
-    return content if content.size == len(plain) and content.entries else None
+        return _Content({}, {}, 0), False
+    content = _looked_into(plain)
+    return content, content.size == len(plain) and bool(content.entries)
 
 
 def _torn_chunk(file: BinaryIO, at: int) -> tuple[_Content, bytes] | None:
@@ -204,20 +218,20 @@ def _torn_chunk(file: BinaryIO, at: int) -> tuple[_Content, bytes] | None:
 
 
 def _looked_into(plain: bytes) -> _Content:
-    """Return what the plain data of a chunk has, up to the first record that is not whole.
-
-    Raises what :data:`_BROKEN` names.
-    """
+    """Return what the plain data of a chunk has, up to the first record that is not whole."""
     entries: dict[int, list[tuple[int, int]]] = {}
     connections: dict[int, bytes] = {}
     size = 0
     for each in _records(io.BytesIO(plain)):
-        number = int.from_bytes(each.fields["conn"], "little")
-        if each.op == Op.CONNECTION:
-            connections[number] = record(Op.CONNECTION, _without_op(each.fields), each.data)
-        else:
-            time = nanoseconds_of(each.fields["time"])
-            entries.setdefault(number, []).append((time, each.begin))
+        try:
+            number = int.from_bytes(each.fields["conn"], "little")
+            if each.op == Op.CONNECTION:
+                connections[number] = record(Op.CONNECTION, _without_op(each.fields), each.data)
+            else:
+                time = nanoseconds_of(each.fields["time"])
+                entries.setdefault(number, []).append((time, each.begin))
+        except _BROKEN:
+            break
         size = each.end
     return _Content(entries, connections, size)
 

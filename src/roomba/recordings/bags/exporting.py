@@ -12,7 +12,7 @@ from typing import Final
 
 from rosbags.convert import convert
 
-from roomba.recordings.bag_format.mending import Mended, mend_bag, needs_mending
+from roomba.recordings.bag_format.mending import BagError, Mended, mend_bag, needs_mending
 from roomba.recordings.bag_format.records import MAGIC
 from roomba.recordings.readings import LogError
 
@@ -35,20 +35,35 @@ class Form(Enum):
 def export_bag(source: Path, target: Path, form: Form) -> Mended | None:
     """Write a recording in another form; raises LogError, or OSError.
 
-    A bag that was cut short is mended before, and what came of that is returned.
+    Of a bag that was cut short a copy is mended before, and what came of that is returned.
     """
     _require_recording(source)
     if target.exists():
         raise LogError(f"{target}: there is something already; name another place by --out")
-    mended = mend_bag(source) if source.is_file() and needs_mending(source) else None
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".export_", dir=target.parent) as folder:
-        made = Path(folder) / target.stem
-        _convert(source, made, form)
+        mended, whole = None, source
+        if source.is_file() and needs_mending(source):
+            whole = Path(folder) / "copy.bag"
+            shutil.copyfile(source, whole)
+            mended = _mended(whole, source)
+        # By the name .bag the converter would write one of ROS 1.
+        made = Path(folder) / target.stem.replace(".", "_")
+        try:
+            _convert(whole, made, form)
+        except LogError as error:
+            raise LogError(f"{source}: {error}") from error
         if form is Form.MCAP:
             (made,) = made.glob("*.mcap")
         shutil.move(made, target)
     return mended
+
+
+def _mended(copy: Path, source: Path) -> Mended:
+    try:
+        return mend_bag(copy)
+    except BagError as error:
+        raise LogError(str(error).replace(str(copy), str(source))) from None
 
 
 def _convert(source: Path, made: Path, form: Form) -> None:
@@ -75,7 +90,7 @@ def _convert(source: Path, made: Path, form: Form) -> None:
     # What a damaged bag makes a reader stumble over has no end of kinds.
     except Exception as error:
         reason = str(error).strip().partition("\n")[0][:_LONGEST_REASON] or type(error).__name__
-        raise LogError(f"{source}: it is damaged, and cannot be exported: {reason}") from error
+        raise LogError(f"it is damaged, and cannot be exported: {reason}") from error
 
 
 def _require_recording(source: Path) -> None:

@@ -106,7 +106,7 @@ def test_ros2_is_a_folder_with_the_types_in_it(bag: Path) -> None:
     assert sorted(path.name for path in bag.parent.iterdir()) == ["for", "run.bag"]
 
 
-def test_a_bag_whose_recorder_was_killed_is_mended(
+def test_of_a_bag_that_is_cut_short_or_still_recorded_what_is_whole_is_exported(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     alive = BagWriter(tmp_path / "alive.bag")
@@ -114,13 +114,26 @@ def test_a_bag_whose_recorder_was_killed_is_mended(
     alive.flush()
     killed = tmp_path / "killed.bag"
     killed.write_bytes((tmp_path / "alive.bag").read_bytes() + b"torn")
-    assert main([str(tmp_path / "alive.bag"), "--to", "mcap"]) == 2
-    assert "still being recorded" in capsys.readouterr().err
+    assert main([str(tmp_path / "alive.bag"), "--to", "mcap"]) == 0
+    assert "is still being recorded; exported are the 22 messages" in capsys.readouterr().out
     alive.close()
+    before = killed.read_bytes()
     assert main([str(killed), "--to", "mcap"]) == 0
-    assert "22 messages; 4 bytes of a torn end" in capsys.readouterr().out
+    assert "22 messages that are whole, left out 4 bytes" in capsys.readouterr().out
+    assert killed.read_bytes() == before
     with killed.with_suffix(".mcap").open("rb") as file:
         assert len(list(make_reader(file).iter_messages())) == 22
+
+
+@pytest.mark.parametrize(("form", "name"), [("mcap", "a.bag.mcap"), ("ros2", "a.bag.ros2")])
+def test_a_name_with_the_ending_of_another_form_changes_nothing(
+    tmp_path: Path, form: str, name: str
+) -> None:
+    with BagWriter(tmp_path / "run.bag") as bag:
+        write(bag)
+    assert main([str(tmp_path / "run.bag"), "--to", form, "--out", str(tmp_path / name)]) == 0
+    assert (tmp_path / name).is_dir() is (form == "ros2")
+    assert not (tmp_path / name).is_file() or (tmp_path / name).read_bytes().startswith(b"\x89MCAP")
 
 
 @pytest.mark.parametrize(

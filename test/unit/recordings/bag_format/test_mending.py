@@ -128,19 +128,37 @@ def test_a_chunk_whose_index_is_torn_is_kept(tmp_path: Path, lost: int) -> None:
     assert not needs_mending(copy)
 
 
+@pytest.mark.parametrize("broken", [0, 2])
 def test_a_chunk_that_is_broken_within_is_left_out_and_what_follows_is_kept(
-    tmp_path: Path,
+    tmp_path: Path, broken: int
 ) -> None:
     path = tmp_path / "a.bag"
     wrote = unfinished(path, 50)
     whole = bytearray(path.read_bytes())
-    # Of the third chunk: the first name in its data.
-    third = [each for each in range(len(whole)) if whole.startswith(b"op=\x05", each)][2]
-    at = whole.index(b"conn=", third)
+    chunk = [each for each in range(len(whole)) if whole.startswith(b"op=\x05", each)][broken]
+    # Its last message: the connections of both topics are before that.
+    at = whole.index(f"message {CHUNK * (broken + 1) - 1}".encode(), chunk)
+    at = whole.rindex(b"conn=", chunk, at)
     whole[at : at + 5] = b"cann="
     path.write_bytes(whole)
-    assert mend_bag(path).chunks == 4
-    assert read(path) == wrote[: 2 * CHUNK] + wrote[3 * CHUNK :]
+    mended = mend_bag(path)
+    assert mended.chunks == 4
+    kept = read(path)
+    assert kept == wrote[: broken * CHUNK] + wrote[(broken + 1) * CHUNK :]
+    assert mended.messages == len(kept)
+
+
+def test_messages_of_which_no_connection_is_known_do_not_count(tmp_path: Path) -> None:
+    path = tmp_path / "a.bag"
+    unfinished(path, 50)
+    whole = bytearray(path.read_bytes())
+    # The first record of the first chunk: with it both connections are gone.
+    at = whole.index(b"conn=", whole.index(b"op=\x05"))
+    whole[at : at + 5] = b"cann="
+    path.write_bytes(whole)
+    with pytest.raises(BagError, match="no whole message"):
+        mend_bag(path)
+    assert path.read_bytes() == whole
 
 
 def test_what_is_still_written_is_not_mended(tmp_path: Path) -> None:
