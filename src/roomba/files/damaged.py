@@ -8,9 +8,14 @@ from typing import Final
 _END: Final = ".damaged"
 
 
+def aside_of(path: Path) -> Path:
+    """Return what a damaged file is called once it is set aside."""
+    return path.with_name(path.name + _END)
+
+
 def set_aside(path: Path) -> str:
     """Rename a damaged file, in place of one from before; return what was done, in words."""
-    aside = path.with_name(path.name + _END)
+    aside = aside_of(path)
     try:
         path.replace(aside)
     except OSError as cause:

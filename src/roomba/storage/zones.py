@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from roomba.files.damaged import aside_of
 from roomba.grid import OccupancyMap
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
 from roomba.storage.map_bound import Entry, MapBound, Number, Tell, load_map_bound, save_map_bound
@@ -41,13 +42,27 @@ def load_zones(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) ->
     """Return the zones that were saved for a map; none if there is no such file.
 
     With ``tell`` a damaged file is set aside, and the one before is used, of which that is told.
-    Raises ZonesError, which names the file and the reason, for a file that cannot be read or is of
-    another map: without its zones a robot may go where it must not.
+    Raises ZonesError, which names the file and the reason, for a file that cannot be read, now or
+    before, or is of another map: without its zones a robot may go where it must not.
     """
-    file = load_map_bound(path, occupancy, _ZonesFile, "zones", ZonesError, tell)
+    aside = aside_of(path)
+    try:
+        file = load_map_bound(path, occupancy, _ZonesFile, "zones", ZonesError, tell)
+    except ZonesError as error:
+        raise ZonesError(f"{error}{_to_do(path)}" if aside.exists() else str(error)) from error
+    if file is None and tell is not None and aside.exists():
+        raise ZonesError(f"{path}: its zones could not be read{_to_do(path)}")
     if file is None:
         return Zones()
     try:
         return Zones(tuple(Zone(zone.name, zone.kind, tuple(zone.points)) for zone in file.zones))
     except ZonesError as error:
         raise ZonesError(f"{path}: {error}") from error
+
+
+def _to_do(path: Path) -> str:
+    """Return what a person can do about zones that are set aside."""
+    return (
+        f"; without them the robot may go where it must not: mend {aside_of(path)} and name it "
+        f"{path.name} again, or remove it to go on without these zones"
+    )

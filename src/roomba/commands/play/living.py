@@ -10,6 +10,7 @@ from roomba.commands.options import MOST_SEED, number, whole
 from roomba.commands.trials.homes import playable_home_of, rooms_of
 from roomba.commands.trials.runs import mission_config, robot_config_of
 from roomba.commands.trials.trial import Trial, Wheels
+from roomba.commands.trials.zones import zones_of
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import load_config
 from roomba.configuration.mapping import MappingConfig
@@ -54,6 +55,7 @@ def live_client(
     home = playable_home_of(trial, robot.body)
     docking = load_config(DockingConfig, CONFIGURATION / "docking.yaml")
     rooms = rooms_of(home) if knows_map else None
+    zones = zones_of(trial) if knows_map else None
     mission = HeadlessMission(
         home,
         robot,
@@ -62,12 +64,13 @@ def live_client(
         seed=seed,
         known=None if knows_map else load_config(MappingConfig, CONFIGURATION / "mapping.yaml"),
         rooms=rooms,
+        zones=zones,
         longest_burst=int(speed) if speed >= 2.0 else 0,
         empties_bin_after=math.inf,
     )
     # When it is emptied the household says.
     mission.is_emptied_at_station = False
-    return LiveClient(Playing(home, mission), mission, rooms, speed)
+    return LiveClient(Playing(home, mission), mission, rooms, speed, zones=zones)
 
 
 def require_demo(parser: argparse.ArgumentParser, wanted: argparse.Namespace) -> None:

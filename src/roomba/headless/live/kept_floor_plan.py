@@ -41,7 +41,11 @@ class KeptFloorPlan:
         except RoomsError as error:
             self._tell(f"the rooms are as without edits: {error}")
             rooms = None
-        return replace(plan, rooms=plan.rooms if rooms is None else rooms, zones=zones)
+        return replace(
+            plan,
+            rooms=plan.rooms if rooms is None else rooms,
+            zones=zones if self._zones_path.exists() else plan.zones,
+        )
 
     def save(self, before: FloorPlan, plan: FloorPlan) -> None:
         """Keep what a plan has other than the one before; raises RoomsError, OSError."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,8 +12,13 @@ import pytest
 from roomba.client.protocol import RequestRefusedError
 from roomba.client.view import ZoneView
 from roomba.commands.play.living import live_client
+from roomba.commands.trials.zones import ZONES_NAME
+from roomba.files.home_layer import MAP_NAME
+from roomba.files.occupancy_map import load_map
+from roomba.files.shipped import HOMES
 from roomba.headless.live.client import LiveClient
-from roomba.perception.rooms.zones import ZonesError
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
+from roomba.storage.zones import save_zones
 
 RUG = ZoneView("rug", "no-go", ((0.5, 0.5), (1.0, 0.5), (1.0, 1.0), (0.5, 1.0)))
 
@@ -98,5 +104,23 @@ def test_damaged_rooms_are_told_and_damaged_zones_hold_it_up(tmp_path: Path) -> 
         assert client.home().rooms == before
     assert told[-1].startswith("the rooms are as without edits: ")
     file_in(tmp_path, "zones.yaml").write_text("damaged", "utf-8")
-    with pytest.raises(ZonesError, match=r"zones\.yaml"), lived(tmp_path, told):
-        pass
+    aside = file_in(tmp_path, "zones.yaml").with_name("zones.yaml.damaged")
+    for _ in range(2):
+        with pytest.raises(ZonesError, match=f"mend {aside}"), lived(tmp_path, told):
+            pass
+    aside.unlink()
+    with lived(tmp_path, told) as client:
+        assert client.home().zones == ()
+
+
+def test_zones_of_the_home_count_until_some_are_edited(tmp_path: Path) -> None:
+    home, told = tmp_path / "home", [""]
+    shutil.copytree(HOMES / "studio", home)
+    of_home = Zones((Zone("bowl", ZoneKind.NO_GO, RUG.points),))
+    save_zones(of_home, load_map(home / MAP_NAME), home / ZONES_NAME)
+    with lived(tmp_path / "kept", told, str(home)) as client:
+        assert [zone.name for zone in client.home().zones] == ["bowl"]
+        assert client.ask(lambda robot: robot.mission.context).zones.names == ("bowl",)
+        client.remove_zone("bowl")
+    with lived(tmp_path / "kept", told, str(home)) as client:
+        assert client.home().zones == ()
