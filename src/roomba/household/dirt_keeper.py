@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import datetime as dt
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from roomba.client.protocol import CleanReport
 from roomba.configuration.household import DueConfig
@@ -17,24 +17,25 @@ class DirtKeeper:
     def __init__(self, kept: KeptValues, config: DueConfig) -> None:
         """Read what was kept."""
         self._kept, self._config = kept, config
-        self._records = kept.read(DirtRecords())
+        self._records = self._written = kept.read(DirtRecords())
 
     def note(self, report: CleanReport, at: dt.datetime) -> bool:
         """Learn from a clean that ended; return whether it told anything. Raises OSError."""
         return self._keep(learned(self._records, report.rooms, at, self._config))
 
-    def rename(self, names: Mapping[str, str]) -> None:
-        """Go on with other names of rooms, by the old ones; raises OSError."""
-        self._keep(self._records.with_room_names(names))
+    def rename(self, names: Mapping[str, str], rooms: Collection[str]) -> None:
+        """Go on with other names of ``rooms``, by the old ones; raises OSError."""
+        self._keep(self._records.with_room_names(names, rooms))
 
     def needs(self, rooms: Sequence[str], now: dt.datetime, period: float) -> tuple[RoomNeed, ...]:
         """Return what rooms need now, if the next time is ``period`` days later."""
         return needs_of(self._records, rooms, now, period, self._config)
 
     def _keep(self, records: DirtRecords) -> bool:
-        """Keep records; return whether they are others than before."""
-        if records == self._records:
-            return False
+        """Keep records; return whether they are others than before. Raises OSError."""
+        is_news = records != self._records
         self._records = records
-        self._kept.write(records)
-        return True
+        if records != self._written:
+            self._kept.write(records)
+            self._written = records
+        return is_news

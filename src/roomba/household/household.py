@@ -71,6 +71,7 @@ class LiveHousehold:
             now,
             local_zone(),
             DirtKeeper(KeptValues(folder / "dirt.json", tell), config.due),
+            KeptValues(folder / "rooms.json", tell),
         )
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._live, name="household", daemon=True)
@@ -84,6 +85,7 @@ class LiveHousehold:
         self._ends.set()
         if self._thread.is_alive():
             self._thread.join(_END)
+        self._trying(self._plans.follow_rooms)
         self._trying(self._upkeep.end)
 
     def look(self) -> None:
@@ -186,6 +188,11 @@ class LiveHousehold:
                 self.robot.empty_at_station()
 
     def _require_rooms(self, order: PlannedOrder) -> None:
+        """Raise RequestRefusedError for rooms that the map does not have.
+
+        What plans name already goes on by the rooms' names before: they may have changed places.
+        """
+        _kept(self._plans.follow_rooms)
         # Without a robot that answers its rooms are not known.
         with contextlib.suppress(RobotUnavailableError):
             require_rooms(order, self.robot.home().rooms)

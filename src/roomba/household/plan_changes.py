@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from typing import TypeVar
 
 from roomba.client.protocol import RequestRefusedError
 from roomba.plans.plan import HouseholdPlans, Plan, Preset
 from roomba.vocabulary import listed
 
 Change = Callable[[HouseholdPlans], HouseholdPlans]
+_Ordered = TypeVar("_Ordered", Plan, Preset)
 
 
 def replaced(
@@ -31,3 +33,42 @@ def removed(household: HouseholdPlans, kind: str, name: str) -> HouseholdPlans:
         names = listed([each.name for each in values])
         raise RequestRefusedError(f"expected one of {names}, got {name[:80]!r}")
     return household.model_copy(update={kind: tuple(each for each in values if each.name != name)})
+
+
+def with_orders_again(
+    after: HouseholdPlans, before: HouseholdPlans, names: Mapping[str, str]
+) -> Change:
+    """Return a change that gives plans and presets the orders that they had ``before``.
+
+    Those of which the order is no longer as it was ``after`` go on by other names of rooms.
+    """
+
+    def change(all_: HouseholdPlans) -> HouseholdPlans:
+        return all_.model_copy(
+            update={
+                "plans": _again(all_.plans, after.plans, before.plans, names),
+                "presets": _again(all_.presets, after.presets, before.presets, names),
+            }
+        )
+
+    return change
+
+
+def _again(
+    now: Sequence[_Ordered],
+    after: Sequence[_Ordered],
+    before: Sequence[_Ordered],
+    names: Mapping[str, str],
+) -> tuple[_Ordered, ...]:
+    was = {each.name: each.order for each in after}
+    orders = {each.name: each.order for each in before}
+    return tuple(
+        each.model_copy(
+            update={
+                "order": orders[each.name]
+                if each.name in orders and each.order == was.get(each.name)
+                else each.order.with_room_names(names)
+            }
+        )
+        for each in now
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import datetime as dt
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from typing import Final
 
 from pydantic import ValidationError
@@ -23,8 +23,9 @@ from roomba.client.view import CleanOrder, RobotView, RoomView
 from roomba.configuration.household import PlansConfig
 from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.folder import KeptValues
-from roomba.household.plan_changes import Change
+from roomba.household.plan_changes import Change, with_orders_again
 from roomba.household.room_names import names_now
+from roomba.household.seen_rooms import RoomsEdit, SeenRooms, seen
 from roomba.plans.due import DAY, RoomNeed
 from roomba.plans.memory import Memory, Note
 from roomba.plans.plan import HouseholdPlans, PlannedOrder
@@ -50,6 +51,7 @@ class PlanKeeper:
         now: Callable[[], dt.datetime],
         zone: str,
         dirt: DirtKeeper,
+        rooms: KeptValues,
     ) -> None:
         """Read what was kept; ``now`` is the wall clock, ``zone`` that of a new household."""
         self._robot, self._kept, self._kept_memory = robot, plans, memory
@@ -60,7 +62,7 @@ class PlanKeeper:
         self._version, self._view_of_version = 0, PlansView()
         self._is_first = True
         self._last: CleanReport | None = None
-        self._rooms: tuple[RoomView, ...] = ()
+        self._kept_rooms, self._seen = rooms, rooms.read(SeenRooms())
         self._show()
 
     def view(self) -> PlansView:
@@ -76,13 +78,25 @@ class PlanKeeper:
         """Take a step; ``view`` is None while the robot does not answer. Raises OSError."""
         with self._lock:
             now = self._now()
+            unwritten = self._followed_rooms(now)
             scheduler = Scheduler(self._household, self._config)
             has_learned = self._learn(view, now)
             self._memory, act = scheduler.step(self._memory, now, self._situation(view))
             if act is not None:
                 self._memory = self._carried_out(scheduler, act, now)
             self._keep_memory(is_changed=has_learned)
-            self._follow_rooms(now)
+            if unwritten is not None:
+                raise unwritten
+
+    def follow_rooms(self) -> None:
+        """Let plans, presets and what is learned go by the rooms' names as they are now.
+
+        Raises OSError; then it is tried again with the next look.
+        """
+        with self._lock:
+            unwritten = self._followed_rooms(self._now())
+        if unwritten is not None:
+            raise unwritten
 
     def _learn(self, view: RobotView | None, now: dt.datetime) -> bool:
         """Learn of the rooms' dirt from a clean that ended since the last look; raises OSError."""
@@ -90,28 +104,49 @@ class PlanKeeper:
         is_news = last is not None and last is not self._last and not self._is_first
         return last is not None and is_news and self._dirt.note(last, now)
 
-    def _follow_rooms(self, now: dt.datetime) -> None:
-        """Let plans, presets and what is learned go by the rooms' names as they are now.
-
-        Raises OSError; then it is tried again.
-        """
-        with contextlib.suppress(RobotUnavailableError):
+    def _followed_rooms(self, now: dt.datetime) -> OSError | None:
+        """Follow the names of rooms; return what the disk refused."""
+        try:
             rooms = self._robot.home().rooms
-            if rooms == self._rooms:
-                return
-            if names := names_now(self._rooms, rooms):
-                self._rename_rooms(names, now)
-            self._rooms = rooms
+        except RobotUnavailableError:
+            return None
+        # A map that is being made has none yet, and says nothing of those of another one.
+        if not rooms or seen(rooms) == self._seen.rooms:
+            return None
+        try:
+            self._follow(rooms, now)
+        except OSError as error:
+            return error
+        return None
 
-    def _rename_rooms(self, names: Mapping[str, str], now: dt.datetime) -> None:
-        self._dirt.rename(names)
-        before, changed = self._write(lambda all_: all_.with_room_names(names))
-        told = listed([f"{name!r} is {new!r}" for name, new in names.items()])
+    def _follow(self, rooms: Sequence[RoomView], now: dt.datetime) -> None:
+        """Let plans go on by other rooms, and remember these; raises OSError."""
+        last, known = self._seen, seen(rooms)
+        names = names_now(last.views, rooms)
+        edit = RoomsEdit(rooms=last.rooms)
+        if last.edit.is_undone_by(known):
+            undo = with_orders_again(last.edit.plans_after, last.edit.plans_before, names)
+            self._write_noted(undo, now, "has its rooms again: the newest edit was taken back")
+        elif names:
+            told = listed([f"{name!r} is {new!r}" for name, new in names.items()])
+            text = f"goes on by other names of rooms: {told}"
+            before, after = self._write_noted(lambda all_: all_.with_room_names(names), now, text)
+            edit = RoomsEdit(rooms=last.rooms, plans_before=before, plans_after=after)
+        self._seen = SeenRooms(rooms=known, edit=edit)
+        self._kept_rooms.write(self._seen)
+        if names:
+            self._dirt.rename(names, [room.name for room in last.rooms])
+
+    def _write_noted(
+        self, change: Change, now: dt.datetime, text: str
+    ) -> tuple[HouseholdPlans, HouseholdPlans]:
+        """Change the plans as :meth:`_write` does, and note of each one that changed why."""
+        before, changed = self._write(change)
         for plan in changed.plans:
             if plan not in before.plans:
-                note = Note(at=now, plan=plan.name, text=f"goes on by other names of rooms: {told}")
-                self._memory = self._memory.noting(note)
+                self._memory = self._memory.noting(Note(at=now, plan=plan.name, text=text))
         self._keep_memory(is_changed=True)
+        return before, changed
 
     def _situation(self, view: RobotView | None) -> Situation:
         if view is None:

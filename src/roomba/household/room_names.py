@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 import shapely
 
@@ -11,23 +12,53 @@ from roomba.client.view import RoomView
 from roomba.plans.plan import PlannedOrder
 from roomba.vocabulary import listed
 
+_SAME_AREA: Final = 0.05
+"""Share by which the areas of parts may differ from that of the whole: cells of seams."""
+
 
 def names_now(before: Sequence[RoomView], after: Sequence[RoomView]) -> dict[str, str]:
     """Return the names that are gone, and what their rooms are called now.
 
-    A room that lies where one lay before was renamed; rooms that lie in one that is larger now were
-    joined, if nothing else changed. Of another map, or of rooms found anew, nothing is returned.
+    A room that lies where one lay before was renamed. One that is as large as some that lie in it,
+    and has the name of one of them, was joined of these. Where a room was split and its name is
+    gone, its largest part goes on. Of another map, or of rooms found anew, nothing is returned.
     """
-    gone = [room for room in before if not _is_in(room, after)]
+    changed = [room for room in before if not _is_in(room, after)]
     new = [room for room in after if not _is_in(room, before)]
     renamed = {room.rings: room.name for room in new}
-    if gone and all(room.rings in renamed for room in gone):
-        names = {room.name: renamed[room.rings] for room in gone}
-    elif len(new) == 1 and len(gone) > 1 and all(_holds(new[0], room) for room in gone):
-        names = {room.name: new[0].name for room in gone}
-    else:
-        return {}
-    return {name: now for name, now in names.items() if name != now}
+    names = {}
+    for room in changed:
+        now = renamed.get(room.rings) or _joined_into(room, changed, new) or _part_of(room, new)
+        if now and now != room.name:
+            names[room.name] = now
+    return names
+
+
+def _joined_into(room: RoomView, changed: Sequence[RoomView], new: Sequence[RoomView]) -> str:
+    """Return the name of the room of which a room is a part now; "" if it is of none."""
+    for whole in new:
+        parts = [each for each in changed if _holds(whole, each)]
+        is_named = whole.name in [part.name for part in parts]
+        if len(parts) > 1 and room in parts and is_named and _is_all_of(whole, parts):
+            return whole.name
+    return ""
+
+
+def _part_of(room: RoomView, new: Sequence[RoomView]) -> str:
+    """Return the name of the largest part of a room that was split; "" if it was not.
+
+    If a part has the name, plans that name the room go on with that.
+    """
+    parts = [each for each in new if _holds(room, each)]
+    if len(parts) < 2 or not _is_all_of(room, parts):
+        return ""
+    if room.name in [part.name for part in parts]:
+        return room.name
+    return max(parts, key=lambda part: part.area).name
+
+
+def _is_all_of(whole: RoomView, parts: Sequence[RoomView]) -> bool:
+    return abs(sum(part.area for part in parts) - whole.area) <= _SAME_AREA * whole.area
 
 
 def require_rooms(order: PlannedOrder, rooms: Sequence[RoomView]) -> None:

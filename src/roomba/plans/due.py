@@ -6,7 +6,7 @@ It has no clock and asks no robot. Grains are those that the robot's dirt sensor
 from __future__ import annotations
 
 import datetime as dt
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -35,11 +35,16 @@ class DirtRecords(Frozen):
 
     rooms: dict[str, RoomRecord] = Field(default={}, max_length=_MOST_ROOMS)
 
-    def with_room_names(self, names: Mapping[str, str]) -> DirtRecords:
-        """Return the records by other names of rooms; a joined room goes on by its own record."""
+    def with_room_names(self, names: Mapping[str, str], rooms: Collection[str]) -> DirtRecords:
+        """Return the records by other names of ``rooms``, which there were until now.
+
+        A room that others were joined with goes on by its own record; that of a room that is long
+        gone gives way.
+        """
         kept = {name: record for name, record in self.rooms.items() if name not in names}
         moved = {now: self.rooms[name] for name, now in names.items() if name in self.rooms}
-        return DirtRecords(rooms={**moved, **kept})
+        of_rooms = {name: record for name, record in kept.items() if name in rooms}
+        return DirtRecords(rooms={**kept, **moved, **of_rooms})
 
 
 @dataclass(frozen=True, slots=True)

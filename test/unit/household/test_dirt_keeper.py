@@ -57,6 +57,7 @@ class Living:
             lambda: self.now,
             "UTC",
             DirtKeeper(kept("dirt.json"), DueConfig()),
+            kept("rooms.json"),
         )
 
     def day(self, view: RobotView = DOCKED, **grains: float) -> list[CleanOrder]:

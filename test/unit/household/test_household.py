@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import datetime as dt
-import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -246,13 +245,12 @@ def test_plans_and_presets_follow_the_names_of_rooms(tmp_path: Path) -> None:
         due = household.plans().next_at
 
         def wait_for_rooms(*names: str) -> None:
-            planned = household.plans
+            planned = life.household.plans
             wait_until(
                 lambda: planned().household.plans[0].order.rooms == names, DEADLINE, f"{names}"
             )
             assert planned().household.presets[0].order.rooms == names
 
-        time.sleep(0.1)  # the household looks
         home.rename_room(one, "Den")
         wait_for_rooms("Den", other)
         # Of the same time as before.
@@ -262,8 +260,38 @@ def test_plans_and_presets_follow_the_names_of_rooms(tmp_path: Path) -> None:
         wait_for_rooms(one, other)
         home.join_rooms((other, one))
         wait_for_rooms(other)
+        home.undo_rooms()
+        wait_for_rooms(one, other)
+        life.wait_for("has its rooms again")
+        # While no household lives, as after a kill.
+        life.household.stop()
+        home.rename_room(one, "Hall")
+        life.live()
+        household = life.household
+        wait_for_rooms("Hall", other)
         household.begin_preset("now")
         wait_until(lambda: life.phase() == "cleaning", DEADLINE, "the robot cleans")
+    finally:
+        life.household.stop()
+        life.robot.end()
+
+
+def test_what_names_changed_places_meanwhile_is_followed_before_a_new_order(
+    tmp_path: Path,
+) -> None:
+    life = Life(tmp_path)
+    try:
+        first = life.robot.home().rooms[0]
+        x, y = first.anchor
+        life.robot.split_room(first.name, (x - 20.0, y), (x + 20.0, y))
+        one, other = (room.name for room in life.robot.home().rooms[:2])
+        order = PlannedOrder(mode=CleanMode.ROOMS, rooms=(one,))
+        life.household.put_preset(Preset(name="old", order=order))
+        for name, new in ((one, "old"), (other, one)):
+            life.robot.rename_room(name, new)
+        life.household.put_preset(Preset(name="new", order=order))
+        rooms = [preset.order.rooms for preset in life.household.plans().household.presets]
+        assert rooms == [("old",), (one,)]
     finally:
         life.household.stop()
         life.robot.end()

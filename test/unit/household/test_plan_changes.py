@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from roomba.client.protocol import RequestRefusedError
-from roomba.household.plan_changes import removed, replaced
-from roomba.plans.plan import HouseholdPlans, Plan, Preset
+from roomba.household.plan_changes import removed, replaced, with_orders_again
+from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset
+from roomba.vocabulary import CleanMode
 
 PLANS = HouseholdPlans(plans=(Plan(name="a"), Plan(name="b")), presets=(Preset(name="a"),))
 
@@ -26,3 +27,18 @@ def test_one_is_removed_and_what_there_is_not_is_refused() -> None:
     assert [plan.name for plan in removed(PLANS, "plans", "a").plans] == ["b"]
     with pytest.raises(RequestRefusedError, match="one of a, b, got 'c'"):
         removed(PLANS, "plans", "c")
+
+
+def test_orders_that_did_not_change_since_are_given_back_and_others_go_on_by_names() -> None:
+    def plans(*rooms: str) -> HouseholdPlans:
+        named = zip("abc", rooms, strict=False)
+        return HouseholdPlans(
+            plans=tuple(
+                Plan(name=name, order=PlannedOrder(mode=CleanMode.ROOMS, rooms=tuple(room)))
+                for name, room in named
+            )
+        )
+
+    before, after, now = plans("HK", "K"), plans("H", "H"), plans("H", "HX", "X")
+    again = with_orders_again(after, before, {"X": "Y"})(now)
+    assert ["".join(plan.order.rooms) for plan in again.plans] == ["HK", "HY", "Y"]

@@ -46,6 +46,7 @@ class Living:
             lambda: self.now,
             "UTC",
             DirtKeeper(kept("dirt.json"), DueConfig()),
+            kept("rooms.json"),
         )
 
     def put(self, plan: Plan) -> None:

@@ -46,6 +46,13 @@ def test_joined_rooms_are_called_by_the_first_ones_name() -> None:
     assert names_now(ROOMS, one) == {"hall": "den", "kitchen": "den"}
 
 
+def test_several_edits_at_once_are_followed() -> None:
+    joined, spa = room("hall", 0.0, 5.0), called(DEN, "spa")
+    assert names_now(ROOMS, (joined, spa)) == {"kitchen": "hall", "den": "spa"}
+    parts = room("X", 5.0, 7.5), room("X 2", 7.5, 9.0)
+    assert names_now(ROOMS, (called(HALL, "Flur"), KITCHEN, *parts)) == {"hall": "Flur", "den": "X"}
+
+
 @pytest.mark.parametrize(
     "after",
     [
@@ -54,9 +61,20 @@ def test_joined_rooms_are_called_by_the_first_ones_name() -> None:
         (),
         (room("room 1", 0.0, 5.1), room("room 2", 5.1, 9.0)),
         (room("hall", 20.0, 22.0), KITCHEN, DEN),
-        (room("hall", 0.0, 9.0), room("attic", 20.0, 29.0)),
+        (room("attic", -1.0, 12.0),),
+        (room("hall", -1.0, 12.0),),
+        (room("attic", 0.0, 9.0),),
     ],
-    ids=["the same", "split", "none", "found anew", "another map", "joined, and more"],
+    ids=[
+        "the same",
+        "split",
+        "none",
+        "found anew",
+        "another map",
+        "one large room",
+        "one large room of a name of ours",
+        "one as large as all, of another name",
+    ],
 )
 def test_of_what_is_no_rename_nothing_is_made(after: tuple[RoomView, ...]) -> None:
     assert names_now(ROOMS, after) == {}
