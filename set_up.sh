@@ -87,7 +87,9 @@ compiled_is_complete() {
 }
 
 compiled_stamp() {
-  printf '%s\n' "$CACHE/compiled/$(compiled_hash)"
+  local hash
+  hash=$(compiled_hash) || return
+  printf '%s\n' "$CACHE/compiled/$hash"
 }
 
 # What does not compile is for the tests to report; a set-up can do without, it only makes the first start slow.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bisect
 import heapq
 import operator
+import shlex
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -22,10 +23,10 @@ _SKIPPED: Final = 10**9
 """ns; after what cannot be read it goes on so much later."""
 _MOST_SKIPS: Final = 1000
 _RECOVER: Final = {
-    "end magic": "mcap recover {} -o whole.mcap",
-    "malformed": "sqlite3 {} .recover | sqlite3 whole.db3",
+    "end magic": ("mcap", "mcap recover {} -o whole.mcap"),
+    "malformed": ("db3", "sqlite3 {} .recover | sqlite3 whole.db3"),
 }
-"""What a reader says of files of ROS 2 that are cut, and the formats' own tools for them."""
+"""What a reader says of files of ROS 2 that are cut, their form, and its own tool for them."""
 
 _Place = tuple[int, int]
 """Where a message is in a bag: its chunk, and the place in that."""
@@ -203,7 +204,9 @@ def _told(path: Path, error: Exception) -> str:
     if isinstance(error, PermissionError):
         return f"{path}: cannot be read: {error.strerror}"
     told = f"{path}: expected a whole bag, it cannot be opened: {reason.rstrip('.')}"
-    for sign, tool in _RECOVER.items():
+    for sign, (form, tool) in _RECOVER.items():
         if sign in reason:
-            told += f"; if it was cut short, `{tool.format(path)}` saves what is whole"
+            data = next(path.glob(f"*.{form}"), path) if path.is_dir() else path
+            command = tool.format(shlex.quote(str(data)))
+            told += f"; if it was cut short, `{command}` saves what is whole"
     return told

@@ -348,6 +348,8 @@ def _ranges(words: list[str], beams: int) -> NDArray[np.float32]:
 
 
 def _pose(words: list[str]) -> Pose:
+    if len(words) < 3:
+        raise ValueError(f"expected x, y and theta, got {len(words)} numbers")
     x, y, theta = map(_finite, words)
     return Pose(x, y, wrap_angle(theta))
 

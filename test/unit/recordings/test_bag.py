@@ -248,13 +248,16 @@ def test_odometry_without_an_orientation_is_refused(
     log.close()
 
 
-def test_scans_in_millimetres_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("farthest", [10.0, 10_000.0])
+def test_scans_in_millimetres_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, farthest: float
+) -> None:
     def in_millimetres(number: int, item: Item) -> Item:
         assert isinstance(item.value, np.ndarray)
         return replace(item, value=1e3 * item.value)
 
     items = changed(drive(1.0), "/scan", in_millimetres)
-    monkeypatch.setattr(made_logs, "FARTHEST", 1e3 * made_logs.FARTHEST)
+    monkeypatch.setattr(made_logs, "FARTHEST", farthest)
     log = BagLog(write_bag(tmp_path / "made.bag", items))
     [scans] = [each for each in log.channels if each.kind is Kind.SCAN]
     for _, value in read(log, scans):

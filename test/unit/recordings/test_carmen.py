@@ -184,11 +184,11 @@ def test_a_log_of_broken_lines_alone_is_refused_with_what_is_wrong_with_the_firs
 
 
 def test_scans_in_centimetres_are_refused(tmp_path: Path) -> None:
-    scan = "FLASER 3 400.0 500.0 600.0 0 0 0 0 0 0 12.5 nohost 0.25"
-    log = log_of(tmp_path, scan)
+    ranges = " ".join(f"{400.0 + number}" for number in range(20))
+    log = log_of(tmp_path, f"FLASER 20 {ranges} 0 0 0 0 0 0 12.5 nohost 0.25")
     [refused] = values(log, channel(log, "FLASER", Kind.SCAN))
     assert isinstance(refused, Refused)
-    assert "3 of 3 that are farther, 500 m in the middle: are they in mm?" in refused.reason
+    assert "20 of 20 that are farther, 409.5 m in the middle: are they in mm?" in refused.reason
 
 
 def test_a_lone_beam_that_is_too_far_to_be_true_met_nothing(tmp_path: Path) -> None:

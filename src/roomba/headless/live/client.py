@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from roomba.client import view
 from roomba.client.observed import SPILL, TickTimes
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
-from roomba.errors import RoombaError
+from roomba.errors import RoombaError, RoomsError
 from roomba.geometry import STANDSTILL, Pose
 from roomba.headless.embodied import Embodied
 from roomba.headless.live import playing
@@ -312,7 +312,7 @@ class LiveClient:
             return
         try:
             self._kept_plan.save(self.plan, plan)
-        except OSError as error:
+        except (OSError, RoomsError) as error:
             raise RequestRefusedError(
                 f"rooms and zones cannot be kept: {error}; nothing was changed"
             ) from error

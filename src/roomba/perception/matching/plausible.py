@@ -14,6 +14,10 @@ _WIDEST: Final = 4.0 * math.pi
 """rad; no scan goes round more often than twice."""
 
 
+_LEAST: Final = 10
+"""Beams; fewer that are too far may have failed."""
+
+
 def scan_fault(
     ranges: NDArray[np.float32], first: float, step: float, nearest: float, farthest: float
 ) -> str:
@@ -41,12 +45,14 @@ def scan_fault(
             "expected ranges from 0 m or more on up to a larger one, got "
             f"{nearest:g} to {farthest:g} m"
         )
-    # Comparisons with NaN are false.
-    echoes = ranges[(ranges > 0.0) & (ranges < np.float32(farthest))]
-    far = int(np.count_nonzero(echoes > FARTHEST_ECHO))
-    if 2 * far > len(echoes):
+    # Comparisons with NaN are false, and infinite is no length.
+    echoes = ranges[(ranges > 0.0) & (ranges < 1e3 * FARTHEST_ECHO)]
+    far = echoes[echoes > FARTHEST_ECHO]
+    is_usual = len(far) >= _LEAST and 2 * len(far) > len(echoes)
+    # One number again and again is what a driver tells for no echo.
+    if is_usual and 2 * len(np.unique(far)) > len(far):
         return (
-            f"expected ranges up to {FARTHEST_ECHO:g} m, got {far} of {len(echoes)} that are "
-            f"farther, {float(np.median(echoes)):g} m in the middle: are they in mm?"
+            f"expected ranges up to {FARTHEST_ECHO:g} m, got {len(far)} of {len(echoes)} that are "
+            f"farther, {float(np.median(far)):g} m in the middle: are they in mm?"
         )
     return ""

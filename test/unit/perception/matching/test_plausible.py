@@ -57,14 +57,19 @@ def test_limits_that_leave_no_range_are_told(nearest: float, farthest: float) ->
     assert "up to a larger one" in scan_fault(scan(), 0.0, STEP, nearest, farthest)
 
 
-@pytest.mark.parametrize("farthest", [8000.0, math.inf])
+def in_millimetres(beams: int = 180) -> NDArray[np.float32]:
+    return np.linspace(1500.0, 2500.0, beams, dtype=np.float32)
+
+
+@pytest.mark.parametrize("farthest", [8.0, 8000.0, math.inf])
 def test_ranges_in_millimetres_are_told(farthest: float) -> None:
-    fault = scan_fault(scan(2000.0), 0.0, STEP, 100.0, farthest)
+    """Also those of a driver that tells how far they count in m."""
+    fault = scan_fault(in_millimetres(), 0.0, STEP, 0.1, farthest)
     assert "got 180 of 180 that are farther, 2000 m in the middle: are they in mm?" in fault
 
 
 def test_zeros_that_mean_no_echo_are_no_ranges() -> None:
-    ranges = scan(2000.0)
+    ranges = in_millimetres()
     ranges[20:] = 0.0
     assert "got 20 of 20 that are farther" in scan_fault(ranges, 0.0, STEP, 0.0, 8000.0)
 
@@ -75,8 +80,8 @@ def test_some_beams_that_tell_what_cannot_be_are_no_fault_of_the_scan() -> None:
     assert scan_fault(ranges, 0.0, STEP, 0.1, 1e9) == ""
 
 
-def test_a_number_for_no_echo_is_no_range_in_millimetres() -> None:
-    """A range of the farthest and more met nothing; many drivers tell a large number."""
+@pytest.mark.parametrize("farthest", [80.0, math.inf])
+def test_a_number_for_no_echo_is_no_range_in_millimetres(farthest: float) -> None:
     ranges = scan(1000.0)
     ranges[:3] = 2.0
-    assert scan_fault(ranges, 0.0, STEP, 0.1, 80.0) == ""
+    assert scan_fault(ranges, 0.0, STEP, 0.1, farthest) == ""

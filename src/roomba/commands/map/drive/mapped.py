@@ -78,10 +78,11 @@ def mapped_drive(logs: Sequence[Path], wanted: Wanted, show: Show) -> MappedDriv
             reasons = "; ".join(notes) or "it has none beside odometry"
             raise LogError(f"{_names(logs)}: no scan could be used: {reasons}")
         if not replay.mapper.version:
-            raise LogError(
+            told = (
                 f"{_names(logs)}: expected scans that show walls, got {replay.scans} with hardly "
                 "anything in sight; look at them, or record near walls"
             )
+            raise LogError("; ".join((told, *notes)))
         show(1.0, "finishing the map")
         occupancy = replay.finish()
         begin = Pose(*replay.mapper.trajectory[0].tolist())
