@@ -127,7 +127,7 @@ class BagFile:
     def _whole(self, reader: Any, connections: Sequence[Any]) -> Iterator[tuple[int, bytes]]:
         """Yield times, ns, and messages; goes on a second later after what cannot be read."""
         start: int | None = None
-        skips, reason = 0, ""
+        skips, reason, topic = 0, "", connections[0].topic
         while True:
             try:
                 for _, recorded, data in reader.messages(connections=connections, start=start):
@@ -137,11 +137,14 @@ class BagFile:
             except Exception as error:  # rosbags raises many kinds of errors of a damaged bag
                 start = (start or reader.start_time) + _SKIPPED
                 skips += 1
-                reason = str(error) or type(error).__name__
+                reason = f"{type(error).__name__}: {error}"
                 if start > reader.end_time or skips > _MOST_SKIPS:
                     break
+                # What it began to read it would take for read.
+                reader.close()
+                reader.open()
+                connections = [each for each in reader.connections if each.topic == topic]
         if skips:
-            topic = connections[0].topic
             self._note(f"{topic}: the bag is damaged, {skips} s are missing: {reason}")
 
     def _found_runs(self) -> list[_ClockRun]:

@@ -21,12 +21,15 @@ from fixtures.drives.made_logs import (
     write_bag,
     write_bag_2,
 )
+from rosbags.rosbag1 import Reader, Writer
 from rosbags.rosbag2 import StoragePlugin
 
 from roomba.geometry import Pose
 from roomba.perception.matching.mounts import Mount, Mounts
 from roomba.recordings.bag import BagLog
+from roomba.recordings.bag_file import BagFile
 from roomba.recordings.log import Channel
+from roomba.recordings.message_types import known_types
 from roomba.recordings.readings import (
     Kind,
     LidarScan,
@@ -280,6 +283,54 @@ def test_a_damaged_piece_costs_that_piece_alone(tmp_path: Path) -> None:
     assert found[-1][0] > BEGAN + 59.0
     assert any("/scan: the bag is damaged" in note for note in log.notes)
     log.close()
+
+
+def packed(path: Path, source: Path) -> Path:
+    """Write the messages of a bag into one of small chunks that are packed."""
+    writer = Writer(path)
+    writer.set_compression(Writer.CompressionFormat.BZ2)
+    writer.chunk_threshold = 40_000
+    store = known_types(is_first=True)
+    with Reader(source) as reader, writer:
+        connections = {
+            each.id: writer.add_connection(each.topic, each.msgtype, typestore=store)
+            for each in reader.connections
+        }
+        for connection, time, raw in reader.messages():
+            writer.write(connections[connection.id], time, raw)
+    return path
+
+
+def test_of_a_bag_with_a_broken_packed_chunk_the_others_are_read(tmp_path: Path) -> None:
+    path = packed(tmp_path / "packed.bag", write_bag(tmp_path / "made.bag", drive(60.0)))
+    data = bytearray(path.read_bytes())
+    second = data.index(b"BZh", data.index(b"BZh") + 1)
+    data[second + 50 : second + 80] = bytes(30)
+    path.write_bytes(data)
+    log = BagLog(path)
+    # Each topic is read by itself, and one after another.
+    for channel in log.channels:
+        if channel.kind is not None:
+            found = read(log, channel)
+            assert found[0][0] == pytest.approx(BEGAN)
+            assert found[-1][0] > BEGAN + 59.0
+            assert 0.4 * channel.messages < len(found) < channel.messages
+    assert any("/odom: the bag is damaged" in note for note in log.notes)
+    log.close()
+
+
+def test_after_a_broken_last_chunk_the_ones_before_are_read_again(tmp_path: Path) -> None:
+    path = packed(tmp_path / "packed.bag", write_bag(tmp_path / "made.bag", drive(5.0)))
+    data = bytearray(path.read_bytes())
+    assert data.count(b"BZh") == 2
+    last = data.rindex(b"BZh")
+    data[last + 50 : last + 80] = bytes(30)
+    path.write_bytes(data)
+    bag = BagFile(path)
+    first = list(bag.messages("/odom"))
+    assert first
+    assert list(bag.messages("/odom")) == first
+    bag.close()
 
 
 @pytest.mark.parametrize("kept", [0.3, 0.9])
