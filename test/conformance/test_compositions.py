@@ -42,6 +42,7 @@ CASES = {
     ),
     "clean while mapping": Case(TWO_ROOMS, is_mapped=False, seed=2),
     "clean with worn wheels": Case(TWO_ROOMS, wheels="worn", seed=2),
+    # Of this seed it touches nothing: a touch would amplify the last bits, if some differed.
     "clean with worn wheels and a lidar that turns": Case(
         HOME, wheels="worn", lidar="neato", seed=1
     ),
@@ -71,9 +72,9 @@ def test_it_does_the_same(composition: str, name: str, references: dict[str, Out
     if name not in references:
         references[name] = REFERENCE(case)
     reference = references[name]
-    untouched = reference.poses[reference.poses[:, 0] <= reference.first_hit]
-    assert np.hypot(*np.diff(untouched[:, 1:3], axis=0).T).sum() > 3.0
-    assert_same(COMPOSITIONS[composition](case), reference)
+    way = np.hypot(*np.diff(reference.poses[:, 1:3], axis=0).T).sum()
+    assert way > 3.0
+    assert_same(COMPOSITIONS[composition](case), reference, within=1e-6)
 
 
 def test_bursts_run_with_a_lidar_that_turns() -> None:
@@ -154,6 +155,4 @@ def cases(draw: st.DrawFn) -> Case:
 )
 @given(cases())
 def test_with_and_without_bursts_a_run_is_the_same(case: Case) -> None:
-    # Scans of a lidar that turns are put together to the last bit but one, which decisions amplify.
-    within = 1e-6 if case.lidar is None else 0.01
-    assert_same(COMPOSITIONS["bursts"](case), REFERENCE(case), within=within)
+    assert_same(COMPOSITIONS["bursts"](case), REFERENCE(case), within=1e-6)

@@ -316,11 +316,9 @@ class Localizer:
         self, view: ScanView, stamp: float, reckoned: Pose, tells_places_apart: bool
     ) -> None:
         """Correct the pose by a scan that was taken at ``reckoned``, perhaps a little ago."""
-        tracker = self._tracker
-        since = None
-        if not self._reckoning.is_newest(stamp):
-            since = reckoned.inverse().compose(self._reckoning.pose)
-            tracker.pose = tracker.pose.compose(since.inverse())
+        tracker, is_late = self._tracker, not self._reckoning.is_newest(stamp)
+        if is_late:
+            tracker.pose = self._pose_then(reckoned)
         unsure = deviation(self._row["covariance"])
         if self._confirmation.awaited is None and unsure > self._config.astray_deviation:
             spread = (unsure, math.sqrt(tracker.covariance[2, 2]))
@@ -328,8 +326,8 @@ class Localizer:
         tracker.see(view)
         fit = tracker.judge(view) if tells_places_apart else None
         self._walls.learn()
-        if since is not None:
-            tracker.pose = tracker.pose.compose(since)
+        if is_late:
+            tracker.pose = self._pose_since(reckoned)
         calibrate(self.belief)
         if fit is None:
             return
@@ -341,10 +339,17 @@ class Localizer:
             self._reconsider(stamp, view, reckoned)
 
     def _pose_then(self, reckoned: Pose) -> Pose:
-        """Return where the robot was on the map when dead reckoning had it at ``reckoned``."""
-        pose, then = self._tracker.pose, np.array([reckoned.x, reckoned.y, reckoned.theta])
-        here = np.array([pose.x, pose.y, pose.theta])
+        """Return where the robot was on the map when dead reckoning had it at ``reckoned``.
+
+        As compiled code has it, to the last bit.
+        """
+        here, then = _row_of(self._tracker.pose), _row_of(reckoned)
         return Pose(*pose_then(here, self._row["reckoned"], then))
+
+    def _pose_since(self, reckoned: Pose) -> Pose:
+        """Return where the robot is that was at the tracker's pose at ``reckoned``."""
+        here, then = _row_of(self._tracker.pose), _row_of(reckoned)
+        return Pose(*pose_then(here, then, self._row["reckoned"]))
 
     def _reconsider(self, stamp: float, view: ScanView, reckoned: Pose) -> None:
         """Forget the pose, unless what is in sight says that the home changed, and not the pose."""
@@ -389,3 +394,8 @@ class Localizer:
 
     def _tracker_at(self, pose: Pose, covariance: NDArray[np.float64]) -> Tracker:
         return Tracker(self.field, self._config, pose, covariance, self.belief, self.numbers)
+
+
+def _row_of(pose: Pose) -> NDArray[np.float64]:
+    """Return a pose as compiled code has it, [3]."""
+    return np.array([pose.x, pose.y, pose.theta])
