@@ -23,9 +23,13 @@ class DirtKeeper:
         """Learn from a clean that ended; return whether it told anything. Raises OSError."""
         return self._keep(learned(self._records, report.rooms, at, self._config))
 
-    def rename(self, names: Mapping[str, str], rooms: Collection[str]) -> None:
-        """Go on with other names of ``rooms``, by the old ones; raises OSError."""
-        self._keep(self._records.with_room_names(names, rooms))
+    def renamed(self, names: Mapping[str, str], rooms: Collection[str]) -> DirtRecords:
+        """Return what was learned with other names of ``rooms``, by the old ones."""
+        return self._records.with_room_names(names, rooms)
+
+    def take(self, records: DirtRecords) -> None:
+        """Go on with other records; raises OSError."""
+        self._keep(records)
 
     def needs(self, rooms: Sequence[str], now: dt.datetime, period: float) -> tuple[RoomNeed, ...]:
         """Return what rooms need now, if the next time is ``period`` days later."""

@@ -85,7 +85,8 @@ class LiveHousehold:
         self._ends.set()
         if self._thread.is_alive():
             self._thread.join(_END)
-        self._trying(self._plans.follow_rooms)
+        if not self._thread.is_alive():  # a look that hangs would be waited for
+            self._trying(self._plans.follow_rooms)
         self._trying(self._upkeep.end)
 
     def look(self) -> None:

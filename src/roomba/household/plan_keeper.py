@@ -110,43 +110,60 @@ class PlanKeeper:
             rooms = self._robot.home().rooms
         except RobotUnavailableError:
             return None
-        # A map that is being made has none yet, and says nothing of those of another one.
-        if not rooms or seen(rooms) == self._seen.rooms:
-            return None
         try:
-            self._follow(rooms, now)
+            self._finish_edit(now)
+            # A map that is being made has none yet, and says nothing of those of another one.
+            if rooms and seen(rooms) != self._seen.rooms:
+                self._begin_edit(rooms)
+                self._finish_edit(now)
         except OSError as error:
             return error
+        except ValueError:
+            # Rooms of numbers that are none are not followed.
+            return None
         return None
 
-    def _follow(self, rooms: Sequence[RoomView], now: dt.datetime) -> None:
-        """Let plans go on by other rooms, and remember these; raises OSError."""
+    def _begin_edit(self, rooms: Sequence[RoomView]) -> None:
+        """Keep what other rooms mean for plans and dirt, before that is written; raises OSError."""
         last, known = self._seen, seen(rooms)
         names = names_now(last.views, rooms)
-        edit = RoomsEdit(rooms=last.rooms)
+        before = self._kept.read(self._household)
         if last.edit.is_undone_by(known):
-            undo = with_orders_again(last.edit.plans_after, last.edit.plans_before, names)
-            self._write_noted(undo, now, "has its rooms again: the newest edit was taken back")
-        elif names:
+            again = with_orders_again(last.edit.plans_after, last.edit.plans_before, names)
+            after, why = again(before), "has its rooms again: the newest edit was taken back"
+        else:
             told = listed([f"{name!r} is {new!r}" for name, new in names.items()])
-            text = f"goes on by other names of rooms: {told}"
-            before, after = self._write_noted(lambda all_: all_.with_room_names(names), now, text)
-            edit = RoomsEdit(rooms=last.rooms, plans_before=before, plans_after=after)
-        self._seen = SeenRooms(rooms=known, edit=edit)
-        self._kept_rooms.write(self._seen)
-        if names:
-            self._dirt.rename(names, [room.name for room in last.rooms])
+            after, why = before.with_room_names(names), f"goes on by other names of rooms: {told}"
+        self._keep_seen(
+            SeenRooms(
+                rooms=known,
+                edit=RoomsEdit(rooms=last.rooms, plans_before=before, plans_after=after),
+                is_pending=bool(names) or after != before,
+                dirt=self._dirt.renamed(names, [room.name for room in last.rooms]),
+                why=why,
+            )
+        )
 
-    def _write_noted(
-        self, change: Change, now: dt.datetime, text: str
-    ) -> tuple[HouseholdPlans, HouseholdPlans]:
-        """Change the plans as :meth:`_write` does, and note of each one that changed why."""
-        before, changed = self._write(change)
-        for plan in changed.plans:
-            if plan not in before.plans:
-                self._memory = self._memory.noting(Note(at=now, plan=plan.name, text=text))
+    def _finish_edit(self, now: dt.datetime) -> None:
+        """Let plans and what is learned be as an edit that is pending wants; raises OSError."""
+        pending = self._seen
+        if not pending.is_pending:
+            return
+        edit = pending.edit
+        change = with_orders_again(edit.plans_before, edit.plans_after, {})
+        with contextlib.suppress(RequestRefusedError):  # by a name that no plan can have
+            before, changed = self._write(change)
+            for plan in changed.plans:
+                if plan not in before.plans:
+                    note = Note(at=now, plan=plan.name, text=pending.why)
+                    self._memory = self._memory.noting(note)
+        self._dirt.take(pending.dirt)
+        self._keep_seen(SeenRooms(rooms=pending.rooms, edit=edit))
         self._keep_memory(is_changed=True)
-        return before, changed
+
+    def _keep_seen(self, rooms: SeenRooms) -> None:
+        self._kept_rooms.write(rooms)
+        self._seen = rooms
 
     def _situation(self, view: RobotView | None) -> Situation:
         if view is None:

@@ -23,8 +23,8 @@ def names_now(before: Sequence[RoomView], after: Sequence[RoomView]) -> dict[str
     and has the name of one of them, was joined of these. Where a room was split and its name is
     gone, its largest part goes on. Of another map, or of rooms found anew, nothing is returned.
     """
-    changed = [room for room in before if not _is_in(room, after)]
-    new = [room for room in after if not _is_in(room, before)]
+    changed = [room for room in before if _has_outline(room) and not _is_in(room, after)]
+    new = [room for room in after if _has_outline(room) and not _is_in(room, before)]
     renamed = {room.rings: room.name for room in new}
     names = {}
     for room in changed:
@@ -71,11 +71,16 @@ def require_rooms(order: PlannedOrder, rooms: Sequence[RoomView]) -> None:
         )
 
 
+def _has_outline(room: RoomView) -> bool:
+    """Whether its outline is one: rings of three corners, the first of them told twice."""
+    return bool(room.rings) and all(len(ring) > 3 for ring in room.rings)
+
+
 def _is_in(room: RoomView, rooms: Sequence[RoomView]) -> bool:
     return any((each.name, each.rings) == (room.name, room.rings) for each in rooms)
 
 
 def _holds(room: RoomView, part: RoomView) -> bool:
     """Whether a point of another room lies in a room."""
-    outline = shapely.Polygon(room.rings[0], room.rings[1:]) if room.rings else shapely.Polygon()
+    outline = shapely.Polygon(room.rings[0], room.rings[1:])
     return bool(shapely.contains_xy(outline, *part.anchor))

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from roomba.client.view import Point, RoomView
 from roomba.configuration.frozen import Frozen
+from roomba.plans.due import DirtRecords
 from roomba.plans.plan import HouseholdPlans
 
 
@@ -31,10 +32,18 @@ class RoomsEdit(Frozen):
 
 
 class SeenRooms(Frozen):
-    """Rooms, and the newest edit of them."""
+    """Rooms, and the newest edit of them.
+
+    While it ``is_pending`` not all that goes by the rooms' names was written by the edit: plans
+    become as in ``edit``, what is learned of dirt as in ``dirt``, for the reason ``why``. That may
+    be done again, after a refused write or a kill, and gives the same.
+    """
 
     rooms: tuple[SeenRoom, ...] = ()
     edit: RoomsEdit = RoomsEdit()
+    is_pending: bool = False
+    dirt: DirtRecords = DirtRecords()
+    why: str = ""
 
     @property
     def views(self) -> tuple[RoomView, ...]:

@@ -6,6 +6,7 @@ import bisect
 import heapq
 import operator
 import shlex
+import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -165,19 +166,23 @@ class BagFile:
 
     def _mend_cut(self) -> None:
         """Read a copy with an index in place of a bag without one; raises LogError."""
+        if not (self.is_of_ros_1 and needs_mending(self._file.path)):
+            return
         try:
-            if not (self.is_of_ros_1 and needs_mending(self._file.path)):
-                return
             self._file.take_copy()
-            mended = mend_bag(self._file.path)
         except OSError as error:
-            raise LogError(f"{self.path}: cannot be read: {error.strerror}") from None
+            raise LogError(
+                f"{self.path}: it was cut short, and a copy of it, to read what is whole, cannot "
+                f"be made in {tempfile.gettempdir()}: {error.strerror}; TMPDIR names another place"
+            ) from None
+        try:
+            mended = mend_bag(self._file.path)
         except BagError as error:
             reason = str(error).replace(str(self._file.path), str(self.path))
             raise LogError(f"{reason}: its recording or copying was cut short") from None
         self._note(
-            f"{self.path.name}: its recording or copying was cut short; read are the "
-            f"{mended.messages} messages that are whole"
+            f"{self.path.name}: its recording or copying was cut short, or it is still being "
+            f"recorded: read is what is whole, {mended.torn} bytes at its end are left out"
         )
 
     def _opened(self) -> Any:

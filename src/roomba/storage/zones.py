@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from roomba.files.damaged import aside_of
+from roomba.files.kept import before_of
 from roomba.grid import OccupancyMap
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
 from roomba.storage.map_bound import Entry, MapBound, Number, Tell, load_map_bound, save_map_bound
@@ -49,8 +50,9 @@ def load_zones(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) ->
     try:
         file = load_map_bound(path, occupancy, _ZonesFile, "zones", ZonesError, tell)
     except ZonesError as error:
-        raise ZonesError(f"{error}{_to_do(path)}" if aside.exists() else str(error)) from error
-    if file is None and tell is not None and aside.exists():
+        was_set_aside = aside.exists() and not path.exists()
+        raise ZonesError(f"{error}{_to_do(path)}" if was_set_aside else str(error)) from error
+    if file is None and tell and aside.exists() and not before_of(path).exists():
         raise ZonesError(f"{path}: its zones could not be read{_to_do(path)}")
     if file is None:
         return Zones()

@@ -106,6 +106,8 @@ class HomeTopics:
         self._station: Pose | None = None
         self._outlines: RoomOutlines | None = None
         self._zones: Zones | None = None
+        self._unreadable = ""
+        """Why zones cannot be read, and what to do."""
         self._map_came = 0.0
         self._made: KnownHome | None = None
         self._wanted = self._tried = 0
@@ -185,7 +187,7 @@ class HomeTopics:
         try:
             if occupancy is not None and station is not None:
                 if zones is None:
-                    raise ZonesError(f"its zones cannot be read: {self._path()}")
+                    raise ZonesError(self._unreadable)
                 _require_small(occupancy, self._mission.coverage.cell)
                 field = field or SurfaceField.of(occupancy)
                 context = PlanningContext(
@@ -291,6 +293,7 @@ class HomeTopics:
         try:
             return load_zones(self._path(), occupancy, rospy.logerr)
         except ZonesError as error:
+            self._unreadable = str(error)
             rospy.logerr("%s", error)
             return None
 
@@ -308,7 +311,7 @@ class HomeTopics:
             if self._map is None:
                 return False, "there is no map yet; is home_sim_node running?"
             if self._zones is None:
-                return False, f"{self._path()} cannot be read: mend it, or remove it, and restart"
+                return False, f"{self._unreadable}; then restart"
             try:
                 zones = change(self._zones)
                 save_zones(zones, self._map, self._path())

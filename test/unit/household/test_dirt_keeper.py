@@ -12,11 +12,13 @@ from fixtures.written_robot import HOME, VIEW, WrittenRobot
 from roomba.client.household import plans_of
 from roomba.client.protocol import CleanReport, ErrandOutcome
 from roomba.client.view import CleanOrder, HomeView, RobotView, RoomView
+from roomba.configuration.frozen import Frozen
 from roomba.configuration.household import DueConfig, PlansConfig
 from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.folder import KeptValues
 from roomba.household.plan_changes import replaced
 from roomba.household.plan_keeper import PlanKeeper
+from roomba.plans.due import DirtRecords
 from roomba.plans.plan import Plan, PlannedOrder
 from roomba.vocabulary import CleanMode, RoomDirt
 
@@ -135,3 +137,45 @@ def test_without_rooms_all_floor_is_cleaned(tmp_path: Path) -> None:
 def test_only_floor_and_rooms_can_be_due() -> None:
     with pytest.raises(ValueError, match="those that are due"):
         PlannedOrder(mode=CleanMode.EDGES, only_due=True)
+
+
+@pytest.mark.parametrize("is_killed", [False, True])
+@pytest.mark.parametrize("refused", ["rooms.json", "plans.json", "dirt.json", "agenda.json"])
+def test_names_that_changed_places_are_followed_once_whatever_the_disk_refuses(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, refused: str, is_killed: bool
+) -> None:
+    living = Living(tmp_path)
+    order = PlannedOrder(mode=CleanMode.ROOMS, rooms=("kitchen",))
+    living.keeper.change(lambda all_: replaced(all_, "plans", "one", Plan(name="one", order=order)))
+    living.day(kitchen=5000.0, den=5000.0)
+    living.day(kitchen=1000.0, den=450.0)
+    before = rates(tmp_path)
+    assert before["kitchen"] > before["den"] > 0.0
+    living.robot.rooms = replace(ROOMS[0], name="den"), replace(ROOMS[1], name="kitchen")
+    write = KeptValues.write
+    failed: list[str] = []
+
+    def refuse(kept: KeptValues, values: Frozen) -> None:
+        if kept._path.name == refused and not failed:
+            failed.append(refused)
+            raise OSError("No space left on device")
+        write(kept, values)
+
+    with monkeypatch.context() as full:
+        full.setattr(KeptValues, "write", refuse)
+        with pytest.raises(OSError, match="No space left"):
+            living.keeper.look(DOCKED)
+    if is_killed:
+        living.again()
+    for _ in range(3):
+        living.keeper.look(DOCKED)
+    [one] = [plan for plan in living.keeper.view().household.plans if plan.name == "one"]
+    assert one.order.rooms == ("den",)
+    after = rates(tmp_path)
+    assert (after["den"], after["kitchen"]) == (before["kitchen"], before["den"])
+
+
+def rates(folder: Path) -> dict[str, float]:
+    """Return how fast rooms become dirty, as it was kept."""
+    records = KeptValues(folder / "dirt.json", print).read(DirtRecords())
+    return {name: record.rate or 0.0 for name, record in records.rooms.items()}

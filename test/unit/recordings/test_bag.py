@@ -350,7 +350,7 @@ def test_of_a_bag_that_was_cut_short_is_read_what_is_there(
     # What is cut off is the index at first, some hundredth of the file.
     assert len(stamps) == pytest.approx(100 * kept, abs=6)
     [note] = log.notes
-    assert note.startswith(f"cut.{form}: its recording or copying was cut short; read are the ")
+    assert note.startswith(f"cut.{form}: its recording or copying was cut short, or it is still ")
     log.close()
     assert path.read_bytes() == before
 

@@ -37,7 +37,15 @@ _UNPACKED: Final[dict[bytes, Callable[[bytes], bytes]]] = {
     b"lz4": lz4.frame.decompress,
 }
 """What makes a chunk's data plain, by its field ``compression``; rosbags brings lz4."""
-_BROKEN: Final = (KeyError, ValueError, OSError, RuntimeError, struct.error)
+_BROKEN: Final = (
+    LookupError,
+    ValueError,
+    ArithmeticError,
+    OSError,
+    RuntimeError,
+    MemoryError,
+    struct.error,
+)
 """What readers raise of a chunk that is broken within."""
 
 
@@ -144,7 +152,7 @@ def needs_mending(path: Path) -> bool:
             int.from_bytes(first.fields.get(name, b""), "little")
             for name in ("index_pos", "conn_count", "chunk_count")
         )
-        if at == 0:
+        if not 0 < at <= os.fstat(file.fileno()).st_size:
             return True
         file.seek(at)
         return sum(1 for _ in _records(file)) < connections + chunks

@@ -161,6 +161,17 @@ def test_messages_of_which_no_connection_is_known_do_not_count(tmp_path: Path) -
     assert path.read_bytes() == whole
 
 
+def test_a_place_of_the_index_that_is_none_is_mended(tmp_path: Path) -> None:
+    path = tmp_path / "a.bag"
+    wrote = finished(path, 30, None)
+    data = path.read_bytes()
+    at = data.index(b"index_pos=") + len(b"index_pos=")
+    path.write_bytes(data[:at] + b"\xff" * 8 + data[at + 8 :])
+    assert needs_mending(path)
+    mend_bag(path)
+    assert read(path) == wrote
+
+
 def test_what_is_still_written_is_not_mended(tmp_path: Path) -> None:
     with BagWriter(tmp_path / "a.bag") as bag:
         bag.write(TEXT, 1, b"\1\0\0\0a")

@@ -1,9 +1,9 @@
 """What is wrong with the odometry of a drive, as its scans show: units, axes, and times.
 
 Scans are laid on each other without any odometry, and the moves that they show are compared with
-those that the odometry tells. How the lidar is mounted does not count, nor where, as ways are
-compared where the robot hardly turns. Only what no wheels do is told: ways or turns of other
-lengths, or in other directions, most of the time.
+those that the odometry tells. How the lidar is mounted does not count, nor where, up to 1 m from
+the robot's middle. Only what no wheels do is told: ways or turns of other lengths, or in other
+directions, most of the time.
 """
 
 from __future__ import annotations
@@ -25,7 +25,9 @@ _STEP, _STEP_TURN = 0.3, 0.4
 _WAY, _TURN = 0.1, 0.15
 """m, rad; moves are compared that scans show to be so long, or turned so far."""
 _STRAIGHT: Final = 0.05
-"""rad; ways are compared of moves that turn less."""
+"""rad; directions are compared of moves that turn less."""
+_ARM: Final = 1.0
+"""m; no lidar is farther from a robot's middle."""
 _FITS: Final = 0.7
 """Mean likelihood of points, from which scans surely lie on each other: 0.8 and more where they are
 dense, 0.1 to 0.5 where they were taken a metre apart, which is farther than they are looked for."""
@@ -71,15 +73,16 @@ def odometry_fault(samples: LidarSamples) -> str:
         return "it never changes"
     moves = _moves(samples)
     turned = np.abs(moves.shown[:, 2])
-    # In a turn a lidar that is not in the robot's middle goes another way.
+    ways = moves.where(_lengths(moves.shown) > _WAY)
     straight = moves.where((_lengths(moves.shown) > _WAY) & (turned < _STRAIGHT))
     turns = moves.where(turned > _TURN)
-    return _wrong_ways(straight) or _wrong_turns(turns) or _mirrored_ways(straight)
+    return _wrong_ways(ways) or _wrong_turns(turns) or _mirrored_ways(straight)
 
 
 def _wrong_ways(moves: _Moves) -> str:
     told, shown = _lengths(moves.told), _lengths(moves.shown)
-    if not _disagrees(told, shown, _WAY_NOISE):
+    # In a turn a lidar that is not in the robot's middle goes another way.
+    if not _disagrees(told, shown, _WAY_NOISE + _ARM * np.abs(moves.shown[:, 2])):
         return ""
     return f"it tells ways of {np.median(told):.3g} m where scans show {np.median(shown):.2f} m"
 
@@ -137,7 +140,7 @@ def _swapped(move: Floats, heading: float) -> Floats:
     return np.array([swapped.real, swapped.imag, move[2]])
 
 
-def _disagrees(told: Floats, shown: Floats, noise: float) -> bool:
+def _disagrees(told: Floats, shown: Floats, noise: Floats | float) -> bool:
     """Whether most of enough lengths are told otherwise than they are shown."""
     agrees = np.abs(told - shown) < _SHARE * shown + noise
     return len(agrees) >= _LEAST and float(agrees.mean()) < _AGREES

@@ -57,10 +57,20 @@ def test_with_odometry_of_wheels_nothing_is_wrong(items: list[Item]) -> None:
     assert fault(items) == ""
 
 
-@pytest.mark.parametrize("factor", [1000.0, 100.0, 3.28])
-def test_ways_in_another_unit_are_told(factor: float) -> None:
+@pytest.mark.parametrize(
+    ("items", "factor"),
+    [
+        (round_drive(), 1000.0),
+        (round_drive(), 100.0),
+        (round_drive(), 3.28),
+        (drive(), 1000.0),
+        (drive(), 100.0),
+    ],
+    ids=["mm", "cm", "feet", "mm in a circle", "cm in a circle"],
+)
+def test_ways_in_another_unit_are_told(items: list[Item], factor: float) -> None:
     said = fault(
-        told_otherwise(lambda pose: Pose(factor * pose.x, factor * pose.y, pose.theta))
+        told_otherwise(lambda pose: Pose(factor * pose.x, factor * pose.y, pose.theta), items)
     ).split()
     assert said[:4] == ["it", "tells", "ways", "of"]
     told, shown = float(said[4]), float(said[-2])
