@@ -84,6 +84,8 @@ def test_the_emergency_stop_forgets_a_wish_and_takes_no_other(graph: RosGraph) -
     stop = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
     stop.wait_for_service(30.0)
     probe.send("/odom", odometry(0.0, 0.0))
+    # Before it knows its place it takes no wish.
+    probe.next("/position", RobotPosition)
     probe.send("/change_position", RobotPosition(1.0, 0.0))
     wait_until(lambda: probe.next("/cmd_vel", Twist).linear.x > 0.0, 30.0, "it drives")
     assert stop(True, "a child came in").success
