@@ -54,6 +54,10 @@ class Pose:
         """Whether all three are numbers that a robot can stand at."""
         return all(map(math.isfinite, (self.x, self.y, self.theta)))
 
+    def as_array(self) -> NDArray[np.float64]:
+        """Return x, y, m, and theta, rad: a new array, [3], as compiled code takes poses."""
+        return np.array([self.x, self.y, self.theta])
+
     def compose(self, other: Pose) -> Pose:
         """Return ``other``, given in this pose's frame, in the frame that this pose is given in."""
         cosine, sine = math.cos(self.theta), math.sin(self.theta)

@@ -21,25 +21,21 @@ class DirtKeeper:
 
     def note(self, report: CleanReport, at: dt.datetime) -> bool:
         """Learn from a clean that ended; return whether it told anything. Raises OSError."""
-        return self._keep(learned(self._records, report.rooms, at, self._config))
+        return self.keep(learned(self._records, report.rooms, at, self._config))
 
     def renamed(self, names: Mapping[str, str], rooms: Collection[str]) -> DirtRecords:
         """Return what was learned with other names of ``rooms``, by the old ones."""
         return self._records.with_room_names(names, rooms)
 
-    def take(self, records: DirtRecords) -> None:
-        """Go on with other records; raises OSError."""
-        self._keep(records)
-
-    def needs(self, rooms: Sequence[str], now: dt.datetime, period: float) -> tuple[RoomNeed, ...]:
-        """Return what rooms need now, if the next time is ``period`` days later."""
-        return needs_of(self._records, rooms, now, period, self._config)
-
-    def _keep(self, records: DirtRecords) -> bool:
-        """Keep records; return whether they are others than before. Raises OSError."""
+    def keep(self, records: DirtRecords) -> bool:
+        """Go on with records; return whether they are others than before. Raises OSError."""
         is_news = records != self._records
         self._records = records
         if records != self._written:
             self._kept.write(records)
             self._written = records
         return is_news
+
+    def needs(self, rooms: Sequence[str], now: dt.datetime, period: float) -> tuple[RoomNeed, ...]:
+        """Return what rooms need now, if the next time is ``period`` days later."""
+        return needs_of(self._records, rooms, now, period, self._config)

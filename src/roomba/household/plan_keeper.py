@@ -63,6 +63,7 @@ class PlanKeeper:
         self._is_first = True
         self._last: CleanReport | None = None
         self._kept_rooms, self._seen = rooms, rooms.read(SeenRooms())
+        self._looked_at: tuple[RoomView, ...] = ()
         self._show()
 
     def view(self) -> PlansView:
@@ -113,9 +114,12 @@ class PlanKeeper:
         try:
             self._finish_edit(now)
             # A map that is being made has none yet, and says nothing of those of another one.
-            if rooms and seen(rooms) != self._seen.rooms:
+            if not rooms or rooms == self._looked_at:
+                return None
+            if seen(rooms) != self._seen.rooms:
                 self._begin_edit(rooms)
                 self._finish_edit(now)
+            self._looked_at = rooms
         except OSError as error:
             return error
         except ValueError:
@@ -157,7 +161,7 @@ class PlanKeeper:
                 if plan not in before.plans:
                     note = Note(at=now, plan=plan.name, text=pending.why)
                     self._memory = self._memory.noting(note)
-        self._dirt.take(pending.dirt)
+        self._dirt.keep(pending.dirt)
         self._keep_seen(SeenRooms(rooms=pending.rooms, edit=edit))
         self._keep_memory(is_changed=True)
 

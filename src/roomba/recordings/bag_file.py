@@ -176,10 +176,9 @@ class BagFile:
                 f"be made in {tempfile.gettempdir()}: {error.strerror}; TMPDIR names another place"
             ) from None
         try:
-            mended = mend_bag(self._file.path)
+            mended = mend_bag(self._file.path, self.path)
         except BagError as error:
-            reason = str(error).replace(str(self._file.path), str(self.path))
-            raise LogError(f"{reason}: its recording or copying was cut short") from None
+            raise LogError(f"{error}: its recording or copying was cut short") from None
         self._note(
             f"{self.path.name}: its recording or copying was cut short, or it is still being "
             f"recorded: read is what is whole, {mended.torn} bytes at its end are left out"

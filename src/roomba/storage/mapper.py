@@ -233,4 +233,4 @@ def _lidar_of(fields: _Fields) -> LidarNumbers:
 
 
 def _row_of(pose: Pose | None) -> NDArray[np.float64]:
-    return np.full(3, np.nan) if pose is None else np.array([pose.x, pose.y, pose.theta])
+    return np.full(3, np.nan) if pose is None else pose.as_array()

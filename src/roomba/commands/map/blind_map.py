@@ -62,7 +62,7 @@ class BlindMap:
         beams, points = self._beams, np.empty((lidar.beams, POINT))
         still = lidar.at_once(stamp, ranges, self._reckoning.path)
         count = surface_points(still, beams, 0.0, points, self._sums)
-        pose = np.array([here.x, here.y, here.theta])
+        pose = here.as_array()
         self._sheet.draw(points[:count].astype(np.float32), beams.mount[:2], pose)
 
     @property

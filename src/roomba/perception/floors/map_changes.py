@@ -99,7 +99,7 @@ class MapChanges:
             self._look_began, self._look_from = now, pose
         if len(self._points) < len(ranges):
             self._points = np.empty((len(ranges), POINT), np.float32)
-        at = np.array([pose.x, pose.y, pose.theta])
+        at = pose.as_array()
         farthest = min(lidar.farthest, self._config.farthest)
         count_scan(
             self._sheet,

@@ -68,7 +68,7 @@ def match_floors(new: FloorRecord, old: FloorRecord, config: FloorsConfig) -> Fl
 
 def _aligned(field: SurfaceField, ends: Floats, start: Pose) -> Pose:
     """Return where a robot that sees these ``ends`` is, near ``start``."""
-    prior = np.array([start.x, start.y, start.theta])
+    prior = start.as_array()
     pose, spread = prior.copy(), _SPREAD.copy()
     match(field.values, field.place, ends, len(ends), prior, spread, _SCALES, _VARIANCE, pose)
     return Pose(*pose.tolist())

@@ -9,8 +9,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.expecting import searched_for
@@ -111,7 +109,7 @@ class GlobalSearch:
             return None
         scan = self._particles.reckoned.inverse().compose(reckoned)
         there = self._walls.find(view, pose.compose(scan), self._config.beam_deviation)
-        fit = view.fit(self._walls.field, np.array([there.x, there.y, there.theta]))
+        fit = view.fit(self._walls.field, there.as_array())
         return FoundPlace(there.compose(since), fit)
 
     def _compared(

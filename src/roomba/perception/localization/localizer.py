@@ -343,12 +343,12 @@ class Localizer:
 
         As compiled code has it, to the last bit.
         """
-        here, then = _row_of(self._tracker.pose), _row_of(reckoned)
+        here, then = self._tracker.pose.as_array(), reckoned.as_array()
         return Pose(*pose_then(here, self._row["reckoned"], then))
 
     def _pose_since(self, reckoned: Pose) -> Pose:
         """Return where the robot is that was at the tracker's pose at ``reckoned``."""
-        here, then = _row_of(self._tracker.pose), _row_of(reckoned)
+        here, then = self._tracker.pose.as_array(), reckoned.as_array()
         return Pose(*pose_then(here, then, self._row["reckoned"]))
 
     def _reconsider(self, stamp: float, view: ScanView, reckoned: Pose) -> None:
@@ -394,8 +394,3 @@ class Localizer:
 
     def _tracker_at(self, pose: Pose, covariance: NDArray[np.float64]) -> Tracker:
         return Tracker(self.field, self._config, pose, covariance, self.belief, self.numbers)
-
-
-def _row_of(pose: Pose) -> NDArray[np.float64]:
-    """Return a pose as compiled code has it, [3]."""
-    return np.array([pose.x, pose.y, pose.theta])

@@ -54,7 +54,7 @@ class RecentSight:
         """Keep a scan that was taken at a time, s, and a place of dead reckoning's frame."""
         self.reserve(len(view))
         self._mount = view.mount
-        place = np.array([reckoned.x, reckoned.y, reckoned.theta])
+        place = reckoned.as_array()
         note_sight(self.arrays, stamp, place, view.ends, len(view))
 
     def is_still(self, stamp: float, reckoned: Pose, view: ScanView) -> bool:

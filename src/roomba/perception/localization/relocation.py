@@ -148,7 +148,7 @@ class Relocation:
             # Matched from farther away, new furniture would draw it off.
             tries = [(expected.pose, FROM_NEAR), (expected.pose, FROM_AFAR), *tries]
             # The place where it was gets its prior evidence.
-            self._weigh(expected.pose, self._view.fit(self._field, _array(expected.pose)), back)
+            self._weigh(expected.pose, self._view.fit(self._field, expected.pose.as_array()), back)
         for start, scales in tries:
             self._weigh(*self._matched(start, scales), back)
         self.views = 1
@@ -195,7 +195,3 @@ class Relocation:
         # Walls of a coarse map are farther off, and all evidence errs with them.
         coarse = max(1.0, self._field.frame.resolution / _FINE_CELL)
         return lead > self._config.needed_evidence * coarse
-
-
-def _array(pose: Pose) -> NDArray[np.float64]:
-    return np.array([pose.x, pose.y, pose.theta])

@@ -127,6 +127,6 @@ def moved(
     ``spread`` is float64 [3, 3] along the axes of the robot after the step, of which the diagonal
     counts.
     """
-    after, unsure = np.array([pose.x, pose.y, pose.theta]), covariance.copy()
+    after, unsure = pose.as_array(), covariance.copy()
     carry(after, unsure, step.x, step.y, step.theta, *np.diag(spread).tolist())
     return Pose(*after.tolist()), unsure

@@ -12,8 +12,6 @@ FARTHEST_ECHO: Final = 100.0
 """m; no planar lidar that a robot carries measures more: what is told to be farther met nothing."""
 _WIDEST: Final = 4.0 * math.pi
 """rad; no scan goes round more often than twice."""
-
-
 _LEAST: Final = 10
 """Beams; fewer that are too far may have failed."""
 

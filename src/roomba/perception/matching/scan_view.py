@@ -71,7 +71,7 @@ class LidarModel:
         """
         mount = mount or Pose()
         self.beams = len(angles)
-        self.mount = np.array([mount.x, mount.y, mount.theta])
+        self.mount = mount.as_array()
         self._first_angle = float(angles[0]) if self.beams else 0.0
         self._step = float(angles[1] - angles[0]) if self.beams > 1 else 2.0 * np.pi
         self._directions = np.column_stack((np.cos(angles), np.sin(angles)))
@@ -91,7 +91,7 @@ class LidarModel:
         """Return the same lidar where ``by`` moves its mount to, in the robot's frame."""
         lidar = copy(self)
         mount = by.compose(Pose(*self.mount.tolist()))
-        lidar.mount, lidar._arrays = np.array([mount.x, mount.y, mount.theta]), None
+        lidar.mount, lidar._arrays = mount.as_array(), None
         return lidar
 
     def swept(self, time_increment: float, *, is_backwards: bool) -> LidarModel:

@@ -54,7 +54,7 @@ class Mapper:
         self.path = self._reckoning.path
         self._finding_back = FindingBack(config)
         self._follower = ScanFollower(config, self._reckoning, self._finding_back.state)
-        self._map = SubmapMap(config, localization, _row_of(start))
+        self._map = SubmapMap(config, localization, start.as_array())
         self.at_scan = start
         self.placed: PlacedScan | None = None
         self._finished = -1
@@ -167,7 +167,7 @@ class Mapper:
         self._relocation.is_lost = False
         if not self.version:
             return
-        self._map.begin_at(_row_of(pose), self._follower.way, self.range_noise)
+        self._map.begin_at(pose.as_array(), self._follower.way, self.range_noise)
         self._follower.jump()
         self.at_scan = pose
 
@@ -262,7 +262,7 @@ class Mapper:
             return
         graph = self._map.graph
         graph.newest.close(CLOUD)
-        found = self._relocation.find(points, _row_of(reckoned), graph.submaps, graph.poses)
+        found = self._relocation.find(points, reckoned.as_array(), graph.submaps, graph.poses)
         if found is not None:
             self.told(Pose(*found.tolist()))
 
@@ -289,7 +289,7 @@ class Mapper:
         follower.keep()
 
     def _take_over(self, state: MapperState, here: Pose) -> None:
-        row, follower = _row_of(here), self._follower
+        row, follower = here.as_array(), self._follower
         self._map.take_over(state, row)
         graph, self._relocation.is_lost = self._map.graph, state.is_lost
         follower.take_up(relative_to(graph.poses[-1:], row[None])[0], state.way)
@@ -308,7 +308,3 @@ class Mapper:
         self._lidar, beams = lidar, lidar.arrays()
         self._map.use(beams)
         self._follower.use(beams, self._map.surfels)
-
-
-def _row_of(pose: Pose) -> Floats:
-    return np.array([pose.x, pose.y, pose.theta])

@@ -73,7 +73,7 @@ class ThingLayer:
         is the deviation of the place, m.
         """
         measured = ranges if measured is None else measured
-        at = np.array([pose.x, pose.y, pose.theta])
+        at = pose.as_array()
         note(self.arrays, self._field, self._place, lidar, ranges, measured, at, unsure, scans)
 
     def cells(self, least: int | None = None) -> NDArray[np.int64]:

@@ -158,18 +158,20 @@ def needs_mending(path: Path) -> bool:
         return sum(1 for _ in _records(file)) < connections + chunks
 
 
-def mend_bag(path: Path) -> Mended:
+def mend_bag(path: Path, named: Path | None = None) -> Mended:
     """Give a bag its index; raises BagError if it cannot be mended, OSError if not be written.
 
-    Whole messages of a chunk that is torn are kept, unless it is packed.
+    Whole messages of a chunk that is torn are kept, unless it is packed. Errors call it ``named``,
+    as the bag that it is a copy of.
     """
+    name = named or path
     with path.open("r+b") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
-            raise BagError(f"{path}: it is still being recorded; end that first") from error
+            raise BagError(f"{name}: it is still being recorded; end that first") from error
         if file.read(len(MAGIC)) != MAGIC:
-            raise BagError(f"{path}: expected a bag of ROS 1, version 2.0")
+            raise BagError(f"{name}: expected a bag of ROS 1, version 2.0")
         chunks = _WholeChunks(file)
         end, torn = chunks.end, os.fstat(file.fileno()).st_size - chunks.end
         last = _torn_chunk(file, end)
@@ -178,7 +180,7 @@ def mend_bag(path: Path) -> Mended:
             torn -= len(chunk)
             chunks.add(end, content)
         if not chunks.messages:
-            raise BagError(f"{path}: expected a recording, it has no whole message")
+            raise BagError(f"{name}: expected a recording, it has no whole message")
         file.seek(end)
         file.truncate()
         if last is not None:

@@ -12,7 +12,7 @@ from typing import Final
 
 from rosbags.convert import convert
 
-from roomba.recordings.bag_format.mending import BagError, Mended, mend_bag, needs_mending
+from roomba.recordings.bag_format.mending import Mended, mend_bag, needs_mending
 from roomba.recordings.bag_format.records import MAGIC
 from roomba.recordings.readings import LogError
 
@@ -33,7 +33,7 @@ class Form(Enum):
 
 
 def export_bag(source: Path, target: Path, form: Form) -> Mended | None:
-    """Write a recording in another form; raises LogError, or OSError.
+    """Write a recording in another form; raises LogError, BagError, or OSError.
 
     Of a bag that was cut short a copy is mended before, and what came of that is returned.
     """
@@ -46,7 +46,7 @@ def export_bag(source: Path, target: Path, form: Form) -> Mended | None:
         if source.is_file() and needs_mending(source):
             whole = Path(folder) / "copy.bag"
             shutil.copyfile(source, whole)
-            mended = _mended(whole, source)
+            mended = mend_bag(whole, source)
         # By the name .bag the converter would write one of ROS 1.
         made = Path(folder) / target.stem.replace(".", "_")
         try:
@@ -57,13 +57,6 @@ def export_bag(source: Path, target: Path, form: Form) -> Mended | None:
             (made,) = made.glob("*.mcap")
         shutil.move(made, target)
     return mended
-
-
-def _mended(copy: Path, source: Path) -> Mended:
-    try:
-        return mend_bag(copy)
-    except BagError as error:
-        raise LogError(str(error).replace(str(copy), str(source))) from None
 
 
 def _convert(source: Path, made: Path, form: Form) -> None:

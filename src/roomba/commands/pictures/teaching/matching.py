@@ -70,7 +70,7 @@ def placed(ends: Floats, pose: Floats) -> Floats:
 def picture_of_matching(home: Home) -> Figure:
     """Draw a scan on the surface field by a wrong guess and by the pose that fits, and weights."""
     ends, guess = ends_at(home, _AT), _AT.compose(_OFF)
-    wrong = np.array([guess.x, guess.y, guess.theta])
+    wrong = guess.as_array()
     right, _ = matched(home, ends, wrong, np.diag(np.square(_PRIOR)))
     figure = empty_figure(1150, 520)
     on_map, weights = figure.subplots(1, 2, width_ratios=[1.25, 1.0])

@@ -27,7 +27,7 @@ def matched(
     scales: NDArray[np.float64] = FROM_AFAR,
 ) -> tuple[Pose, Fit]:
     """Return where a scan fits best from a start on, and how well; ``deviation`` is a beam's, m."""
-    prior = np.array([start.x, start.y, start.theta])
+    prior = start.as_array()
     pose, covariance = prior.copy(), _SPREAD.copy()
     match(
         field.values,

@@ -75,7 +75,7 @@ def better_near(
     is_usual = (
         fit.agree >= usual[0] - worse.near_worse and fit.through <= usual[1] + worse.near_through
     )
-    lead = fit.evidence - view.fit(field, np.array([pose.x, pose.y, pose.theta])).evidence
+    lead = fit.evidence - view.fit(field, pose.as_array()).evidence
     return found if is_usual and lead >= config.needed_evidence else None
 
 
