@@ -20,6 +20,7 @@ from roomba.errors import RoombaError
 from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.emptying import is_to_be_emptied
 from roomba.household.folder import KeptValues, Tell
+from roomba.household.in_use import InUse
 from roomba.household.local_zone import local_zone
 from roomba.household.plan_changes import Change, removed, replaced
 from roomba.household.plan_keeper import PlanKeeper
@@ -73,11 +74,13 @@ class LiveHousehold:
             DirtKeeper(KeptValues(folder / "dirt.json", tell), config.due),
             KeptValues(folder / "rooms.json", tell),
         )
+        self._in_use = InUse(folder, tell)
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._live, name="household", daemon=True)
 
     def start(self) -> None:
-        """Look from now on."""
+        """Look from now on; a program that keeps this household already is told."""
+        self._in_use.begin()
         self._thread.start()
 
     def stop(self) -> None:
@@ -88,6 +91,7 @@ class LiveHousehold:
         if not self._thread.is_alive():  # a look that hangs would be waited for
             self._trying(self._plans.follow_rooms)
         self._trying(self._upkeep.end)
+        self._in_use.end()
 
     def look(self) -> None:
         """Look at the robot once."""
@@ -107,9 +111,13 @@ class LiveHousehold:
         return self._plans.view()
 
     def put_plan(self, plan: Plan) -> None:
-        """Add a plan, or replace the one of the same name; one that is off may name any rooms."""
+        """Add a plan, or replace the one of the same name.
+
+        One that is off may name any rooms, and may be over.
+        """
         if plan.is_on:
             self._require_rooms(plan.order)
+            self._plans.require_day_to_come(plan)
         self._change(lambda all_: replaced(all_, "plans", plan.name, plan))
 
     def remove_plan(self, name: str) -> None:

@@ -28,9 +28,9 @@ from roomba.household.room_names import names_now
 from roomba.household.seen_rooms import RoomsEdit, SeenRooms, seen
 from roomba.plans.due import DAY, RoomNeed
 from roomba.plans.memory import Memory, Note
-from roomba.plans.plan import HouseholdPlans, PlannedOrder
+from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder
 from roomba.plans.scheduler import Act, Deed, PlanEnd, Scheduler, Situation, next_of
-from roomba.plans.times import quiet_until
+from roomba.plans.times import next_after, quiet_until
 from roomba.vocabulary import CleanMode, listed
 
 _DONE: Final = (ErrandOutcome.COMPLETED, ErrandOutcome.NOT_DOCKED)
@@ -251,6 +251,14 @@ class PlanKeeper:
                 with contextlib.suppress(RobotUnavailableError):
                     return self._needs(plan.name, plan.order, self._now())
         return ()
+
+    def require_day_to_come(self, plan: Plan) -> None:
+        """Raise RequestRefusedError for a plan whose last day is over."""
+        if next_after(plan, self._household.clock, self._now()) is None:
+            raise RequestRefusedError(
+                f"expected a plan with a day to come, got {plan.rule} from {plan.begins} on, whose "
+                "last day is over; choose a later first day, or another rule"
+            )
 
     def change(self, change: Change) -> None:
         """Change the plans; raises RequestRefusedError for what makes no sense, OSError.

@@ -88,8 +88,7 @@ def write_map(stored: StoredMap, folder: Path) -> None:
     Raises MapStoreError for a map that files cannot hold, and OSError when the disk refuses.
     """
     try:
-        save_map(stored.occupancy, folder / MAP_NAME)
-        write_kept(folder / LAYER_NAME, _layer_text(stored).encode())
+        write_floor(stored, folder)
         save_zones(stored.zones, stored.occupancy, folder / ZONES_NAME)
         if stored.low_things.all:
             save_low_things(stored.low_things, stored.occupancy, folder / LOW_THINGS_NAME)
@@ -115,8 +114,7 @@ def read_map(folder: Path) -> StoredMap:
     if not folder.is_dir():
         raise MapStoreError(f"{folder}: expected the folder of a map, got none; save the map anew")
     try:
-        occupancy = load_map(folder / MAP_NAME)
-        station = _station_of(folder / LAYER_NAME)
+        occupancy, station = read_floor(folder)
         rooms = load_rooms(folder / ROOMS_NAME, occupancy)
         zones = load_zones(folder / ZONES_NAME, occupancy)
         low_things = load_low_things(folder / LOW_THINGS_NAME, occupancy)
@@ -126,6 +124,20 @@ def read_map(folder: Path) -> StoredMap:
             f"{error}; mend the file, or remove the map and let the robot map this floor again"
         ) from error
     return StoredMap(occupancy, station, rooms, zones, low_things, carpets)
+
+
+def write_floor(stored: StoredMap, folder: Path) -> None:
+    """Write what any map_server and any home reads: the map, station and rooms.
+
+    Raises ValueError and RoomsError for what files cannot hold, OSError when the disk refuses.
+    """
+    save_map(stored.occupancy, folder / MAP_NAME)
+    write_kept(folder / LAYER_NAME, _layer_text(stored).encode())
+
+
+def read_floor(folder: Path) -> tuple[OccupancyMap, Pose]:
+    """Return the map and the station alone; raises HomeError, which names the file, and OSError."""
+    return load_map(folder / MAP_NAME), _station_of(folder / LAYER_NAME)
 
 
 def _station_of(path: Path) -> Pose:

@@ -310,3 +310,42 @@ def test_rooms_that_the_map_does_not_have_are_refused(tmp_path: Path) -> None:
     finally:
         life.household.stop()
         life.robot.end()
+
+
+def test_a_plan_whose_last_day_is_over_is_refused(
+    page: TestClient, household: LiveHousehold
+) -> None:
+    once = {"name": "once", "rule": "FREQ=DAILY;COUNT=1", "begins": "2026-03-01", "at": ["09:30"]}
+    answer = page.put("/api/v1/plans", json=once, headers=AUTHORISED)
+    assert answer.status_code == 409
+    assert "from 2026-03-01 on, whose last day is over; choose a later" in answer.json()["detail"]
+    # It may be kept switched off, and today it has a time to come.
+    off = page.put("/api/v1/plans", json={**once, "is_on": False}, headers=AUTHORISED)
+    assert off.status_code == 200
+    today = page.put("/api/v1/plans", json={**once, "begins": "2026-03-02"}, headers=AUTHORISED)
+    assert today.status_code == 200
+    assert household.plans().plans[0].name == "once"
+
+
+def test_a_second_program_with_the_same_household_is_told(
+    robot: WrittenRobot, tmp_path: Path
+) -> None:
+    told: list[str] = []
+
+    def kept() -> LiveHousehold:
+        return LiveHousehold(robot, tmp_path, HouseholdConfig(), 100.0, told.append)
+
+    first, second = kept(), kept()
+    first.start()
+    try:
+        assert not told
+        second.start()
+        second.stop()
+        assert [text for text in told if "keeps this household as well" in text]
+    finally:
+        first.stop()
+    told.clear()
+    third = kept()
+    third.start()
+    third.stop()
+    assert not told

@@ -24,6 +24,7 @@ from roomba.commands.play.told_to_end import ToldToEnd
 from roomba.commands.spelling import spelled
 from roomba.configuration.frozen import load_config
 from roomba.configuration.household import HouseholdConfig
+from roomba.configuration.mapping import MappingConfig
 from roomba.errors import RoombaError
 from roomba.files.shipped import CONFIGURATION
 from roomba.headless.live.bumping.client import BumpingClient
@@ -73,7 +74,8 @@ def _robot(
         client = wanted_robot(wanted)
         until_end.callback(client.end)
         if wanted.map == "home":
-            client.keep_plan(household_folder() / FLOOR_PLANS, _warn)
+            floors = load_config(MappingConfig, CONFIGURATION / "mapping.yaml").floors
+            client.keep_plan(household_folder() / FLOOR_PLANS, floors, _warn)
         source = RunSource("play", wanted.home, wanted.seed, repeat)
         return client, source, f"The robot lives in {wanted.home!r}. Its page:"
     life = bumping_life(wanted) if wanted.lidar == "none" else owned_life(wanted, _warn)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from roomba.client import view
 from roomba.client.observed import SPILL, TickTimes
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
+from roomba.configuration.mapping import FloorsConfig
 from roomba.errors import RoombaError, RoomsError
 from roomba.geometry import STANDSTILL, Pose
 from roomba.headless.embodied import Embodied
@@ -25,6 +26,7 @@ from roomba.headless.live.robot import LiveRobot
 from roomba.headless.live.snapshots import ErrandsEnded, Snapshots
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
+from roomba.perception.floors.recognition import FloorRecord
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
@@ -71,13 +73,16 @@ class LiveClient:
         """
         self._stop.keep_in(folder, self._live_home.name, self._robot)
 
-    def keep_plan(self, folder: Path, tell: Callable[[str], object]) -> None:
+    def keep_plan(self, folder: Path, config: FloorsConfig, tell: Callable[[str], object]) -> None:
         """Keep rooms and zones of the map in ``folder``, and go on with those kept before.
 
-        To be called before :meth:`start`, of a robot that knows its map. ``tell`` is told in a
-        sentence what could not be read; raises ZonesError for zones that cannot.
+        To be called before :meth:`start`, of a robot that knows its map. ``config`` says what is
+        another map of the same floor, ``tell`` is told in a sentence what could not be read;
+        raises ZonesError for zones that cannot.
         """
-        self._kept_plan = KeptFloorPlan(folder, self._robot.mission.context.occupancy, tell)
+        context = self._robot.mission.context
+        floor = FloorRecord(context.occupancy, context.station)
+        self._kept_plan = KeptFloorPlan(folder, floor, config, tell)
         self._snapshots.use(self._robot, self._kept_plan.load(self.plan))
 
     def start(self) -> None:

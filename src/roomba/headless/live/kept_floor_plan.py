@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import contextlib
+import shutil
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from roomba.errors import RoomsError
-from roomba.grid import OccupancyMap
+from roomba.configuration.mapping import FloorsConfig
+from roomba.errors import HomeError, RoomsError
+from roomba.files.home_layer import MAP_NAME
+from roomba.geometry import Pose
 from roomba.headless.live.floor_plan import FloorPlan
+from roomba.perception.floors.carry_over import carry_over, divided_as, moved
+from roomba.perception.floors.recognition import FloorRecord
+from roomba.perception.floors.same_floor import match_floors
+from roomba.perception.rooms.rooms import Rooms
+from roomba.perception.rooms.zones import Zones
 from roomba.storage.map_bound import map_digest, map_file_name
+from roomba.storage.map_folder import (
+    ROOMS_NAME,
+    ZONES_NAME,
+    StoredMap,
+    read_floor,
+    write_floor,
+)
 from roomba.storage.rooms import load_rooms, save_rooms
 from roomba.storage.zones import load_zones, save_zones
 
@@ -19,15 +35,23 @@ FOLDER: Final = "floor_plans"
 
 
 class KeptFloorPlan:
-    """The floor plan of one map, in a folder of its own in ``folder``."""
+    """The floor plan of one map, in a folder of its own in ``folder``, beside the map itself.
+
+    A map that has none yet, and shows the floor of another one here, takes over what is kept of
+    that: rooms and zones outlive a change of the home.
+    """
 
     def __init__(
-        self, folder: Path, occupancy: OccupancyMap, tell: Callable[[str], object]
+        self,
+        folder: Path,
+        floor: FloorRecord,
+        config: FloorsConfig,
+        tell: Callable[[str], object],
     ) -> None:
-        """Touch nothing yet; ``tell`` is told in a sentence what could not be read."""
-        self._occupancy, self._tell = occupancy, tell
-        own = folder / map_file_name(map_digest(occupancy))
-        self._rooms_path, self._zones_path = own / "rooms.yaml", own / "zones.yaml"
+        """Touch nothing yet; ``tell`` is told in a sentence what could not be read or kept."""
+        self._floor, self._config, self._tell = floor, config, tell
+        self._folder = folder
+        self._own = folder / map_file_name(map_digest(floor.occupancy))
 
     def load(self, plan: FloorPlan) -> FloorPlan:
         """Return a plan with the rooms and zones that were kept, where some were.
@@ -35,21 +59,90 @@ class KeptFloorPlan:
         Rooms that cannot be read are those of ``plan``, of which it is told. Raises ZonesError for
         zones that cannot be read: without them a robot may go where it must not.
         """
-        zones = load_zones(self._zones_path, self._occupancy, self._tell)
-        try:
-            rooms = load_rooms(self._rooms_path, self._occupancy, self._tell)
-        except RoomsError as error:
-            self._tell(f"the rooms are as without edits: {error}")
-            rooms = None
-        return replace(
-            plan,
-            rooms=plan.rooms if rooms is None else rooms,
-            zones=zones if self._zones_path.exists() else plan.zones,
-        )
+        if _has_plan(self._own):
+            rooms, zones = self._read(self._own, self._floor)
+            self._keep_floor()
+            return _with(plan, rooms, zones)
+        for other, floor in self._others():
+            match = match_floors(self._floor, floor, self._config)
+            if match.is_same:
+                return self._taken_over(plan, *self._read(other, floor), match.old_in_new)
+        return plan
 
     def save(self, before: FloorPlan, plan: FloorPlan) -> None:
         """Keep what a plan has other than the one before; raises RoomsError, OSError."""
-        if plan.rooms is not None and plan.rooms is not before.rooms:
-            save_rooms(plan.rooms, self._occupancy, self._rooms_path)
+        occupancy = self._floor.occupancy
         if plan.zones is not before.zones:
-            save_zones(plan.zones, self._occupancy, self._zones_path)
+            save_zones(plan.zones, occupancy, self._own / ZONES_NAME)
+        if plan.rooms is not None and plan.rooms is not before.rooms:
+            save_rooms(plan.rooms, occupancy, self._own / ROOMS_NAME)
+        self._keep_floor()
+
+    def _read(self, folder: Path, floor: FloorRecord) -> tuple[Rooms | None, Zones | None]:
+        """Return the rooms and zones that were kept of a floor, each None if none were."""
+        zones = load_zones(folder / ZONES_NAME, floor.occupancy, self._tell)
+        try:
+            rooms = load_rooms(folder / ROOMS_NAME, floor.occupancy, self._tell)
+        except RoomsError as error:
+            self._tell(f"the rooms are as without edits: {error}")
+            rooms = None
+        return rooms, zones if (folder / ZONES_NAME).exists() else None
+
+    def _others(self) -> Iterator[tuple[Path, FloorRecord]]:
+        """Yield the other maps that have a floor plan here, the one edited last first."""
+        folders = [folder for folder in self._folder.glob("*") if _has_plan(folder)]
+        for folder in sorted(folders, key=_edited, reverse=True):
+            # One that was kept without its map, or whose map is damaged, is of no use here.
+            with contextlib.suppress(HomeError, OSError):
+                yield folder, FloorRecord(*read_floor(folder))
+
+    def _taken_over(
+        self, plan: FloorPlan, rooms: Rooms | None, zones: Zones | None, old_in_new: Pose
+    ) -> FloorPlan:
+        """Return a plan with what was kept of the map before it changed, and keep that."""
+        kept = plan.zones
+        for zone in moved(zones or Zones(), old_in_new).all:
+            kept = kept.with_zone(zone)
+        taken = _with(plan, self._divided(plan.rooms, rooms, old_in_new), kept)
+        self._tell("the map changed since its rooms or zones were edited; they are taken over")
+        try:
+            self.save(plan, taken)
+        except (OSError, RoomsError) as error:
+            self._tell(f"the rooms and zones that are taken over are not kept: {error}")
+            # Half of them would be all that the next start finds.
+            shutil.rmtree(self._own, ignore_errors=True)
+        return taken
+
+    def _divided(self, new: Rooms | None, old: Rooms | None, old_in_new: Pose) -> Rooms | None:
+        """Return the rooms of the map with what people made of them before it changed."""
+        if new is None or old is None:
+            return new
+        as_before = divided_as(old, new) if old_in_new == Pose() else None
+        if as_before is not None:
+            return as_before
+        return carry_over(new, old, Zones(), self._config.same_room, old_in_new).rooms
+
+    def _keep_floor(self) -> None:
+        """Write the map beside its plan, by which a map that changed is told; raises OSError."""
+        if not (self._own / MAP_NAME).exists():
+            write_floor(StoredMap(self._floor.occupancy, self._floor.station), self._own)
+
+
+def _with(plan: FloorPlan, rooms: Rooms | None, zones: Zones | None) -> FloorPlan:
+    """Return a plan with other rooms and zones, where there are some."""
+    return replace(
+        plan,
+        rooms=plan.rooms if rooms is None else rooms,
+        zones=plan.zones if zones is None else zones,
+    )
+
+
+def _has_plan(folder: Path) -> bool:
+    """Whether rooms or zones were kept there, also such that are damaged."""
+    return any(any(folder.glob(f"{name}*")) for name in (ROOMS_NAME, ZONES_NAME))
+
+
+def _edited(folder: Path) -> float:
+    """Return when rooms or zones were kept there last, s."""
+    files = [folder / ROOMS_NAME, folder / ZONES_NAME]
+    return max((file.stat().st_mtime for file in files if file.exists()), default=0.0)

@@ -8,10 +8,12 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
+from roomba.errors import RoomsError
 from roomba.geometry import Pose
-from roomba.perception.rooms.rooms import Rooms
+from roomba.perception.rooms.rooms import SMALLEST_PIECE, Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.raster.carried import carried
 
@@ -42,7 +44,7 @@ def carry_over(
     Names go one to one, so that rooms share as much floor with their namesakes as can be; a room
     that is new keeps "Room n", or gets one that is not taken. Zones are places: they stay.
     """
-    there = _moved(zones, old_in_new)
+    there = moved(zones, old_in_new)
     if old is None:
         return CarriedOver(new, there, ())
     partners = _best_partners(_overlaps(new, old, least, old_in_new))
@@ -51,7 +53,26 @@ def carry_over(
     return CarriedOver(replace(new, names=names), there, lost)
 
 
-def _moved(zones: Zones, old_in_new: Pose) -> Zones:
+def divided_as(old: Rooms, new: Rooms) -> Rooms | None:
+    """Return the floor of ``new`` rooms as it was divided before, where that fits still.
+
+    None on another grid, with a room that is gone or in pieces now, and with floor of
+    :data:`SMALLEST_PIECE` or more that was in no room.
+    """
+    if old.frame != new.frame:
+        return None
+    outlines = [(name, old.outline(label)) for label, name in enumerate(old.names, 1)]
+    try:
+        rooms = Rooms.from_outlines(new.frame, new.labels > 0, outlines)
+    except RoomsError:
+        return None
+    left = np.count_nonzero((new.labels > 0) & (rooms.labels == 0)) * new.frame.resolution**2
+    labels = range(1, len(rooms.names) + 1)
+    is_whole = all(isinstance(rooms.outline(label), shapely.Polygon) for label in labels)
+    return rooms if is_whole and left < SMALLEST_PIECE else None
+
+
+def moved(zones: Zones, old_in_new: Pose) -> Zones:
     """Return zones of the old map in the frame of the new one."""
     if old_in_new == _SAME:
         return zones

@@ -51,7 +51,10 @@ class FloorMatch:
 
 
 def match_floors(new: FloorRecord, old: FloorRecord, config: FloorsConfig) -> FloorMatch:
-    """Return how well two maps fit, laid on each other as well as can be near their stations."""
+    """Return how well two maps fit, laid on each other as well as can be near their stations.
+
+    Two on one grid that fit nowhere better than as they are lie on each other exactly.
+    """
     station = new.station
     starts = [Pose(station.x, station.y, station.theta + turn) for turn in _TURNS]
     # Maps that were begun at the same place have one frame.
@@ -60,9 +63,10 @@ def match_floors(new: FloorRecord, old: FloorRecord, config: FloorsConfig) -> Fl
     ends = np.zeros((len(walls), 4))
     ends[:, :2] = old.station.inverse().transform(walls)
     back = old.station.inverse()
-    found = [
-        _compared(new, old, _aligned(field, ends, start).compose(back), config) for start in starts
-    ]
+    places = [_aligned(field, ends, start).compose(back) for start in starts]
+    if new.occupancy.frame == old.occupancy.frame:
+        places.insert(0, Pose())
+    found = [_compared(new, old, place, config) for place in places]
     return max(found, key=lambda each: each.walls * each.floor)
 
 

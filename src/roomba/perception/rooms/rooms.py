@@ -198,7 +198,7 @@ class Rooms:
             )
         names = list(self.names)
         for _ in range(int(labels.max()) - len(names)):
-            tries = (f"{name} {number}" for number in itertools.count(2))
+            tries = (_numbered(name, number) for number in itertools.count(2))
             names.append(next(new for new in tries if new not in names))
         return Rooms(self.frame, labels, tuple(names))
 
@@ -209,6 +209,12 @@ class Rooms:
             )
         cells: NDArray[np.bool_] = self.labels == label
         return cells
+
+
+def _numbered(name: str, number: int) -> str:
+    """Return a name with a number, "X 2", cut so that it is no longer than a name may be."""
+    end = f" {number}"
+    return f"{name[: LONGEST_NAME - len(end)].rstrip()}{end}"
 
 
 def segment(occupancy: OccupancyMap, config: RoomsConfig | None = None) -> Rooms:

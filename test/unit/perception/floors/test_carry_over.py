@@ -15,7 +15,7 @@ from roomba.configuration.mapping import FloorsConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.grid import OCCUPIED, GridFrame, OccupancyMap
-from roomba.perception.floors.carry_over import carry_over
+from roomba.perception.floors.carry_over import carry_over, divided_as
 from roomba.perception.rooms.rooms import Rooms, segment
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.world.layers.layer import load_home
@@ -213,3 +213,35 @@ def most(shares: NDArray[np.float64], row: int, taken: frozenset[int]) -> float:
     free = [column for column in np.flatnonzero(shares[row]).tolist() if column not in taken]
     ways = [float(shares[row, c]) + most(shares, row + 1, taken | {c}) for c in free]
     return max([without, *ways])
+
+
+def test_a_floor_of_which_little_changed_is_divided_as_before() -> None:
+    old = rooms_of((0, 30, "kitchen"), (30, 60, "hall"), (60, 80, "bath"))
+    new = rooms_of((0, 80, "Room 1"))
+    new.labels[10:12, 40:44] = 0
+    divided = divided_as(old, new)
+    assert divided is not None
+    assert divided.names == old.names
+    assert np.array_equal(divided.labels, np.where(new.labels > 0, old.labels, 0))
+
+
+@pytest.mark.parametrize(
+    ("changed", "why"),
+    [
+        ((slice(None), slice(60, 80)), "a room is gone"),
+        ((slice(None), slice(44, 46)), "a room is in pieces"),
+    ],
+)
+def test_a_division_that_fits_no_more_is_none(changed: tuple[slice, slice], why: str) -> None:
+    old = rooms_of((0, 30, "kitchen"), (30, 60, "hall"), (60, 80, "bath"))
+    new = rooms_of((0, 80, "Room 1"))
+    new.labels[changed] = 0
+    assert divided_as(old, new) is None, why
+
+
+def test_a_division_that_leaves_floor_out_or_is_of_another_grid_is_none() -> None:
+    new = rooms_of((0, 80, "Room 1"))
+    assert divided_as(rooms_of((0, 74, "kitchen")), new) is None  # of 6 columns, 0.6 m2
+    assert divided_as(rooms_of((0, 76, "kitchen")), new) is not None
+    elsewhere = rooms_of((0, 80, "Room 1"), frame=GridFrame(0.05, -1.05, 2.0, 40, 80))
+    assert divided_as(elsewhere, new) is None

@@ -180,3 +180,14 @@ def test_how_much_maps_must_have_in_common_is_configured(changed: dict[str, floa
     before = FloorRecord(standing(FURNISHED), FURNISHED.station)
     after = FloorRecord(standing(MOVED), FURNISHED.station)
     assert match_floors(after, before, FloorsConfig(**changed)).is_same is (changed == {})
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_map_that_was_edited_lies_exactly_on_itself(name: str) -> None:
+    home = shipped(name)
+    row, column = home.frame.cell_of(home.station.x, home.station.y)
+    values = home.map.values.copy()
+    values[row + 6 : row + 9, column - 2 : column + 3] = OCCUPIED
+    match = matched(FloorRecord(OccupancyMap(home.frame, values), home.station), floor_of(home))
+    assert match.is_same
+    assert match.old_in_new == Pose()

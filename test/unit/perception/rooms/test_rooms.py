@@ -15,6 +15,7 @@ from roomba.errors import RoomsError
 from roomba.grid import GridFrame
 from roomba.perception.rooms.rooms import SMALLEST_PIECE, Rooms
 from roomba.raster.regions import numbered_regions
+from roomba.vocabulary import LONGEST_NAME
 
 SIZE = 0.1
 FRAME = GridFrame(SIZE, -1.0, 0.5, 30, 60)
@@ -172,6 +173,13 @@ def test_a_line_from_wall_to_wall_cuts_a_room() -> None:
     assert rooms.at(2.0, 0.7) == 4
     assert rooms.area(HALL) + rooms.area(4) == pytest.approx(6.0)
     assert rooms.area(4) == pytest.approx(2.0, abs=0.3)
+
+
+def test_a_piece_of_a_room_with_the_longest_name_has_a_name_that_is_not_longer() -> None:
+    longest = "H" * LONGEST_NAME
+    rooms = home().renamed("Hall", longest).split(longest, (0.9, 1.55), (3.2, 1.55))
+    assert rooms.names[1] == longest
+    assert rooms.names[3] == longest[:-2] + " 2"
 
 
 def test_what_a_cut_leaves_over_goes_to_the_piece_beside_it() -> None:
