@@ -109,6 +109,10 @@ class FollowingConfig(Frozen):
     """it is this, up to half as far off as wheels may have slipped."""
     better: Annotated[float, Field(ge=1.0, le=10.0)] = 1.2
     """Times that a place found must agree better than the one that is thought to be right."""
+    leap_way: Length = 0.5
+    leap_turn: Angle = 0.35
+    """And its share of what was driven and turned unconfirmed; a place that is farther from where
+    the robot was thought to be is of a piece of its own, until more than one scan shows it."""
     given_up_after: AtLeastOne = 7
     """Scans that show enough and confirm nothing,"""
     piece_way: NotNegative = 0.6
@@ -176,6 +180,19 @@ class PiecesConfig(Frozen):
     """Of one to a pose that people told."""
 
 
+class PartsConfig(Frozen):
+    """Finding parts of a map that no scan joined to it."""
+
+    looked_for: AtLeastOne = 8
+    """Samples of a part at most, each over all of the map,"""
+    keyframes: AtLeastOne = 5
+    """of so many keyframes or more."""
+    backed: AtLeastOne = 3
+    """So many must be found where the part lies then,"""
+    clearer: Annotated[float, Field(ge=1.0, le=10.0)] = 2.0
+    """and this many times as many as elsewhere."""
+
+
 class RelocationConfig(Frozen):
     """Finding a robot on its growing map after it was carried: m, rad."""
 
@@ -231,6 +248,7 @@ class MappingConfig(Frozen):
     windows: WindowsConfig = WindowsConfig()
     backing: BackingConfig = BackingConfig()
     pieces: PiecesConfig = PiecesConfig()
+    parts: PartsConfig = PartsConfig()
     relocation: RelocationConfig = RelocationConfig()
     changes: MapChangesConfig = MapChangesConfig()
     floors: FloorsConfig = FloorsConfig()

@@ -48,7 +48,7 @@ class Wanted:
     gyro: str | None = None
     laser: Pose | None = None
     laser_is_upside_down: bool | None = None
-    beside: frozenset[Kind] = frozenset({Kind.TRUTH})
+    beside: frozenset[Kind] = frozenset({Kind.TRUTH, Kind.LIFTED})
     needs_odometry: bool = True
 
     def name(self, kind: Kind) -> str | None:

@@ -101,7 +101,7 @@ def test_poses_are_read_by_their_usual_names_if_they_are_wanted(
     found = chosen(PATHS, [*beside, SCAN, ODOM], Wanted(beside=BESIDE))
     assert list(found.channels) == [SCAN, ODOM, *expected]
     assert found.name(Kind.TOLD) == next((e.name for e in expected if e.kind is Kind.TOLD), None)
-    assert set(names([*beside, SCAN, ODOM])) <= {"/scan", "/odom", TRUTH.name}
+    assert set(names([*beside, SCAN, ODOM])) <= {"/scan", "/odom", TRUTH.name, DROP.name}
 
 
 def test_poses_of_a_named_robot_are_those_beside_its_odometry() -> None:

@@ -118,7 +118,9 @@ class Mapper:
         """Do what comes after the newest scan was followed: kernels left that, or :meth:`see`."""
         follower = self._follower
         if self.version and self._finding_back.is_due:
-            self._finding_back.search(follower, self._map.clouds())
+            has_leapt = self._finding_back.search(follower, self._map.clouds())
+            if has_leapt:
+                self._begin_piece()
         follower.compare_turns(stamp)
         points = follower.points
         if self._is_keyframe():
@@ -161,6 +163,15 @@ class Mapper:
         show where on the map it is.
         """
         self._relocation.lift(is_lifted)
+
+    def set_down(self) -> None:
+        """Go on where it was set down, wherever that is: the map goes on in a piece of its own.
+
+        It is laid where it fits when the map is finished.
+        """
+        self._relocation.is_lifted = self._relocation.is_lost = False
+        if self.version:
+            self._begin_piece()
 
     def told(self, pose: Pose) -> None:
         """Go on from a reported pose of the robot, map frame, right to within a few cm."""
@@ -233,6 +244,13 @@ class Mapper:
         """
         count, pose = self._map.graph.newest_keyframe()
         return count - 1, Pose(*pose.tolist())
+
+    @property
+    def ways_apart(self) -> list[float]:
+        """How long parts of the map are that lie where dead reckoning puts them, m: no scan of them
+        was found on the rest.
+        """
+        return self._map.graph.ways_apart(self._follower.way)
 
     @property
     def trajectory(self) -> Floats:

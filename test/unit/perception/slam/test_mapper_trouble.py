@@ -106,6 +106,36 @@ def test_put_elsewhere_unnoticed_it_draws_nothing_wrong(to: Pose) -> None:
     assert robot.mapper.version == version
 
 
+@pytest.mark.parametrize("to", [Pose(2.5, 2.6, 2.0), Pose(3.4, 1.2, -2.5)])
+def test_carried_unnoticed_what_it_sees_then_is_laid_where_it_fits(to: Pose) -> None:
+    """The wheels did not tell; while it drives on it draws the room twice."""
+    robot = driven_around(1, 2.0 * AROUND)
+    robot.world.put(to)
+    for _ in range(12):
+        robot.drive(Twist(0.2, 0.25), 4.0).drive(Twist(0.2, -0.1), 1.0)
+    assert robot.error > 1.0
+    assert len(robot.mapper.ways_apart) == 1
+    made = robot.mapper.finish()
+    assert robot.mapper.ways_apart == []
+    assert wrong_cells(made, FURNISHED) == (0, 0)
+    assert robot.error < WORST
+
+
+def test_set_down_elsewhere_it_goes_on_apart_until_the_map_is_finished() -> None:
+    robot = driven_around(1, 2.0 * AROUND)
+    robot.mapper.lift(True)
+    robot.world.put(Pose(3.4, 1.2, -2.5))
+    version = robot.mapper.version
+    robot.drive(Twist(), 1.0)
+    assert robot.mapper.version == version
+    robot.mapper.set_down()
+    for _ in range(12):
+        robot.drive(Twist(0.2, 0.25), 4.0).drive(Twist(0.2, -0.1), 1.0)
+    assert robot.mapper.version > version
+    assert wrong_cells(robot.mapper.finish(), FURNISHED) == (0, 0)
+    assert robot.error < WORST
+
+
 def test_blind_from_the_beginning_it_begins_when_it_sees() -> None:
     robot = Mapped()
     robot.world.inject(Fault.LIDAR_BLOCKED, 1.0)

@@ -73,7 +73,7 @@ def mapped_drive(logs: Sequence[Path], wanted: Wanted, show: Show) -> MappedDriv
         look_at_drive(drive)
         start = _first_truth(drive)
         replay, true = _replayed(drive, start or Pose(), show)
-        notes = (*drive.notes, *replay.notes)
+        notes = [*drive.notes, *replay.notes]
         if not replay.scans:
             reasons = "; ".join(notes) or "it has none beside odometry"
             raise LogError(f"{_names(logs)}: no scan could be used: {reasons}")
@@ -88,7 +88,14 @@ def mapped_drive(logs: Sequence[Path], wanted: Wanted, show: Show) -> MappedDriv
         begin = Pose(*replay.mapper.trajectory[0].tolist())
         refused = {**drive.refused_scans, **replay.left_out}
         return MappedDrive(
-            tuple(logs), occupancy, replay, true, begin, drive.counts, refused, notes
+            tuple(logs),
+            occupancy,
+            replay,
+            true,
+            begin,
+            drive.counts,
+            refused,
+            (*drive.notes, *replay.notes),
         )
 
 

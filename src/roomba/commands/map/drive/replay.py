@@ -19,7 +19,7 @@ from roomba.grid import OccupancyMap
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.mapper import Mapper
-from roomba.recordings.readings import LidarScan, Odometry, Turning, Value
+from roomba.recordings.readings import LidarScan, Lifted, Odometry, Turning, Value
 from roomba.recordings.times.waiting import StampedScan, WaitingScan
 from roomba.recordings.turning import NewestTurning
 
@@ -88,6 +88,7 @@ class MapReplay:
         self._blind_rows: list[tuple[float, float, float, float]] = []
         self._stamp = -math.inf
         self._at: Pose | None = None
+        self._is_lifted = False
         self._turning = NewestTurning()
         self._waiting = WaitingScan()
 
@@ -106,8 +107,17 @@ class MapReplay:
 
     @property
     def notes(self) -> list[str]:
-        """What was left out."""
-        return [f"{count} {what}: left out" for what, count in self.left_out.items()]
+        """What was left out, and what no scan joined to the map."""
+        left_out = [f"{count} {what}: left out" for what, count in self.left_out.items()]
+        apart = self.mapper.ways_apart
+        if not apart:
+            return left_out
+        told = (
+            f"where scans fitted nothing the map goes on by odometry alone, {len(apart)} times, "
+            f"{sum(apart):.1f} m of the way in all: what was seen there was found nowhere else on "
+            "the map, and may be drawn at a wrong place"
+        )
+        return [*left_out, told]
 
     def hear(self, stamp: float, value: Value) -> None:
         """Take in a reading, in the order of time; true poses say nothing."""
@@ -115,6 +125,8 @@ class MapReplay:
             self._hear_odometry(stamp, value.pose)
         elif isinstance(value, Turning):
             self._turning.hear(stamp, value.speed)
+        elif isinstance(value, Lifted):
+            self._hear_lifted(is_lifted=value.is_lifted)
         elif isinstance(value, LidarScan):
             self._hear_scan(stamp, value)
 
@@ -144,6 +156,14 @@ class MapReplay:
         self._at = here
         self._see(self._waiting.ready(stamp))
 
+    def _hear_lifted(self, *, is_lifted: bool) -> None:
+        """Leave out what it sees while it is carried; it goes on wherever it is set down."""
+        if is_lifted:
+            self.mapper.lift(is_lifted)
+        elif self._is_lifted:
+            self.mapper.set_down()
+        self._is_lifted = is_lifted
+
     def _hear_scan(self, stamp: float, scan: LidarScan) -> None:
         """Keep a scan until odometry has reached its last beam, or the next scan comes."""
         if self._by_scans is not None:
@@ -161,6 +181,9 @@ class MapReplay:
         stamp = scan.stamp
         if stamp > self._stamp + _LATEST:
             self.left_out["scans of times without odometry"] += 1
+            return
+        if self._is_lifted:
+            self.left_out["scans while it was carried"] += 1
             return
         began = time.process_time()
         self.mapper.see(stamp, scan.ranges, scan.lidar)

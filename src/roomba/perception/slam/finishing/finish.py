@@ -21,6 +21,7 @@ def finish(graph: SubmapGraph, config: MappingConfig) -> tuple[float, float]:
 
     Returns where, x and y, m, walls then lie between the cells of a grid.
     """
+    graph.join_parts()
     graph.link_anew()
     refine_keyframes(graph, config.point_deviation)
     return align_axes(graph, config.resolution, math.radians(config.oblique))

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
+from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.slam.following.finding_back_kernels import FINDING, is_due
 from roomba.perception.slam.following.scan_follower import ScanFollower
 from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher, is_in_reach
@@ -57,19 +58,20 @@ class FindingBack:
             return False
         return follower.unsure_way > config.piece_way or follower.unsure_turn > config.piece_turn
 
-    def search(self, follower: ScanFollower, clouds: list[Floats]) -> None:
+    def search(self, follower: ScanFollower, clouds: list[Floats]) -> bool:
         """Look for where the newest scan fits on ``clouds``, [m, 4] each, around it.
 
         They are in the frame of the newest submap, as the surfels are that confirm what is found.
+        Returns whether that is farther off than wheels slip: then one scan alone may be wrong.
         """
         points, config = follower.points, self._config
         if not clouds or not follower.shows_enough:
-            return
+            return False
         # As seen from where it is thought to be: what is far from there is left out.
         here = follower.here
         seen = np.concatenate(clouds)[::_STRIDE] - (here[0], here[1], 0.0, 0.0)
         if not is_in_reach(seen, self._reach):
-            return
+            return False
         thought = np.array([0.0, 0.0, here[2]])
         way, turn = self._slip(follower)
         matcher = CorrelativeMatcher(seen, self._reach)
@@ -77,10 +79,15 @@ class FindingBack:
         found = matcher.best(points, thought, window, turn, config.likelihood)
         if found is None and self._is_far_apart(follower):
             found = matcher.best(points, thought, way / 2, turn / 2, config.likelihood_apart)
-        if found is not None:
-            pose = np.array([*(found.pose[:2] + here[:2]), found.pose[2]])
-            follower.try_at(pose, config.better)
-            self._row["misses"] *= not follower.is_sure
+        if found is None:
+            return False
+        share = config.searched_share
+        far = config.leap_way + share * follower.unsure_way
+        far_turn = config.leap_turn + share * follower.unsure_turn
+        pose = np.array([*(found.pose[:2] + here[:2]), found.pose[2]])
+        follower.try_at(pose, config.better)
+        self._row["misses"] *= not follower.is_sure
+        return bool(is_apart(follower.here, here, far, far_turn))
 
     def _is_far_apart(self, follower: ScanFollower) -> bool:
         """Whether so much was driven from scan to scan that each shows much that none before did.

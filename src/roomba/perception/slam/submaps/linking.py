@@ -73,6 +73,11 @@ class Linker:
                 found.append(link)
         return found
 
+    def link_at(self, parent: int, child: int, submaps: list[Submap], poses: Floats) -> Link | None:
+        """Return the link between two submaps that lie about where they are thought to be."""
+        windows = self._config.windows
+        return self._link(parent, child, submaps, poses, windows.narrow, windows.turn)
+
     def _windows(self, child: int, poses: Floats, links: list[Link]) -> tuple[Floats, Floats]:
         """Return by how much each submap may lie off as seen from one, m and rad, [n] each."""
         drift, config = self._config.drift, self._config.windows

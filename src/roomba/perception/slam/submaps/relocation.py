@@ -6,15 +6,12 @@ scan, taken elsewhere, must be found where the first one and dead reckoning say.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.angles import wrapped
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.pose_kernels import is_apart
-from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher, is_in_reach
+from roomba.perception.slam.submaps.places import clearly_best, differ
 from roomba.perception.slam.submaps.pose_graph import composed, relative_to
 from roomba.perception.slam.submaps.submap import Submap
 
@@ -61,43 +58,11 @@ class MapRelocation:
         if before is not None and not is_apart(reckoned, before, config.moved, config.turned):
             return None
         self._searched_at = reckoned.copy()
-        self._found = found = _clearly_best(points, submaps, poses, self._config)
+        (place,) = clearly_best([points], submaps, poses, self._config, config.likelihood)
+        self._found = found = None if place is None else place.pose
         if found is None or earlier is None or before is None:
             return None
         expected = composed(earlier[None], relative_to(before[None], reckoned[None]))[0]
-        if _differ(found, expected, config.same_place, config.same_heading):
+        if differ(found, expected, config.same_place, config.same_heading):
             return None
         return found
-
-
-def _clearly_best(
-    points: Floats, submaps: list[Submap], poses: Floats, mapping: MappingConfig
-) -> Floats | None:
-    """Return the pose on the map that fits clearly better than all others, [3], or None."""
-    config, reach = mapping.relocation, mapping.search_reach
-    places, scores = [], []
-    for submap, pose in zip(submaps, poses, strict=True):
-        if not len(submap.cloud) or not is_in_reach(submap.cloud, reach):
-            continue
-        matcher = CorrelativeMatcher(submap.cloud, reach)
-        found = matcher.best(points, np.zeros(3), config.window, math.pi, config.likelihood)
-        if found is not None:
-            places.append(composed(pose[None], found.pose[None])[0])
-            scores.append(found.score)
-    if not places:
-        return None
-    best = int(np.argmax(scores))
-    others = [
-        score
-        for place, score in zip(places, scores, strict=True)
-        if _differ(place, places[best], config.elsewhere_way, config.elsewhere_turn)
-    ]
-    if max(others, default=0.0) > config.clearly * scores[best]:
-        return None
-    result: Floats = places[best]
-    return result
-
-
-def _differ(pose: Floats, other: Floats, way: float, turn: float) -> bool:
-    away = math.hypot(pose[0] - other[0], pose[1] - other[1])
-    return away > way or abs(wrapped(pose[2] - other[2])) > turn

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -39,9 +40,7 @@ class Submap:
 
     def close(self, most: int) -> None:
         """Close the submap: keep at most ``most`` of its points with normals as its cloud."""
-        clouds = [moved(frame.points, frame.pose) for frame in self.keyframes]
-        points = np.concatenate(clouds) if clouds else np.zeros((0, 4))
-        points = points[np.any(points[:, 2:] != 0.0, axis=1)]
+        points = cloud_of(self.keyframes)
         stride = max(1, -(-len(points) // most))
         self.cloud = np.ascontiguousarray(points[::stride])
 
@@ -49,6 +48,14 @@ class Submap:
         """Return where its keyframes were taken, float64 [n, 3], the submap being at ``pose``."""
         relative = np.array([frame.pose for frame in self.keyframes]).reshape(-1, 3)
         return composed(np.broadcast_to(pose, relative.shape), relative)
+
+
+def cloud_of(keyframes: Sequence[Keyframe]) -> Floats:
+    """Return the points with normals of some keyframes of a submap, [n, 4], its frame."""
+    clouds = [moved(frame.points, frame.pose) for frame in keyframes]
+    points = np.concatenate(clouds) if clouds else np.zeros((0, 4))
+    with_normals: Floats = points[np.any(points[:, 2:] != 0.0, axis=1)]
+    return with_normals
 
 
 def moved(points: NDArray[np.float32] | Floats, pose: Floats) -> Floats:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -13,6 +14,12 @@ from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.slam.submaps.agreement import is_backed, is_far
 from roomba.perception.slam.submaps.linking import Linker
+from roomba.perception.slam.submaps.parts import (
+    FoundPart,
+    found_part,
+    is_hardly_known,
+    part_labels,
+)
 from roomba.perception.slam.submaps.pose_graph import (
     Link,
     composed,
@@ -129,6 +136,47 @@ class SubmapGraph:
         self.links += self._agreeing(self._links_of(child, self.links), child)
         self.poses = optimised(self.poses, self.links, known)
 
+    def ways_apart(self, way: float) -> list[float]:
+        """Return how long the parts are that no scan joined to the first one, m.
+
+        ``way`` is what was driven in all.
+        """
+        ends = [*(submap.way for submap in self.submaps[1:]), way]
+        driven = np.array(ends) - [submap.way for submap in self.submaps]
+        labels = part_labels(len(self.submaps), self.links, self._config.windows.hardly)
+        return [float(driven[labels == part].sum()) for part in np.unique(labels)[1:].tolist()]
+
+    def join_parts(self) -> None:
+        """Lay parts of the map that no scan joined where they are found on what is before them."""
+        hardly = self._config.windows.hardly
+        labels = part_labels(len(self.submaps), self.links, hardly)
+        for part in np.unique(labels)[1:].tolist():
+            found = found_part(part, labels, self.submaps, self.poses, self._config)
+            if found is not None:
+                self._lay_part(found, labels >= part)
+                labels = part_labels(len(self.submaps), self.links, hardly)
+
+    def _lay_part(self, found: FoundPart, which: NDArray[np.bool_]) -> None:
+        """Move a part, and what hangs on it, where it was found, if links say so as well."""
+        count, hardly = int(np.count_nonzero(which)), self._config.windows.hardly
+        poses = self.poses.copy()
+        poses[which] = composed(np.repeat(found.moved[None], count, 0), poses[which])
+        links = [
+            self._linker.link_at(parent, number, self.submaps, poses)
+            for number, parent in found.parents.items()
+            if self._linker is not None
+        ]
+        good = [link for link in links if link is not None]
+        if not good:
+            return
+        # Where it was thought to be holds no more.
+        known = [
+            _as_lies(link, poses) if which[link.child] and is_hardly_known(link, hardly) else link
+            for link in self.links
+        ]
+        self.links = known + good
+        self.poses = optimised(poses, self.links)
+
     def link_anew(self) -> None:
         """Look for all links anew, near where submaps lie by the present ones."""
         backing = self._config.backing
@@ -225,6 +273,12 @@ class SubmapGraph:
         deviations = np.array([numbers.way_noise, numbers.way_noise, numbers.turn_noise])
         information: Floats = np.diag((deviations * math.sqrt(max(way, 0.1))) ** -2.0)
         return information
+
+
+def _as_lies(link: Link, poses: Floats) -> Link:
+    """Return a link that tells how its submaps lie now."""
+    relative = relative_to(poses[link.parent][None], poses[link.child][None])[0]
+    return replace(link, relative=relative)
 
 
 def _information(deviation: float, heading_deviation: float) -> Floats:

@@ -152,3 +152,21 @@ def test_it_is_looked_for_where_odometry_that_stood_still_may_have_left_it(
     assert bool(tried) is is_found
     if is_found:
         assert tried[0][:2] == pytest.approx((AHEAD, 0.0), abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("to", "leaps"), [(Pose(0.2, 0.1, 0.1), False), (Pose(0.5, 0.3, 0.2), True)]
+)
+def test_a_place_that_is_farther_than_wheels_slip_begins_a_piece(to: Pose, leaps: bool) -> None:
+    """One scan alone may be wrong; what is seen from there on tells whether it was right."""
+    mapper, here = mapper_at(Pose(4.0, 1.2, 0.0)), Pose(4.0, 1.2, 0.0)
+    for tick in range(8):
+        mapper.move(0.1 * tick, Pose(0.02 * tick, 0.0, 0.0), 0.0)
+        mapper.see(0.1 * tick, EYE.scan(here.compose(Pose(0.02 * tick)))[BEAMS], LIDAR)
+    assert mapper.ways_apart == []
+    there = here.compose(Pose(0.14)).compose(to)
+    for tick in range(8, 11):
+        mapper.move(0.1 * tick, Pose(0.14, 0.0, 0.0), 0.0)
+        mapper.see(0.1 * tick, EYE.scan(there)[BEAMS], LIDAR)
+    assert (len(mapper.ways_apart) == 1) is leaps
+    assert mapper.pose.distance_to(there.x, there.y) < 0.1

@@ -1,0 +1,132 @@
+"""Parts of a map that no scan joined to the others, and where they lie on these.
+
+When scans stop to fit, the map goes on in a piece where dead reckoning puts it. A robot that was
+carried is elsewhere. Samples of such a part, some keyframes each, are then looked for on all that
+is before it, at any heading. The part lies where most of them are found, each by itself, if clearly
+fewer are found elsewhere.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.configuration.mapping import MappingConfig
+from roomba.perception.slam.submaps.places import ClearPlace, clearly_best, differ
+from roomba.perception.slam.submaps.pose_graph import Link, composed, inverse, relative_to
+from roomba.perception.slam.submaps.submap import Submap, cloud_of
+
+Floats = NDArray[np.float64]
+Labels = NDArray[np.int64]
+
+
+class FoundPart(NamedTuple):
+    """Where a part lies: ``moved`` [3], the pose on the map of what was its map frame.
+
+    ``parents`` are submaps that show the same as submaps of the part, by the numbers of these.
+    """
+
+    moved: Floats
+    parents: dict[int, int]
+
+
+class _Found(NamedTuple):
+    """A sample that was found: the number of its submap, and where that lies then."""
+
+    submap: int
+    place: ClearPlace
+
+
+def part_labels(count: int, links: Sequence[Link], hardly: float) -> Labels:
+    """Return for each of ``count`` submaps the first one of its part, int64 [count].
+
+    A link with a larger standard deviation than ``hardly``, m, was made without a scan.
+    """
+    labels = np.arange(count)
+    for link in links:
+        if not is_hardly_known(link, hardly):
+            first, second = labels[link.parent], labels[link.child]
+            labels[labels == max(first, second)] = min(first, second)
+    return labels
+
+
+def is_hardly_known(link: Link, hardly: float) -> bool:
+    """Whether a link says too little of where its child lies: its deviation is above this, m."""
+    return math.sqrt(1.0 / link.information[0, 0]) > hardly
+
+
+def found_part(
+    part: int, labels: Labels, submaps: Sequence[Submap], poses: Floats, config: MappingConfig
+) -> FoundPart | None:
+    """Return where a part, by its label, lies on those before it; None if that is not clear."""
+    before: list[int] = np.flatnonzero(labels < part).tolist()
+    samples = _samples(np.flatnonzero(labels == part).tolist(), submaps, config)
+    if len(samples) < config.parts.backed:
+        return None
+    places = clearly_best(
+        [cloud for _, cloud in samples],
+        [submaps[number] for number in before],
+        poses[before],
+        config,
+        config.windows.likely,
+    )
+    found = [
+        _Found(number, place._replace(submap=before[place.submap]))
+        for (number, _), place in zip(samples, places, strict=True)
+        if place is not None
+    ]
+    return _most_agreed(found, poses, config)
+
+
+def _samples(
+    own: list[int], submaps: Sequence[Submap], config: MappingConfig
+) -> list[tuple[int, Floats]]:
+    """Return samples of some submaps, spread over them: the submap's number, and points in it."""
+    most = config.parts.looked_for
+    pieces = -(-most // len(own))
+    samples = []
+    for number in own[:: -(-len(own) // most)]:
+        frames = submaps[number].keyframes
+        size = max(-(-len(frames) // pieces), config.parts.keyframes)
+        for first in range(0, len(frames) - size + 1, size):
+            cloud = cloud_of(frames[first : first + size])
+            if len(cloud) >= config.link_points:
+                samples.append((number, cloud))
+    return samples
+
+
+def _most_agreed(found: list[_Found], poses: Floats, config: MappingConfig) -> FoundPart | None:
+    """Return where most samples say that their part lies, if clearly fewer say otherwise."""
+    agrees = np.array(
+        [[_agree(one, other, poses, config) for other in found] for one in found], np.bool_
+    ).reshape(len(found), len(found))
+    best = _largest_group(agrees)
+    # Of the samples that are not in it:
+    rival = _largest_group(agrees & ~best & ~best[:, None])
+    if best.sum() < max(config.parts.backed, config.parts.clearer * rival.sum()):
+        return None
+    group = [each for each, is_in in zip(found, best.tolist(), strict=True) if is_in]
+    surest = max(group, key=lambda each: each.place.score)
+    moved = composed(surest.place.pose[None], inverse(poses[surest.submap])[None])[0]
+    return FoundPart(moved, {each.submap: each.place.submap for each in group})
+
+
+def _largest_group(agrees: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return those that agree with the one with which most do, bool [n], of a table [n, n]."""
+    if not len(agrees):
+        return np.zeros(0, np.bool_)
+    group: NDArray[np.bool_] = agrees[int(np.argmax(agrees.sum(axis=1)))]
+    return group
+
+
+def _agree(one: _Found, other: _Found, poses: Floats, config: MappingConfig) -> bool:
+    """Whether two were found as they lie to each other, but for how far the part drifts."""
+    step = relative_to(poses[one.submap][None], poses[other.submap][None])
+    expected = composed(one.place.pose[None], step)[0]
+    backing, drifted = config.backing, config.drift * math.hypot(step[0, 0], step[0, 1])
+    way = backing.same_place + drifted
+    return not differ(other.place.pose, expected, way, backing.same_heading)
