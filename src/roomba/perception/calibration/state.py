@@ -80,6 +80,17 @@ CALIBRATION: Final = np.dtype(
 )
 
 
+def forget_wheels(row: Row, localization: LocalizationConfig) -> None:
+    """Let nothing be known of the wheels, which are others now; lidar and gyro are as they were."""
+    wheels = slice(OF_WHEELS)
+    row["errors"][wheels] = row["applied"][wheels] = 0.0
+    row["covariance"][wheels] = row["covariance"][:, wheels] = 0.0
+    row["covariance"][wheels, wheels] = np.diag(row["prior"][wheels])
+    row["is_applied"] = row["applied"][GYRO] != 0.0
+    row["is_open"] = False
+    _set_noise(row, localization)
+
+
 def begin_calibration(row: Row, localization: LocalizationConfig, gyro: GyroConfig) -> None:
     """Let nothing be measured yet."""
     config = localization.calibration
@@ -93,12 +104,15 @@ def begin_calibration(row: Row, localization: LocalizationConfig, gyro: GyroConf
     row["sure"] = config.sure
     for name in ("window_way", "window_turn", "forgetting_way"):
         row[name] = getattr(config, name)
-    row["way_variance"], row["side_variance"] = (
-        localization.way_noise**2,
-        localization.side_noise**2,
-    )
-    row["wheel_variance"] = localization.wheel_turn_noise**2
-    row["turn_variance"] = localization.turn_noise**2
-    row["drift_variance"], row["bias"] = localization.gyro_drift**2, gyro.bias
+    _set_noise(row, localization)
+    row["bias"] = gyro.bias
     row["gyro_bias"], row["gyro_bias_variance"] = 0.0, gyro.bias**2
     row["bias_walk"] = gyro.bias**2 / config.bias_time
+
+
+def _set_noise(row: Row, localization: LocalizationConfig) -> None:
+    row["way_variance"] = localization.way_noise**2
+    row["side_variance"] = localization.side_noise**2
+    row["wheel_variance"] = localization.wheel_turn_noise**2
+    row["turn_variance"] = localization.turn_noise**2
+    row["drift_variance"] = localization.gyro_drift**2

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose
-from roomba.perception.calibration.state import begin_calibration
+from roomba.perception.calibration.state import begin_calibration, forget_wheels
 from roomba.perception.localization.belief.belief import Rows, numbers_of, unknown_belief
 from roomba.perception.localization.belief.reckon_kernels import reckon_on
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
@@ -27,12 +27,27 @@ class DeadReckoning:
         self, config: LocalizationConfig, gyro: GyroConfig, belief: Rows | None = None
     ) -> None:
         """Begin at the origin; the pose on the map of a ``belief`` goes along."""
+        self._gyro = gyro
         self.belief = unknown_belief() if belief is None else belief
         self._belief = self.belief[0]
         begin_calibration(self._belief["calibration"], config, gyro)
+        self._measured = self._belief["calibration"].copy()
         self._reckoned: NDArray[np.float64] = self._belief["reckoned"]
         self.numbers = numbers_of(config, gyro)
         self.path = ReckonedPath.empty()
+
+    def begin_guessing(self, config: LocalizationConfig) -> None:
+        """Go on with odometry that is guessed: what was measured of the wheels is not its own."""
+        row = self._belief["calibration"]
+        self._measured = row.copy()
+        forget_wheels(row, config)
+        self.numbers[:] = numbers_of(config, self._gyro)
+
+    def end_guessing(self, config: LocalizationConfig) -> None:
+        """Go on with the wheels, as they were known before."""
+        self._belief["calibration"] = self._measured
+        self._belief["calibration"]["is_open"] = False
+        self.numbers[:] = numbers_of(config, self._gyro)
 
     def move(self, stamp: float, odometry: Pose, turning: float | None) -> None:
         """Take the wheels' odometry and the gyro's turning speed, rad/s, if it has one, at a time.

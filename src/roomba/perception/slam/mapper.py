@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.localization import LocalizationConfig
-from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.mapping import FollowingConfig, MappingConfig
 from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
@@ -87,6 +87,18 @@ class Mapper:
             return None
         lidar, way = LidarNumbers.of(self._lidar), self._follower.way
         return self._map.state(lidar, way, is_lost=not self._relocation.is_placed)
+
+    def begin_guessing(self, localization: LocalizationConfig, following: FollowingConfig) -> None:
+        """Go on with odometry that is guessed, and with its noise."""
+        self._reckoning.begin_guessing(localization)
+        self._map.graph.use_odometry(localization)
+        self._follower.begin_guessing(following)
+
+    def end_guessing(self, localization: LocalizationConfig, following: FollowingConfig) -> None:
+        """Go on with the wheels, as they were known before."""
+        self._reckoning.end_guessing(localization)
+        self._map.graph.use_odometry(localization)
+        self._follower.end_guessing(following)
 
     def move(self, stamp: float, odometry: Pose, turning: float | None = None) -> None:
         """Take the wheels' odometry and the gyro's turning speed, rad/s, if there is one."""

@@ -37,6 +37,8 @@ _SET_BACK: Final = 1.0
 """s; a recorder's clock that is set back by more begins another run."""
 _LASTING: Final = 10
 """Messages; if so many are earlier than what was recorded before, the clock was set back."""
+_AT_ONCE: Final = 0.5
+"""Share of the usual step; a message that comes sooner after another one was held up with it."""
 _INFORMATIVE: Final = 0.5
 """Arrivals tell something if there are so many different ones, as a share of the stamps."""
 
@@ -108,9 +110,14 @@ def clock_shifts(times: Floats, kinds: Sequence[Hashable]) -> Floats:
 
 
 def delay_of(stamps: Floats, arrivals: Floats) -> float | None:
-    """Return how long after its stamp a message is recorded, s, the median; None without stamps."""
+    """Return how long after its stamp a message is recorded, s, as a rule; None without stamps.
+
+    It is the median of those that were not held up.
+    """
     valid = _valid(stamps)
-    return float(np.median(arrivals[valid] - stamps[valid])) if valid.any() else None
+    if not valid.any():
+        return None
+    return _usual_delay(stamps[valid], arrivals[valid])
 
 
 def mended(stamps: Floats, arrivals: Floats, delay: float, counts: StampCounts) -> Floats:
@@ -153,6 +160,16 @@ def in_order(times: Floats, channels: Ints, ranks: Ints, counts: StampCounts) ->
     return np.asarray(order[is_kept[order]], np.int64)
 
 
+def _usual_delay(stamps: Floats, arrivals: Floats) -> float:
+    """Return the median delay, s, of messages after which none came at once.
+
+    Of some that were held up and come all together the last one had to wait least.
+    """
+    usual = float(np.median(np.diff(np.sort(stamps)))) if len(stamps) > 1 else 0.0
+    is_last = np.append(np.diff(arrivals) > _AT_ONCE * usual, True)
+    return float(np.median(arrivals[is_last] - stamps[is_last]))
+
+
 def _valid(stamps: Floats) -> Mask:
     return np.asarray(np.isfinite(stamps) & (stamps > 0.0))
 
@@ -188,7 +205,7 @@ def _unjumped(times: Floats, expected: Floats) -> int:
     borders = [0, *(1 + np.flatnonzero(is_jump)).tolist(), len(times)]
     shifted = 0
     for first, end in itertools.pairwise(borders):
-        off = float(np.median(times[first:end] - expected[first:end]))
+        off = -_usual_delay(times[first:end], expected[first:end])
         if abs(off) <= JUMP:
             continue
         if off < 0.0 and _fills_hole(times[first:end], ordered, hole):

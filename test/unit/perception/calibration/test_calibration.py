@@ -12,7 +12,14 @@ from fixtures.robots.worn import BASE, Worn, drive, measure, rooms
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
 from roomba.perception.calibration.calibration import Calibration
-from roomba.perception.calibration.state import GYRO, TURNED, begin_calibration
+from roomba.perception.calibration.state import (
+    AHEAD,
+    GYRO,
+    OF_WHEELS,
+    TURNED,
+    begin_calibration,
+    forget_wheels,
+)
 from roomba.perception.localization.belief.belief import Rows, unknown_belief
 
 WORN = Worn(0.013, -0.008, 0.015, -0.012, (0.008, -0.006, math.radians(0.9)))
@@ -109,3 +116,17 @@ def test_what_is_no_robots_is_seen(change: dict[str, object]) -> None:
 
 def test_errors_end_with_the_lidars_turn() -> None:
     assert len(Calibration.of(belief()).errors) == TURNED + 1
+
+
+def test_of_other_wheels_nothing_is_known_but_lidar_and_gyro_are_as_they_were() -> None:
+    row = measured()[0]["calibration"]
+    before = row.copy()
+    forget_wheels(row, LocalizationConfig(way_noise=0.2))
+    assert not row["errors"][:OF_WHEELS].any()
+    assert not row["applied"][:OF_WHEELS].any()
+    prior = np.diag(row["prior"][:OF_WHEELS])
+    assert np.array_equal(row["covariance"][:OF_WHEELS, :OF_WHEELS], prior)
+    assert row["way_variance"] == pytest.approx(0.04)
+    for error in (GYRO, AHEAD, TURNED):
+        assert row["errors"][error] == before["errors"][error] != 0.0
+        assert row["applied"][error] == before["applied"][error]

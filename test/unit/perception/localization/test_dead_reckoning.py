@@ -318,3 +318,36 @@ def test_odometry_that_begins_anew_is_no_motion_and_a_long_gap_is_one() -> None:
     assert same(reckoned.pose, Pose(0.02, 0.0, 0.0))
     reckoned.move(11.1, Pose(5.02, 0.0, 0.0), None)
     assert same(reckoned.pose, Pose(5.02, 0.0, 0.0))
+
+
+def test_while_odometry_is_guessed_it_is_as_unsure_as_told_and_then_as_before() -> None:
+    reckoned = reckoning()
+    guessed = CONFIG.localization.model_copy(update={"way_noise": 0.2})
+
+    def spread_of_a_metre(begin: int) -> float:
+        reckoned.take_spread()
+        for step in range(begin, begin + 41):
+            reckoned.move(DT * step, Pose(0.025 * step), None)
+        return float(reckoned.take_spread()[0, 0])
+
+    spread_of_a_metre(0)
+    known = spread_of_a_metre(41)
+    reckoned.begin_guessing(guessed)
+    assert spread_of_a_metre(82) > 50.0 * known
+    reckoned.end_guessing(CONFIG.localization)
+    assert spread_of_a_metre(123) == pytest.approx(known, rel=0.05)
+    assert reckoned.pose.x == pytest.approx(0.025 * 163)
+
+
+def test_what_was_measured_of_the_wheels_does_not_count_for_what_is_guessed() -> None:
+    reckoned = reckoning()
+    calibration = reckoned.belief[0]["calibration"]
+    calibration["errors"][0] = calibration["applied"][0] = 0.1
+    calibration["is_applied"] = True
+    reckoned.move(0.0, Pose(), None)
+    reckoned.move(0.1, Pose(0.1), None)
+    reckoned.begin_guessing(CONFIG.localization)
+    reckoned.move(0.2, Pose(0.2), None)
+    reckoned.end_guessing(CONFIG.localization)
+    reckoned.move(0.3, Pose(0.3), None)
+    assert reckoned.pose.x == pytest.approx(0.11 + 0.1 + 0.11)

@@ -108,6 +108,18 @@ def test_messages_that_are_held_up_and_come_at_once_keep_their_stamps() -> None:
     assert counts.jumped == 0
 
 
+def test_messages_that_always_come_in_bunches_are_of_no_other_clock() -> None:
+    """A lidar behind a wireless link: its scans of 5 s come at once, the odometry at all times."""
+    stamps, arrivals = clean()
+    held = stamps[-1] - stamps[0]
+    bunches = np.ceil((stamps - stamps[0] + 0.01) / 5.0)
+    late = arrivals[0] + np.minimum(5.0 * bunches, held) + 0.001 * np.arange(len(stamps)) % 0.01
+    times, counts = mend(stamps, late)
+    assert np.array_equal(times, stamps)
+    assert counts.jumped == 0
+    assert delay_of(stamps, late) == pytest.approx(arrivals[0] - stamps[0], abs=0.3)
+
+
 def test_arrivals_that_all_are_the_same_say_nothing() -> None:
     stamps, _ = clean()
     times, counts = mend(stamps, np.full(200, 7.0))

@@ -11,6 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.commands.map.drive.looking import look_at_drive
+from roomba.commands.map.drive.odometry_gaps import (
+    ALWAYS,
+    OdometryGap,
+    odometry_gaps,
+    told_gaps,
+)
 from roomba.commands.map.drive.replay import MapReplay
 from roomba.commands.progress import Show
 from roomba.configuration.frozen import load_config
@@ -72,7 +78,7 @@ def mapped_drive(logs: Sequence[Path], wanted: Wanted, show: Show) -> MappedDriv
     with LoggedDrive(logs, wanted) as drive:
         look_at_drive(drive)
         start = _first_truth(drive)
-        replay, true = _replayed(drive, start or Pose(), show)
+        replay, true = _replayed(drive, start or Pose(), _gaps_of(drive), show)
         notes = [*drive.notes, *replay.notes]
         if not replay.scans:
             reasons = "; ".join(notes) or "it has none beside odometry"
@@ -99,11 +105,23 @@ def mapped_drive(logs: Sequence[Path], wanted: Wanted, show: Show) -> MappedDriv
         )
 
 
-def _replayed(drive: LoggedDrive, start: Pose, show: Show) -> tuple[MapReplay, Floats]:
+def _gaps_of(drive: LoggedDrive) -> Sequence[OdometryGap]:
+    """Return when odometry tells nothing, and say so."""
+    if not drive.chosen.has_odometry:
+        return (ALWAYS,)
+    gaps = odometry_gaps(drive.readings())
+    if gaps:
+        drive.remark(told_gaps(gaps))
+    return gaps
+
+
+def _replayed(
+    drive: LoggedDrive, start: Pose, gaps: Sequence[OdometryGap], show: Show
+) -> tuple[MapReplay, Floats]:
     """Return the replay of a drive from a start, map frame, and its true poses, [n, 3]."""
     config = load_robot_config(CONFIGURATION / "robot.yaml")
     mapping = load_config(MappingConfig, CONFIGURATION / "mapping.yaml")
-    replay = MapReplay(config, mapping, start, has_odometry=drive.chosen.has_odometry)
+    replay = MapReplay(config, mapping, start, gaps)
     true = []
     for number, (stamp, value, _) in enumerate(drive.readings()):
         if isinstance(value, TruePose):

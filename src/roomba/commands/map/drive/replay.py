@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import time
 from collections import Counter
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.commands.map.blind_map import BlindMap
+from roomba.commands.map.drive.odometry_gaps import ALWAYS, OdometryGap
 from roomba.commands.map.drive.trajectory import Trajectory
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig
@@ -40,11 +42,11 @@ _LATEST: Final = 1.0
 
 
 class PacedOdometry:
-    """In place of odometry that was not recorded: the robot goes on as scans showed that it did."""
+    """In place of odometry that tells nothing: the robot goes on as scans showed that it did."""
 
-    def __init__(self) -> None:
-        """Begin at the origin."""
-        self._pose, self._stamp = Pose(), math.nan
+    def __init__(self, pose: Pose, stamp: float) -> None:
+        """Begin where odometry ended, at ``stamp``, s, which is infinite where there was none."""
+        self._pose, self._stamp = pose, stamp
 
     def at(self, stamp: float, pace: NDArray[np.float64]) -> Pose:
         """Return where it is at a scan, s, by its pace so far, [3], m/s and rad/s."""
@@ -62,17 +64,18 @@ class MapReplay:
         config: RobotConfig,
         mapping: MappingConfig,
         start: Pose,
-        *,
-        has_odometry: bool = True,
+        gaps: Sequence[OdometryGap] = (),
     ) -> None:
-        """Begin at ``start``, map frame; a drive that has no odometry goes by scans alone."""
-        self._by_scans = None if has_odometry else PacedOdometry()
-        localization = config.localization
-        if not has_odometry:
-            localization = localization.model_copy(update=_GUESSED)
-            following = mapping.following.model_copy(update=_MAY_START)
-            mapping = mapping.model_copy(update={"following": following})
-        self.mapper = Mapper(mapping, localization, config.gyro, start)
+        """Begin at ``start``, map frame; in ``gaps`` of odometry it goes by scans alone."""
+        self._gaps = list(gaps)
+        self._by_scans: PacedOdometry | None = None
+        self.has_odometry = ALWAYS not in gaps
+        self._told = config.localization, mapping.following
+        self._guessed = (
+            config.localization.model_copy(update=_GUESSED),
+            mapping.following.model_copy(update=_MAY_START),
+        )
+        self.mapper = Mapper(mapping, config.localization, config.gyro, start)
         self.blind = BlindMap(mapping, config.localization, config.gyro, start)
         self.trajectory = Trajectory()
         self.scans = 0
@@ -87,15 +90,12 @@ class MapReplay:
         """That of the newest scan."""
         self._blind_rows: list[tuple[float, float, float, float]] = []
         self._stamp = -math.inf
+        self._fed = self._frame = Pose()
+        """The newest pose in the frame of the first odometry, and where that of the present is."""
         self._at: Pose | None = None
         self._is_lifted = False
         self._turning = NewestTurning()
         self._waiting = WaitingScan()
-
-    @property
-    def has_odometry(self) -> bool:
-        """Whether the drive has odometry that is used."""
-        return self._by_scans is None
 
     @property
     def by_odometry(self) -> NDArray[np.float64]:
@@ -113,9 +113,9 @@ class MapReplay:
         if not apart:
             return left_out
         told = (
-            f"where scans fitted nothing the map goes on by odometry alone, {len(apart)} times, "
-            f"{sum(apart):.1f} m of the way in all: what was seen there was found nowhere else on "
-            "the map, and may be drawn at a wrong place"
+            f"{sum(apart):.1f} m of the way, in pieces: {len(apart)}, lie on the map by odometry "
+            "alone: scans fitted nothing before them, and what was seen there was found nowhere "
+            "else; it may be drawn at a wrong place"
         )
         return [*left_out, told]
 
@@ -142,9 +142,32 @@ class MapReplay:
         return occupancy
 
     def _hear_odometry(self, stamp: float, pose: Pose) -> None:
+        if self._has_gap_at(stamp):
+            return
+        if self._by_scans is not None:
+            here = self._by_scans.at(stamp, self.mapper.pace)
+            self._by_scans, self._frame = None, here.compose(pose.inverse())
+            self.mapper.end_guessing(*self._told)
+        self._move(stamp, self._frame.compose(pose))
+
+    def _has_gap_at(self, stamp: float) -> bool:
+        """Whether odometry tells nothing at a time; call it in the order of time."""
+        while self._gaps and stamp > self._gaps[0].end:
+            self._gaps.pop(0)
+        return bool(self._gaps) and stamp > self._gaps[0].begin
+
+    def _move_by_scans(self, stamp: float) -> None:
+        """Go on at the robot's pace until a scan."""
+        if self._by_scans is None:
+            self._by_scans = PacedOdometry(self._fed, self._gaps[0].begin)
+            self.mapper.begin_guessing(*self._guessed)
+        self._move(stamp, self._by_scans.at(stamp, self.mapper.pace))
+
+    def _move(self, stamp: float, pose: Pose) -> None:
+        """Move on to where the robot is in the frame of the first odometry."""
         if math.isfinite(self._stamp):
             self.elapsed += max(0.0, stamp - self._stamp)
-        self._stamp = stamp
+        self._stamp, self._fed = stamp, pose
         turning = self._turning.at(stamp)
         began = time.process_time()
         self.mapper.move(stamp, pose, turning)
@@ -166,9 +189,8 @@ class MapReplay:
 
     def _hear_scan(self, stamp: float, scan: LidarScan) -> None:
         """Keep a scan until odometry has reached its last beam, or the next scan comes."""
-        if self._by_scans is not None:
-            pose = self._by_scans.at(stamp, self.mapper.pace)
-            self._hear_odometry(stamp, pose)
+        if self._has_gap_at(stamp):
+            self._move_by_scans(stamp)
         if not math.isfinite(self._stamp):
             self.left_out["scans before the first odometry"] += 1
             return

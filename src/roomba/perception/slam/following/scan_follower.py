@@ -53,12 +53,12 @@ class ScanFollower:
         row["variance"] = config.point_deviation**2
         self._config = config.following
         row["least_points"] = config.following.least_points
-        standing = config.following.standing_deviation, config.following.standing_heading
-        row["standing"] = standing[0] ** 2, standing[0] ** 2, standing[1] ** 2
+        self._use_standing(config.following)
         row["many_misses"] = config.following.many_misses
         row["least_met"], row["least_close"] = config.least_met, config.least_close
         row["keyframe_way"], row["keyframe_turn"] = config.keyframe_way, config.keyframe_turn
         row["odometry_scale"] = 1.0
+        self._learned: Floats = row["odometry_scale"].copy()
         row["range_deviation"] = self.range_noise
         self._go_on_from(np.zeros(3))
 
@@ -80,6 +80,17 @@ class ScanFollower:
             np.empty(count, np.float32),
             np.empty((SWEEP_WORK, count)),
         )
+
+    def begin_guessing(self, config: FollowingConfig) -> None:
+        """Go on with dead reckoning that is guessed, of which nothing was learned yet."""
+        self._learned = self._row["odometry_scale"].copy()
+        self._row["odometry_scale"] = 1.0
+        self._use_standing(config)
+
+    def end_guessing(self, config: FollowingConfig) -> None:
+        """Go on with dead reckoning as it was known before."""
+        self._row["odometry_scale"] = self._learned
+        self._use_standing(config)
 
     def find_reckoned(self, stamp: float) -> bool:
         """Look up where dead reckoning had the robot at a scan, and tell whether that is known."""
@@ -220,6 +231,11 @@ class ScanFollower:
     def _drop_window(self) -> None:
         """Measure the robot's errors anew: poses are told in another frame from now on."""
         self._reckoning.belief[0]["calibration"]["is_open"] = False
+
+    def _use_standing(self, config: FollowingConfig) -> None:
+        """Take how unsure a step is of which dead reckoning says that it is none."""
+        way, turn = config.standing_deviation**2, config.standing_heading**2
+        self._row["standing"] = way, way, turn
 
     def _go_on_from(self, here: Floats) -> None:
         self.begin_piece()

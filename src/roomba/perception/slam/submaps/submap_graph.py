@@ -74,6 +74,10 @@ class SubmapGraph:
         self._linker = Linker(self._config, reach)
         self._linker.use_noise(self.range_deviation)
 
+    def use_odometry(self, localization: LocalizationConfig) -> None:
+        """Go by the noise of other odometry from here on."""
+        self._localization = localization
+
     def use_noise(self, deviation: float) -> None:
         """Go by the standard deviation of a range, m."""
         self.range_deviation = deviation

@@ -144,3 +144,13 @@ def test_squaring_turns_walls_along_the_axes_and_keeps_submaps_together(
     assert graph.poses[:, 2] == pytest.approx([left] * 3, abs=0.001)
     away = complex(*graph.poses[2, :2]) - 0.5
     assert away == pytest.approx(complex(1.0, 2.0) * np.exp(-1.0j * (turn - left)), abs=0.01)
+
+
+def test_what_was_driven_is_as_unsure_as_the_odometry_of_that_time() -> None:
+    graph = SubmapGraph(MAPPING, LOCALIZATION, np.zeros(3))
+    graph.begin(np.array([1.0, 0.0, 0.0]), 1.0)
+    graph.use_odometry(LOCALIZATION.model_copy(update={"way_noise": 0.2}))
+    graph.begin(np.array([1.0, 0.0, 0.0]), 2.0)
+    known, guessed = (link.information[0, 0] ** -0.5 for link in graph.links)
+    assert known == pytest.approx(LOCALIZATION.way_noise)
+    assert guessed == pytest.approx(0.2)

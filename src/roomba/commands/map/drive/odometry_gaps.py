@@ -1,0 +1,114 @@
+"""Times of a drive in which odometry tells nothing: it is not there, or stands while scans move."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from roomba.geometry import Pose
+from roomba.recordings.readings import LidarScan, Odometry, Reading
+
+_LONGEST: Final = 1.0
+"""s between two messages of odometry, after which it is missing, or between two scans, after which
+they do not tell either how the robot went on."""
+_LATE: Final = 0.5
+"""s; scans may be so late: they show what was before odometry stood still."""
+_CHANGED: Final = 0.15
+"""m; beams that measure another range by so much, or none any more, see something else."""
+_SHARE: Final = 0.5
+"""Share of the beams that see something else when the robot has moved: people are fewer."""
+
+
+class OdometryGap(NamedTuple):
+    """From the last message that told something, ``begin``, s, until the last that told nothing."""
+
+    begin: float
+    end: float
+
+
+ALWAYS: Final = OdometryGap(-math.inf, math.inf)
+"""That of a drive without odometry."""
+
+
+def odometry_gaps(readings: Iterable[Reading]) -> list[OdometryGap]:
+    """Return the gaps of a drive that has odometry, in the order of time."""
+    seeker = _GapSeeker()
+    for stamp, value, _ in readings:
+        if isinstance(value, Odometry):
+            seeker.hear(stamp, value.pose)
+        elif isinstance(value, LidarScan):
+            seeker.see(stamp, value)
+    return seeker.finished()
+
+
+def told_gaps(gaps: Sequence[OdometryGap]) -> str:
+    """Return in words what is done in some gaps."""
+    ended = [gap for gap in gaps if gap.end == math.inf]
+    between = sum(gap.end - gap.begin for gap in gaps if gap.end < math.inf)
+    told = [f"it stands still or is missing for {between:.0f} s while scans move"] * (between > 0.0)
+    told += ["it ends before the scans do"] * len(ended)
+    return f"odometry is not used where {' and '.join(told)}: there scans alone were followed"
+
+
+class _GapSeeker:
+    """Looks for gaps; ``_since`` is when odometry changed last, ``_newest`` when it last came.
+
+    ``_unseen``, s, is the longest time without a scan since then.
+    """
+
+    def __init__(self) -> None:
+        self._gaps: list[OdometryGap] = []
+        self._pose: Pose | None = None
+        self._since = self._newest = self._scanned = -math.inf
+        self._unseen = 0.0
+        self._seen: LidarScan | None = None
+        self._has_moved = False
+
+    def hear(self, stamp: float, pose: Pose) -> None:
+        """Take a message of odometry."""
+        is_missing = self._pose is not None and stamp - self._newest > _LONGEST
+        if is_missing and max(self._unseen, stamp - self._scanned) <= _LONGEST:
+            self._end_standstill()
+            self._gaps.append(OdometryGap(self._newest, np.nextafter(stamp, -math.inf)))
+        if pose != self._pose:
+            self._end_standstill()
+            self._pose, self._since = pose, stamp
+        self._newest, self._unseen = stamp, 0.0
+
+    def see(self, stamp: float, scan: LidarScan) -> None:
+        """Take a scan."""
+        self._unseen = max(self._unseen, stamp - max(self._scanned, self._newest))
+        self._scanned = stamp
+        if stamp <= self._since + _LATE or self._newest <= self._since:
+            return
+        if self._seen is None:
+            self._seen = scan
+        elif not self._has_moved:
+            self._has_moved = _is_another(self._seen, scan)
+
+    def finished(self) -> list[OdometryGap]:
+        """Return all gaps, the drive being over."""
+        self._end_standstill()
+        if self._pose is not None and self._scanned - self._newest > _LONGEST:
+            self._gaps.append(OdometryGap(self._newest, math.inf))
+        return self._gaps
+
+    def _end_standstill(self) -> None:
+        if self._has_moved:
+            self._gaps.append(OdometryGap(self._since, self._newest))
+        self._seen, self._has_moved = None, False
+
+
+def _is_another(before: LidarScan, scan: LidarScan) -> bool:
+    """Whether most beams see something else than before."""
+    if before.ranges.shape != scan.ranges.shape:
+        return False
+    seen = [np.isfinite(each.ranges) for each in (before, scan)]
+    counts = seen[0] | seen[1]
+    with np.errstate(invalid="ignore"):
+        same = np.abs(scan.ranges - before.ranges) < _CHANGED
+    changed = np.count_nonzero(counts & ~(same & seen[0] & seen[1]))
+    return bool(changed > _SHARE * np.count_nonzero(counts))

@@ -1,0 +1,85 @@
+"""A drive through the mapper: what odometry does not tell is taken from scans."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fixtures.drives.made_logs import BEGAN, Item, changed, drive, pose_at, write_bag
+
+from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
+from roomba.geometry import Pose
+from roomba.recordings.choice import Wanted
+from roomba.recordings.readings import Lifted
+
+SECONDS = 40.0
+BEGIN = pose_at(0.0).inverse()
+
+
+def mapped(path: Path, items: list[Item]) -> MappedDrive:
+    wanted = Wanted(needs_odometry=False)
+    return mapped_drive([write_bag(path / "made.bag", items)], wanted, lambda share, words: None)
+
+
+def off(made: MappedDrive) -> float:
+    """Return the largest distance from the true way, m."""
+    true = [BEGIN.compose(pose_at(stamp - BEGAN)) for stamp in made.trajectory[:, 0].tolist()]
+    ways = made.trajectory[:, 1:3] - [(pose.x, pose.y) for pose in true]
+    return float(np.hypot(*ways.T).max())
+
+
+def held(begin: float, end: float, *, goes_on_there: bool) -> Callable[[int, Item], Item]:
+    """Let odometry stand still for a while; then it goes on from where it stood, or leaps."""
+
+    def change(_: int, item: Item) -> Item:
+        passed = item.stamp - BEGAN
+        stood, then = (BEGIN.compose(pose_at(at)) for at in (begin, end))
+        if begin < passed < end:
+            return replace(item, value=stood)
+        if passed >= end and goes_on_there:
+            assert isinstance(item.value, Pose)
+            return replace(item, value=stood.compose(then.inverse()).compose(item.value))
+        return item
+
+    return change
+
+
+@pytest.mark.parametrize("goes_on_there", [True, False])
+def test_odometry_that_stands_still_for_a_while_bends_nothing(
+    tmp_path: Path, goes_on_there: bool
+) -> None:
+    made = mapped(
+        tmp_path, changed(drive(SECONDS), "/odom", held(10.0, 25.0, goes_on_there=goes_on_there))
+    )
+    assert off(made) < 0.05
+    assert len(made.trajectory) == 200
+    assert any("stands still or is missing for 15 s" in note for note in made.notes)
+
+
+def test_of_odometry_that_ends_no_scan_is_lost(tmp_path: Path) -> None:
+    items = [item for item in drive(SECONDS) if item.topic == "/scan" or item.stamp < BEGAN + 15.0]
+    made = mapped(tmp_path, items)
+    assert made.replay.scans == 200
+    assert off(made) < 0.05
+    assert any("it ends before the scans do" in note for note in made.notes)
+    assert made.replay.has_odometry
+
+
+def test_what_it_sees_while_it_is_carried_is_left_out(tmp_path: Path) -> None:
+    items = drive(SECONDS)
+    for passed, is_lifted in ((12.03, True), (14.03, False)):
+        stamp = BEGAN + passed
+        items.append(Item("/wheel_drop", Lifted(is_lifted), stamp, stamp + 0.02))
+    made = mapped(tmp_path, sorted(items, key=lambda item: item.arrival))
+    assert any("10 scans while it was carried" in note for note in made.notes)
+    assert made.replay.scans == 190
+    assert off(made) < 0.05
+
+
+def test_a_plain_drive_has_no_notes(tmp_path: Path) -> None:
+    made = mapped(tmp_path, drive(SECONDS))
+    assert made.notes == ()
+    assert off(made) < 0.03
