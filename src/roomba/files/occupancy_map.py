@@ -32,6 +32,8 @@ MAP_SAVER_PIXELS = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}
 """Grey values that map_saver writes, and that the usual thresholds read back."""
 RAW_UNKNOWN = 255
 _NEARLY_ALL: Final = 0.99
+_TURNED: Final = 1e-6
+"""rad; less is what a program's rounding makes of 0: a map of 1 km is off by a millimetre."""
 
 
 class MapDescription(BaseModel):
@@ -64,7 +66,7 @@ def load_map(path: Path) -> OccupancyMap:
     """
     file = read_yaml(path)
     description = file.validated(MapDescription)
-    if description.origin[2] != 0.0:
+    if abs(description.origin[2]) > _TURNED:
         raise file.error(
             ("origin", 2),
             f"origin: expected a yaw of 0, got {description.origin[2]}; "

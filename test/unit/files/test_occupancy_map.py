@@ -80,6 +80,11 @@ def test_unknown_of_map_saver_is_unknown_also_by_thresholds_of_nav2(tmp_path: Pa
     assert drawn.values.tolist() == [[100, 0, 0]]
 
 
+def test_a_yaw_that_is_rounding_is_none(tmp_path: Path) -> None:
+    path = written(tmp_path, USUAL.replace("0.0]", "-1.0e-9]"))
+    assert load_map(path).values.tolist() == load_map(written(tmp_path, USUAL)).values.tolist()
+
+
 def test_negate_turns_black_into_free(tmp_path: Path) -> None:
     path = written(tmp_path, USUAL.replace("negate: 0", "negate: 1"))
     assert load_map(path).values.tolist() == [[0, 100, 100]]

@@ -31,6 +31,8 @@ from roomba.world.layers.layer import load_home
 
 _LEAST_PART: Final = 0.5
 """m²; no robot lives on less floor: it is a pocket between furniture."""
+_BY_CHARGER: Final = 0.5
+"""m; floor that is farther from the charger is not what it stands on: that is not on the map."""
 _COMMENT = "# Imported from a map of Valetudo. Lengths in m, map frame, directions in rad.\n"
 
 
@@ -45,7 +47,7 @@ def write_home(found: ValetudoHome, folder: Path) -> Home:
     save_map(found.occupancy, folder / MAP_NAME)
     body = BodyConfig()
     layer = yaml.safe_dump(
-        _layer_of(found, body),
+        _layer_of(found, zones, body),
         sort_keys=False,
         allow_unicode=True,
         default_flow_style=None,
@@ -75,11 +77,11 @@ def read_home(name: str) -> ValetudoHome:
     )
 
 
-def _layer_of(found: ValetudoHome, body: BodyConfig) -> dict[str, Any]:
+def _layer_of(found: ValetudoHome, zones: Zones, body: BodyConfig) -> dict[str, Any]:
     layer: dict[str, Any] = {}
     at = found.station
     if at is not None and not found.has_own_frame:
-        at = _station_by_charger(found.occupancy, body.radius)
+        at = _station_by_charger(found.occupancy, zones, body.radius)
     if at is not None:
         layer["station"] = {"x": round(at.x, 4), "y": round(at.y, 4), "facing": round(at.theta, 6)}
     rooms = []
@@ -95,13 +97,16 @@ def _layer_of(found: ValetudoHome, body: BodyConfig) -> dict[str, Any]:
     return layer
 
 
-def _station_by_charger(occupancy: OccupancyMap, radius: float) -> Pose | None:
+def _station_by_charger(occupancy: OccupancyMap, zones: Zones, radius: float) -> Pose | None:
     """Return where to dock in the part of the floor by the charger, which is at (0, 0).
 
-    None where that is the largest part: there each body finds a place of its own.
+    Zones part it as walls do. Where no floor is near it, the largest part is meant. None for that
+    without zones: there each body finds a place of its own.
     """
     floor = definite_map(occupancy)
-    fits = where_body_fits(floor.frame, floor.solid, radius)
+    barred = [zone.cells(floor.frame) for zone in zones.barred]
+    solid = np.logical_or.reduce([floor.solid, *barred])
+    fits = where_body_fits(floor.frame, solid, radius)
     least = _LEAST_PART / floor.frame.resolution**2
     parts: list[Mask] = []
     left = fits
@@ -111,10 +116,10 @@ def _station_by_charger(occupancy: OccupancyMap, radius: float) -> Pose | None:
     if not parts:
         return None
     away = [np.hypot(*floor.frame.centres(*np.nonzero(part))).min() for part in parts]
-    nearest = int(np.argmin(away))
-    if nearest == 0:
+    nearest = int(np.argmin(away)) if min(away) <= _BY_CHARGER else 0
+    if nearest == 0 and not barred:
         return None
-    return automatic_station(floor, floor.solid | (fits & ~parts[nearest]), radius)
+    return automatic_station(floor, solid | (fits & ~parts[nearest]), radius)
 
 
 def _zones_of(found: ValetudoHome) -> Zones:

@@ -7,6 +7,8 @@ import argparse
 from roomba.errors import RoombaError
 
 FORMATS = ("valetudo",)
+_GZIP = b"\x1f\x8b"
+"""How such a file begins."""
 
 
 def parser_of(program: str, description: str) -> argparse.ArgumentParser:
@@ -26,5 +28,7 @@ def reason_of(error: Exception) -> str:
     if isinstance(error, RoombaError):
         return " ".join(str(error).split())
     if isinstance(error, UnicodeDecodeError):
+        if error.object.startswith(_GZIP):
+            return "expected text in UTF-8, got a file that gzip packed; unpack it: gunzip FILE.gz"
         return "expected text in UTF-8; the map is the JSON of api/v2/robot/state/map"
     return str(getattr(error, "strerror", "") or error)

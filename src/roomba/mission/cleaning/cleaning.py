@@ -384,6 +384,7 @@ def _why_nothing(context: PlanningContext) -> str:
             "or in a no-go zone"
         )
     return (
-        "expected a way from the charging station onto the floor, got none: the station faces what "
-        "is solid, or a no-go zone lies before it; turn it, or move one of them"
+        "expected a way from the charging station onto the floor, got none: it faces what is "
+        "solid, a no-go zone lies before it, or there is hardly more floor than it stands on; turn "
+        "or move it, or the zone"
     )

@@ -40,6 +40,8 @@ def automatic_station(occupancy: OccupancyMap, solid: Mask, body_radius: float) 
     frame = occupancy.frame
     floor = largest_component(where_body_fits(frame, solid, body_radius + CLEARANCE))
     if not floor.any():
+        floor = largest_component(where_body_fits(frame, solid, body_radius))
+    if not floor.any():
         raise HomeError(
             f"expected floor on which a body of {body_radius:.3f} m radius fits, got none; "
             "check the map's resolution and thresholds"

@@ -14,6 +14,7 @@ from roomba.commands.trials.trial import Trial
 from roomba.commands.valetudo.export_command import main as export
 from roomba.commands.valetudo.homes import read_home, write_home
 from roomba.commands.valetudo.import_command import main as bring
+from roomba.configuration.body import BodyConfig
 from roomba.files.shipped import HOMES
 from roomba.files.valetudo import ValetudoHome, parse
 from roomba.geometry import Pose
@@ -98,6 +99,21 @@ def test_a_home_whose_door_is_shut_is_that_of_the_charger_and_the_rest_is_told(
     assert station.x < 0.5 * ROOM / 100.0 - 0.25
 
 
+def test_a_virtual_wall_parts_the_home_and_the_station_is_on_the_side_of_the_charger(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """0.6 m from the charger, across its room: the larger side is the other one."""
+    file, folder = foreign(tmp_path / "map.json"), tmp_path / "home"
+    told = json.loads(file.read_text("utf-8"))
+    wall = {"type": "virtual_wall", "points": [25 + 60, 0, 25 + 60, 400], "metaData": {}}
+    told["entities"].append(wall)
+    file.write_text(json.dumps(told), "utf-8")
+    assert bring(["valetudo", str(file), "--out", str(folder)]) == 0
+    assert "cannot be reached from the station" in capsys.readouterr().out
+    station = load_home(str(folder), HOMES).station
+    assert station.x + BodyConfig().radius < 0.6
+
+
 def test_where_the_station_of_a_map_without_one_was_put_is_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -155,6 +171,7 @@ def assert_same(before: ValetudoHome, after: ValetudoHome) -> None:
         (b"{}", "expected a map of Valetudo"),
         (b" \n", "the file is empty"),
         (b"\xff\xfe", "UTF-8"),
+        (b"\x1f\x8b\x08\x00", "unpack it: gunzip"),
         (None, "No such file"),
     ],
 )

@@ -213,6 +213,16 @@ def test_automatic_station_without_walls_has_a_free_way(tmp_path: Path) -> None:
     assert 0.16 < staged.y < 2.84
 
 
+def test_automatic_station_is_in_a_corridor_that_is_hardly_wider_than_the_body(
+    tmp_path: Path,
+) -> None:
+    values = np.full((12, 80), OCCUPIED, np.int8)
+    values[2:9, 2:-2] = FREE  # 0.35 m wide
+    home = loaded(tmp_path, None, OccupancyMap(GridFrame(0.05, 0.0, 0.0, 12, 80), values))
+    room = distance_to_cells(home.frame, home.solid, home.station.x, home.station.y)
+    assert room >= BodyConfig().radius
+
+
 def test_home_in_which_the_body_fits_nowhere_is_refused(tmp_path: Path) -> None:
     occupancy = OccupancyMap(GridFrame(0.05, 0.0, 0.0, 6, 6), np.zeros((6, 6), np.int8))
     with pytest.raises(HomeError, match="fits"):
