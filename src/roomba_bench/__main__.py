@@ -13,7 +13,7 @@ from rich.console import Console
 
 from roomba.commands.ending import quiet_end
 from roomba.commands.first_use import require_compiled
-from roomba.commands.options import UsageError, check_written, file_of
+from roomba.commands.options import HelpfulParser, UsageError, check_written, file_of
 from roomba.commands.spelling import spelled
 from roomba_bench.bench import Bench
 from roomba_bench.machine import Machine
@@ -87,7 +87,7 @@ def _bench(options: argparse.Namespace, pace: Pace, folder: Path) -> Bench:
 
 def _parser() -> argparse.ArgumentParser:
     about = "\n".join(f"  {name:14}{what}" for name, what in TOPICS.items())
-    parser = argparse.ArgumentParser(
+    parser = HelpfulParser(
         prog=spelled("bench"),
         description="Measure claims about speed, each beside its peers in the same run.",
         epilog=f"topics:\n{about}",

@@ -25,7 +25,17 @@ class UsageError(RoombaError):
     """A command line that cannot be obeyed; the message says what was expected, and came."""
 
 
-class Parser(argparse.ArgumentParser):
+class HelpfulParser(argparse.ArgumentParser):
+    """Obeys ``--help`` wherever it stands, also where a value is due."""
+
+    def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
+        """Parse a command line; raises SystemExit for ``--help`` and for wrong usage."""
+        words = sys.argv[1:] if args is None else args
+        is_help_due = any(word in _HELP for word in words)
+        return super().parse_args(["--help"] if is_help_due else words)
+
+
+class Parser(HelpfulParser):
     """Refuses in one line, by UsageError, and takes numbers below 0 for values."""
 
     def __init__(self, program: str, description: str, epilog: str) -> None:
@@ -33,15 +43,6 @@ class Parser(argparse.ArgumentParser):
         super().__init__(prog=program, allow_abbrev=False, description=description, epilog=epilog)
         # Python's own pattern knows no exponents: -1e-05 would be taken for an option.
         self._negative_number_matcher = re.compile(r"-(\.?\d|inf|nan)")
-
-    def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
-        """Parse a command line; ``--help`` is obeyed wherever it stands, also where a value is due.
-
-        Raises UsageError, and SystemExit for ``--help``.
-        """
-        words = sys.argv[1:] if args is None else args
-        is_help_due = any(word in _HELP for word in words)
-        return super().parse_args(["--help"] if is_help_due else words)
 
     def error(self, message: str) -> NoReturn:
         """Raise UsageError."""

@@ -12,7 +12,7 @@ from typing import Final
 
 from roomba.client.ports import DEFAULT_PORT, LAST_PORT
 from roomba.commands.ending import quiet_end
-from roomba.commands.options import whole
+from roomba.commands.options import HelpfulParser, whole
 from roomba.commands.spelling import spelled
 from roomba.errors import RoombaError
 from roomba.files.atomic import write_whole
@@ -99,7 +99,7 @@ def _run(command: Sequence[str]) -> None:
 
 def main(arguments: Sequence[str] | None = None, run: Run = _run) -> int:
     """Show, install or remove the service; return 1 when that fails."""
-    parser = argparse.ArgumentParser(prog=PROGRAM, description=__doc__)
+    parser = HelpfulParser(prog=PROGRAM, description=__doc__)
     parser.add_argument("what", choices=("show", "install", "remove"))
     parser.add_argument("launch", nargs="*", metavar="name:=value", help="as for ./roomba run")
     parser.add_argument(

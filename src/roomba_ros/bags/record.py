@@ -14,7 +14,7 @@ from typing import Final
 
 import rospkg
 
-from roomba.commands.options import number
+from roomba.commands.options import HelpfulParser, number
 from roomba.errors import RoombaError
 from roomba.recordings.bags.ring import Message, Ring, keep_newest, save
 from roomba.recordings.bags.writer import BagWriter
@@ -202,7 +202,7 @@ def _wanted(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = HelpfulParser(
         prog=PROGRAM,
         description="What the robot of ./roomba run tells, as a bag of ROS 1 that a kill leaves "
         "whole; or, with --when-wrong, the last minute before a mishap, each time there is one. "

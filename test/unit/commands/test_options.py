@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib
 from pathlib import Path
 
 import pytest
@@ -99,3 +100,24 @@ def test_a_configuration_that_is_not_there_is_refused(tmp_path: Path) -> None:
     check_config(None)
     with pytest.raises(UsageError, match=r"--config: expected a file like robot\.yaml"):
         check_config(tmp_path / "none.yaml")
+
+
+@pytest.mark.parametrize(
+    ("module", "words"),
+    [
+        ("roomba.commands.play.command", "--home --help"),
+        ("roomba.commands.play.replay", "--speed --help"),
+        ("roomba.commands.export.command", "--to --help"),
+        ("roomba.commands.valetudo.export_command", "valetudo flat --out --help"),
+        ("roomba.commands.report.command", "--out -h"),
+        ("roomba.commands.status.command", "--home --help"),
+        ("roomba.commands.top.command", "--home --help"),
+    ],
+)
+def test_help_is_given_where_a_value_is_due(
+    module: str, words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        importlib.import_module(module).main(words.split())
+    assert ended.value.code == 0
+    assert capsys.readouterr().out.startswith("usage: ")

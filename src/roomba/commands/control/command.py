@@ -6,6 +6,7 @@ import argparse
 import sys
 from typing import Final
 
+from roomba.commands.options import HelpfulParser
 from roomba.commands.play.living import add_robot_options, wanted_robot
 from roomba.commands.spelling import spelled
 from roomba.errors import RoombaError
@@ -41,7 +42,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = HelpfulParser(
         prog=PROGRAM,
         description="The menu: dirt, position, walk, clean, pause, dock, explore. Without --demo "
         "of the robot that runs on ROS.",

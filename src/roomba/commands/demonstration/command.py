@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 import tempfile
 import time
@@ -18,6 +17,7 @@ from PIL import Image
 from roomba.commands.demonstration.course import SHOWN, Demonstration, Seen
 from roomba.commands.demonstration.film import frames_of
 from roomba.commands.demonstration.table import table_of, troubles_of
+from roomba.commands.options import HelpfulParser
 from roomba.errors import RoombaError
 from roomba.plots.canvas import Picture
 
@@ -39,7 +39,7 @@ _GAP: Final = 12
 
 def main(arguments: list[str] | None = None) -> int:
     """Show a robot, and write what was seen; returns the exit status."""
-    parser = argparse.ArgumentParser(prog=PROGRAM, description=__doc__)
+    parser = HelpfulParser(prog=PROGRAM, description=__doc__)
     parser.add_argument("robot", choices=sorted(SHOWN))
     parser.add_argument("--home", default="studio", help="where it lives (default: studio)")
     parser.add_argument("--seed", type=int, default=1)

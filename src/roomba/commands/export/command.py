@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import Final
 
+from roomba.commands.options import HelpfulParser
 from roomba.commands.spelling import spelled
 from roomba.errors import RoombaError
 from roomba.recordings.bags.exporting import Form, export_bag
@@ -35,7 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = HelpfulParser(
         prog=PROGRAM,
         description="A recording for other programs, with the types of its messages. Of one "
         "that was cut short what is whole is exported. (export valetudo HOME: a home as a map.)",

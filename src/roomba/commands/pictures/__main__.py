@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
 import functools
 import sys
 from collections.abc import Callable
@@ -16,6 +15,7 @@ import cv2
 from PIL import Image
 
 from roomba.commands.ending import quiet_end
+from roomba.commands.options import HelpfulParser
 from roomba.commands.pictures.cleaning import picture_of_cleaning
 from roomba.commands.pictures.household import picture_of_household
 from roomba.commands.pictures.layers import picture_of_layers
@@ -121,7 +121,7 @@ IN_RVIZ = "rviz"
 
 def main(arguments: list[str] | None = None) -> int:
     """Write all pictures; returns the exit status."""
-    parser = argparse.ArgumentParser(prog=spelled("pictures"), description=__doc__)
+    parser = HelpfulParser(prog=spelled("pictures"), description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, default=_DOCUMENTS)
     parser.add_argument(
         "--only",

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from roomba.commands.first_use import require_compiled
+from roomba.commands.options import HelpfulParser
 from roomba.commands.play.bumping import bumping_life
 from roomba.commands.play.living import add_robot_options, wanted_robot
 from roomba.commands.play.owned import (
@@ -130,7 +131,7 @@ def _warn(text: str) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = HelpfulParser(
         prog=PROGRAM,
         description="A robot in a simulated home, or one that you own on its line, without ROS: "
         "seen and commanded on a page, whose address is printed. Its runs are kept (./roomba "

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import Final
 
+from roomba.commands.options import HelpfulParser
 from roomba.commands.play.serving import add_page_options, listen_at, serve_page
 from roomba.commands.play.told_to_end import ToldToEnd
 from roomba.commands.spelling import spelled
@@ -47,7 +48,7 @@ def _run_of(word: str, history: History) -> tuple[RunFigures, RunRecording]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = HelpfulParser(
         prog=PROGRAM,
         description="Show a recorded run on a page, with a time line to drag. Nothing is driven.",
         epilog="Exit status: 0 after Ctrl-C, 2 for wrong usage, and for a run that there is not or "

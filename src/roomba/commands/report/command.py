@@ -9,6 +9,7 @@ from typing import Final
 
 from rich.console import Console
 
+from roomba.commands.options import HelpfulParser
 from roomba.commands.report.table import csv_of, run_table, runs_table, weeks_table
 from roomba.commands.spelling import spelled
 from roomba.commands.telling import tell_tables, told_width
@@ -100,7 +101,7 @@ def _write(path: Path, text: str) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = HelpfulParser(
         prog=PROGRAM,
         description="Tell of the runs that sim, play and run kept. Without a run: a list of the "
         "newest ones, and totals by week. With one: its report, an HTML file that stands alone.",

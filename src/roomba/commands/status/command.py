@@ -15,7 +15,7 @@ from rich.live import Live
 from rich.table import Table
 
 from roomba.client.ports import DEFAULT_PORT, LAST_PORT, PORTS
-from roomba.commands.options import whole
+from roomba.commands.options import HelpfulParser, whole
 from roomba.commands.spelling import spelled
 from roomba.commands.status.asking import NoRobotError, find_robot, state_at
 from roomba.ui.state_words import lines_of
@@ -69,7 +69,7 @@ def _table(state: dict[str, Any]) -> Table:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = HelpfulParser(
         prog=PROGRAM,
         description="What the robot does now: one of ./roomba run, or of ./roomba play.",
         epilog="Exit status: 0 when it was told, 1 when no robot answers, 2 for wrong usage.",

@@ -10,6 +10,7 @@ from typing import Final
 
 from roomba.client.address import HERE, page_address, token_for
 from roomba.client.ports import DEFAULT_PORT, PORTS
+from roomba.commands.options import HelpfulParser
 from roomba.commands.play.living import add_robot_options, require_demo, wanted_robot
 from roomba.commands.spelling import spelled
 from roomba.commands.status.asking import NoRobotError, find_robot, state_at
@@ -70,7 +71,7 @@ def _demo_robot(wanted: argparse.Namespace) -> Iterator[tuple[int, str]]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = HelpfulParser(
         prog=PROGRAM,
         description="The robot of ./roomba run, or of ./roomba play, on a whole terminal, with "
         "keys that command it. In a pipe: its state once, in plain lines.",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from roomba.commands.options import HelpfulParser
 from roomba.errors import RoombaError
 
 FORMATS = ("valetudo",)
@@ -13,7 +14,7 @@ _GZIP = b"\x1f\x8b"
 
 def parser_of(program: str, description: str) -> argparse.ArgumentParser:
     """Return a parser whose first word is the format."""
-    parser = argparse.ArgumentParser(
+    parser = HelpfulParser(
         prog=program,
         allow_abbrev=False,
         description=description,
