@@ -10,6 +10,7 @@ default, by which that grey would be free (navigation2, issue 5138).
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated, Final, Literal
 
@@ -66,7 +67,7 @@ def load_map(path: Path) -> OccupancyMap:
     """
     file = read_yaml(path)
     description = file.validated(MapDescription)
-    if abs(description.origin[2]) > _TURNED:
+    if abs(math.remainder(description.origin[2], math.tau)) > _TURNED:
         raise file.error(
             ("origin", 2),
             f"origin: expected a yaw of 0, got {description.origin[2]}; "

@@ -164,6 +164,7 @@ class LiveHousehold:
             self.look()
 
     def _look(self) -> None:
+        self._in_use.look()
         # What is wrong with the history its keeper tells.
         with contextlib.suppress(RoombaError):
             self._summed = self._totals()

@@ -107,6 +107,7 @@ def _arrays_of(kept: KeptMap) -> dict[str, NDArray[Any]]:
         "link_relatives": np.array([link.relative for link in links]).reshape(-1, 3),
         "link_information": np.array([link.information for link in links]).reshape(-1, 3, 3),
         "link_doubts": np.array([link.may_be_wrong for link in links], np.bool_),
+        "link_guesses": np.array([link.is_guessed for link in links], np.bool_),
     }
 
 
@@ -143,6 +144,10 @@ class _Fields:
     def flags(self, name: str, *shape: int) -> NDArray[np.bool_]:
         """Return yes or no."""
         return self._of(name, np.dtype(np.bool_), shape)
+
+    def has(self, name: str) -> bool:
+        """Whether there is such an array: files of older programs lack some."""
+        return name in self._arrays
 
     def text(self, name: str) -> str:
         """Return words."""
@@ -214,10 +219,13 @@ def _links_of(fields: _Fields, submaps: int) -> tuple[Link, ...]:
     relatives = fields.floats("link_relatives", len(ends), 3)
     information = fields.floats("link_information", len(ends), 3, 3)
     doubts = fields.flags("link_doubts", len(ends)).tolist()
+    guesses = [False] * len(ends)
+    if fields.has("link_guesses"):
+        guesses = fields.flags("link_guesses", len(ends)).tolist()
     return tuple(
-        Link(parent, child, relative, sureness, doubt)
-        for (parent, child), relative, sureness, doubt in zip(
-            ends.tolist(), relatives, information, doubts, strict=True
+        Link(parent, child, relative, sureness, doubt, guess)
+        for (parent, child), relative, sureness, doubt, guess in zip(
+            ends.tolist(), relatives, information, doubts, guesses, strict=True
         )
     )
 

@@ -45,6 +45,20 @@ def test_the_process_that_keeps_it_already_is_told_until_it_is_killed(tmp_path: 
     again.end()
 
 
+def test_one_that_came_second_has_it_when_the_first_one_ended(tmp_path: Path) -> None:
+    first, told = InUse(tmp_path, pytest.fail), list[str]()
+    first.begin()
+    second, third = InUse(tmp_path, told.append), InUse(tmp_path, told.append)
+    second.begin()
+    second.look()
+    first.end()
+    second.look()
+    third.begin()
+    assert len(told) == 2
+    second.end()
+    third.end()
+
+
 def test_a_folder_that_cannot_be_made_is_no_trouble(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", "ascii")
     mark = InUse(tmp_path / "file" / "household", pytest.fail)

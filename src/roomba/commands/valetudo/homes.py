@@ -82,6 +82,9 @@ def _layer_of(found: ValetudoHome, zones: Zones, body: BodyConfig) -> dict[str, 
     at = found.station
     if at is not None and not found.has_own_frame:
         at = _station_by_charger(found.occupancy, zones, body.radius)
+    elif at is None and zones.barred:
+        floor = definite_map(found.occupancy)
+        at = automatic_station(floor, _solid(floor, zones), body.radius)
     if at is not None:
         layer["station"] = {"x": round(at.x, 4), "y": round(at.y, 4), "facing": round(at.theta, 6)}
     rooms = []
@@ -104,8 +107,7 @@ def _station_by_charger(occupancy: OccupancyMap, zones: Zones, radius: float) ->
     without zones: there each body finds a place of its own.
     """
     floor = definite_map(occupancy)
-    barred = [zone.cells(floor.frame) for zone in zones.barred]
-    solid = np.logical_or.reduce([floor.solid, *barred])
+    solid = _solid(floor, zones)
     fits = where_body_fits(floor.frame, solid, radius)
     least = _LEAST_PART / floor.frame.resolution**2
     parts: list[Mask] = []
@@ -117,9 +119,15 @@ def _station_by_charger(occupancy: OccupancyMap, zones: Zones, radius: float) ->
         return None
     away = [np.hypot(*floor.frame.centres(*np.nonzero(part))).min() for part in parts]
     nearest = int(np.argmin(away)) if min(away) <= _BY_CHARGER else 0
-    if nearest == 0 and not barred:
+    if nearest == 0 and not zones.barred:
         return None
     return automatic_station(floor, solid | (fits & ~parts[nearest]), radius)
+
+
+def _solid(floor: OccupancyMap, zones: Zones) -> Mask:
+    """Return where no body may be, zones among it, bool [rows, columns]."""
+    barred = [zone.cells(floor.frame) for zone in zones.barred]
+    return np.asarray(np.logical_or.reduce([floor.solid, *barred]))
 
 
 def _zones_of(found: ValetudoHome) -> Zones:

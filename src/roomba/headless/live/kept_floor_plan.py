@@ -11,7 +11,7 @@ from typing import Final
 
 from roomba.configuration.mapping import FloorsConfig
 from roomba.errors import HomeError, RoomsError
-from roomba.files.home_layer import MAP_NAME
+from roomba.files.home_layer import LAYER_NAME, MAP_NAME
 from roomba.geometry import Pose
 from roomba.headless.live.floor_plan import FloorPlan
 from roomba.perception.floors.carry_over import carry_over, divided_as, moved
@@ -37,8 +37,8 @@ FOLDER: Final = "floor_plans"
 class KeptFloorPlan:
     """The floor plan of one map, in a folder of its own in ``folder``, beside the map itself.
 
-    A map that has none yet, and shows the floor of another one here, takes over what is kept of
-    that: rooms and zones outlive a change of the home.
+    What was edited last of the same floor counts, also on a map that is another one now: rooms and
+    zones outlive a change of the home.
     """
 
     def __init__(
@@ -59,24 +59,26 @@ class KeptFloorPlan:
         Rooms that cannot be read are those of ``plan``, of which it is told. Raises ZonesError for
         zones that cannot be read: without them a robot may go where it must not.
         """
-        if _has_plan(self._own):
-            rooms, zones = self._read(self._own, self._floor)
-            self._keep_floor()
-            return _with(plan, rooms, zones)
-        for other, floor in self._others():
-            match = match_floors(self._floor, floor, self._config)
-            if match.is_same:
-                return self._taken_over(plan, *self._read(other, floor), match.old_in_new)
+        folders = [each for each in self._folder.glob("[!.]*") if _has_plan(each)]
+        for folder in sorted(folders, key=_edited, reverse=True):
+            if folder == self._own:
+                return self._own_plan(plan)
+            floor = self._other_floor(folder)
+            match = None if floor is None else match_floors(self._floor, floor, self._config)
+            if floor is not None and match is not None and match.is_same:
+                return self._taken_over(plan, *self._read(folder, floor), match.old_in_new)
         return plan
 
     def save(self, before: FloorPlan, plan: FloorPlan) -> None:
         """Keep what a plan has other than the one before; raises RoomsError, OSError."""
-        occupancy = self._floor.occupancy
-        if plan.zones is not before.zones:
-            save_zones(plan.zones, occupancy, self._own / ZONES_NAME)
-        if plan.rooms is not None and plan.rooms is not before.rooms:
-            save_rooms(plan.rooms, occupancy, self._own / ROOMS_NAME)
-        self._keep_floor()
+        self._write(self._own, before, plan)
+
+    def _own_plan(self, plan: FloorPlan) -> FloorPlan:
+        rooms, zones = self._read(self._own, self._floor)
+        # Older programs kept no map beside them.
+        with self._telling_trouble():
+            self._write(self._own, plan, plan)
+        return _with(plan, rooms, zones)
 
     def _read(self, folder: Path, floor: FloorRecord) -> tuple[Rooms | None, Zones | None]:
         """Return the rooms and zones that were kept of a floor, each None if none were."""
@@ -88,13 +90,15 @@ class KeptFloorPlan:
             rooms = None
         return rooms, zones if (folder / ZONES_NAME).exists() else None
 
-    def _others(self) -> Iterator[tuple[Path, FloorRecord]]:
-        """Yield the other maps that have a floor plan here, the one edited last first."""
-        folders = [folder for folder in self._folder.glob("*") if _has_plan(folder)]
-        for folder in sorted(folders, key=_edited, reverse=True):
-            # One that was kept without its map, or whose map is damaged, is of no use here.
-            with contextlib.suppress(HomeError, OSError):
-                yield folder, FloorRecord(*read_floor(folder))
+    def _other_floor(self, folder: Path) -> FloorRecord | None:
+        """Return the floor of another plan; None of one that was kept without its map."""
+        if not _has_floor(folder):
+            return None
+        try:
+            return FloorRecord(*read_floor(folder))
+        except (HomeError, OSError) as error:
+            self._tell(f"rooms and zones of another map are of no use: {error}")
+            return None
 
     def _taken_over(
         self, plan: FloorPlan, rooms: Rooms | None, zones: Zones | None, old_in_new: Pose
@@ -105,12 +109,13 @@ class KeptFloorPlan:
             kept = kept.with_zone(zone)
         taken = _with(plan, self._divided(plan.rooms, rooms, old_in_new), kept)
         self._tell("the map changed since its rooms or zones were edited; they are taken over")
-        try:
-            self.save(plan, taken)
-        except (OSError, RoomsError) as error:
-            self._tell(f"the rooms and zones that are taken over are not kept: {error}")
-            # Half of them would be all that the next start finds.
+        with self._telling_trouble():
+            # All of it or nothing: half would be all that the next start finds.
+            unfinished = self._own.with_name(f".{self._own.name}.new")
+            shutil.rmtree(unfinished, ignore_errors=True)
+            self._write(unfinished, FloorPlan(plan.rooms), taken)
             shutil.rmtree(self._own, ignore_errors=True)
+            unfinished.rename(self._own)
         return taken
 
     def _divided(self, new: Rooms | None, old: Rooms | None, old_in_new: Pose) -> Rooms | None:
@@ -122,10 +127,23 @@ class KeptFloorPlan:
             return as_before
         return carry_over(new, old, Zones(), self._config.same_room, old_in_new).rooms
 
-    def _keep_floor(self) -> None:
-        """Write the map beside its plan, by which a map that changed is told; raises OSError."""
-        if not (self._own / MAP_NAME).exists():
-            write_floor(StoredMap(self._floor.occupancy, self._floor.station), self._own)
+    def _write(self, folder: Path, before: FloorPlan, plan: FloorPlan) -> None:
+        """Write the map, by which it is found when that changed, and what is other than before."""
+        occupancy = self._floor.occupancy
+        if not _has_floor(folder):
+            write_floor(StoredMap(occupancy, self._floor.station), folder)
+        if plan.zones is not before.zones:
+            save_zones(plan.zones, occupancy, folder / ZONES_NAME)
+        if plan.rooms is not None and plan.rooms is not before.rooms:
+            save_rooms(plan.rooms, occupancy, folder / ROOMS_NAME)
+
+    @contextlib.contextmanager
+    def _telling_trouble(self) -> Iterator[None]:
+        """Tell what the disk refuses, and go on."""
+        try:
+            yield
+        except (OSError, RoomsError) as error:
+            self._tell(f"the rooms and zones of this map are not kept: {error}")
 
 
 def _with(plan: FloorPlan, rooms: Rooms | None, zones: Zones | None) -> FloorPlan:
@@ -142,7 +160,12 @@ def _has_plan(folder: Path) -> bool:
     return any(any(folder.glob(f"{name}*")) for name in (ROOMS_NAME, ZONES_NAME))
 
 
+def _has_floor(folder: Path) -> bool:
+    """Whether all of the map was kept there."""
+    return all((folder / name).exists() for name in (MAP_NAME, LAYER_NAME))
+
+
 def _edited(folder: Path) -> float:
     """Return when rooms or zones were kept there last, s."""
-    files = [folder / ROOMS_NAME, folder / ZONES_NAME]
-    return max((file.stat().st_mtime for file in files if file.exists()), default=0.0)
+    files = [*folder.glob(f"{ROOMS_NAME}*"), *folder.glob(f"{ZONES_NAME}*")]
+    return max((file.stat().st_mtime for file in files), default=0.0)

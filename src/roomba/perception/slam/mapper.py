@@ -60,6 +60,7 @@ class Mapper:
         self._finished = -1
         self._lidar: LidarModel | None = None
         self._relocation = MapRelocation(config)
+        self._is_elsewhere = False
 
     @classmethod
     def taken_up(
@@ -121,7 +122,7 @@ class Mapper:
         if self._relocation.is_lost:
             self._relocate(stamp, points)
             return
-        if self._finding_back.is_without_hold(follower):
+        if self._is_elsewhere or self._finding_back.is_without_hold(follower):
             self._begin_piece()
         follower.follow(stamp)
         self.finish_scan(stamp, ranges)
@@ -151,7 +152,8 @@ class Mapper:
     def is_calm(self) -> bool:
         """Whether scans follow each other: kernels may take them, until it has :meth:`resumed`."""
         has_keyframe = self.version > 0 and bool(self._map.graph.newest.keyframes)
-        return has_keyframe and self._follower.is_sure and self._relocation.is_placed
+        is_placed = self._relocation.is_placed and not self._is_elsewhere
+        return has_keyframe and self._follower.is_sure and is_placed
 
     @property
     def following(self) -> Following:
@@ -179,11 +181,10 @@ class Mapper:
     def set_down(self) -> None:
         """Go on where it was set down, wherever that is: the map goes on in a piece of its own.
 
-        It is laid where it fits when the map is finished.
+        It begins with the next scan, and is laid where it fits when the map is finished.
         """
-        self._relocation.is_lifted = self._relocation.is_lost = False
-        if self.version:
-            self._begin_piece()
+        self._relocation.set_down()
+        self._is_elsewhere = self.version > 0
 
     def told(self, pose: Pose) -> None:
         """Go on from a reported pose of the robot, map frame, right to within a few cm."""
@@ -298,7 +299,7 @@ class Mapper:
 
     def _begin_piece(self) -> None:
         """Begin a submap that scans are matched to, though none tells where it lies."""
-        follower = self._follower
+        follower, self._is_elsewhere = self._follower, False
         unsure = follower.unsure_way, follower.unsure_turn
         self._map.begin_piece(follower.here, follower.way, unsure, self.range_noise)
         follower.begin_piece()

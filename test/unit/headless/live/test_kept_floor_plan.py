@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import shutil
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from roomba.client.view import ZoneView
 from roomba.commands.play.living import live_client
 from roomba.commands.trials.zones import ZONES_NAME
 from roomba.configuration.mapping import FloorsConfig
-from roomba.files.home_layer import MAP_NAME
+from roomba.files.home_layer import LAYER_NAME, MAP_NAME
 from roomba.files.occupancy_map import load_map, save_map
 from roomba.files.shipped import HOMES
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
@@ -231,3 +232,48 @@ def test_what_is_taken_over_and_cannot_be_kept_is_taken_over_again(
     with lived(tmp_path / "kept", told, home) as client:
         assert client.home().zones == (RUG,)
         assert "Den" in names(client)
+
+
+def test_a_home_that_is_as_before_again_has_the_newest_edits(tmp_path: Path) -> None:
+    told: list[str] = []
+    with lived(tmp_path / "kept", told) as client:
+        client.put_zone(RUG)
+    home = changed(tmp_path / "home", with_post)
+    with lived(tmp_path / "kept", told, home) as client:
+        client.put_zone(replace(RUG, name="bowl"))
+    with lived(tmp_path / "kept", told) as client:
+        assert [zone.name for zone in client.home().zones] == ["rug", "bowl"]
+
+
+def test_what_is_kept_without_its_map_gets_it(tmp_path: Path) -> None:
+    """As of an older program, or one that was killed between two files."""
+    told: list[str] = []
+    with lived(tmp_path / "kept", told) as client:
+        client.put_zone(RUG)
+    file_in(tmp_path / "kept", LAYER_NAME).unlink()
+    with lived(tmp_path / "kept", told) as client:
+        assert client.home().zones == (RUG,)
+    with lived(tmp_path / "kept", told, changed(tmp_path / "home", with_post)) as client:
+        assert client.home().zones == (RUG,)
+    assert len(told) == 1
+
+
+def test_a_plan_whose_map_cannot_be_kept_is_gone_by_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+    with lived(tmp_path / "kept", told) as client:
+        client.put_zone(RUG)
+    file_in(tmp_path / "kept", LAYER_NAME).unlink()
+
+    def refuse(*_: object) -> None:
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr("roomba.headless.live.kept_floor_plan.write_floor", refuse)
+    with lived(tmp_path / "kept", told) as client:
+        assert client.home().zones == (RUG,)
+        with pytest.raises(RequestRefusedError, match="nothing was changed"):
+            client.remove_zone("rug")
+    assert told[0].endswith("are not kept: no space left on device")
+    with lived(tmp_path / "kept", told) as client:
+        assert client.home().zones == (RUG,)

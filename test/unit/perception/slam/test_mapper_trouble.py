@@ -136,6 +136,20 @@ def test_set_down_elsewhere_it_goes_on_apart_until_the_map_is_finished() -> None
     assert robot.error < WORST
 
 
+@pytest.mark.parametrize("is_told", [True, False])
+def test_a_map_that_ends_as_it_was_set_down_is_whole(is_told: bool) -> None:
+    """No scan came since: the map is that of before."""
+    robot = driven_around(1, AROUND)
+    robot.mapper.lift(True)
+    if is_told:
+        robot.mapper.told(robot.world.pose)
+    else:
+        robot.mapper.lift(False)
+        robot.mapper.set_down()
+    assert wrong_cells(robot.mapper.finish(), FURNISHED) == (0, 0)
+    assert robot.mapper.ways_apart == []
+
+
 def test_blind_from_the_beginning_it_begins_when_it_sees() -> None:
     robot = Mapped()
     robot.world.inject(Fault.LIDAR_BLOCKED, 1.0)

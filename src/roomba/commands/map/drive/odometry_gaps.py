@@ -17,7 +17,7 @@ they do not tell either how the robot went on."""
 _LATE: Final = 0.5
 """s; scans may be so late: they show what was before odometry stood still."""
 _CHANGED: Final = 0.15
-"""m; beams that measure another range by so much, or none any more, see something else."""
+"""m; beams that measure a range that is so much another one see something else."""
 _SHARE: Final = 0.5
 """Share of the beams that see something else when the robot has moved: people are fewer."""
 
@@ -63,16 +63,19 @@ class _GapSeeker:
         self._gaps: list[OdometryGap] = []
         self._pose: Pose | None = None
         self._since = self._newest = self._scanned = -math.inf
+        self._first_scan = math.inf
         self._unseen = 0.0
         self._seen: LidarScan | None = None
         self._has_moved = False
 
     def hear(self, stamp: float, pose: Pose) -> None:
         """Take a message of odometry."""
-        is_missing = self._pose is not None and stamp - self._newest > _LONGEST
+        since = self._first_scan if self._pose is None else self._newest
+        is_missing = stamp - since > _LONGEST
         if is_missing and max(self._unseen, stamp - self._scanned) <= _LONGEST:
             self._end_standstill()
             self._gaps.append(OdometryGap(self._newest, np.nextafter(stamp, -math.inf)))
+            self._since = stamp
         if pose != self._pose:
             self._end_standstill()
             self._pose, self._since = pose, stamp
@@ -80,11 +83,12 @@ class _GapSeeker:
 
     def see(self, stamp: float, scan: LidarScan) -> None:
         """Take a scan."""
-        self._unseen = max(self._unseen, stamp - max(self._scanned, self._newest))
+        self._first_scan = min(self._first_scan, stamp)
+        self._unseen = max(self._unseen, stamp - max(self._scanned, self._newest, self._first_scan))
         self._scanned = stamp
         if stamp <= self._since + _LATE or self._newest <= self._since:
             return
-        if self._seen is None:
+        if self._seen is None or not _is_comparable(self._seen, scan):
             self._seen = scan
         elif not self._has_moved:
             self._has_moved = _is_another(self._seen, scan)
@@ -102,13 +106,17 @@ class _GapSeeker:
         self._seen, self._has_moved = None, False
 
 
-def _is_another(before: LidarScan, scan: LidarScan) -> bool:
-    """Whether most beams see something else than before."""
+def _is_comparable(before: LidarScan, scan: LidarScan) -> bool:
+    """Whether most beams met something both times: a lidar that spins up sees nothing."""
     if before.ranges.shape != scan.ranges.shape:
         return False
-    seen = [np.isfinite(each.ranges) for each in (before, scan)]
-    counts = seen[0] | seen[1]
-    with np.errstate(invalid="ignore"):
-        same = np.abs(scan.ranges - before.ranges) < _CHANGED
-    changed = np.count_nonzero(counts & ~(same & seen[0] & seen[1]))
-    return bool(changed > _SHARE * np.count_nonzero(counts))
+    met = [np.isfinite(each.ranges) for each in (before, scan)]
+    both = int(np.count_nonzero(met[0] & met[1]))
+    return both > _SHARE * max(int(np.count_nonzero(each)) for each in met)
+
+
+def _is_another(before: LidarScan, scan: LidarScan) -> bool:
+    """Whether most beams that met something both times see something else than before."""
+    both = np.isfinite(before.ranges) & np.isfinite(scan.ranges)
+    changed = np.abs(scan.ranges[both] - before.ranges[both]) > _CHANGED
+    return bool(np.count_nonzero(changed) > _SHARE * len(changed))

@@ -70,8 +70,8 @@ class MapReplay:
         self._gaps = list(gaps)
         self._by_scans: PacedOdometry | None = None
         self.has_odometry = ALWAYS not in gaps
-        self._told = config.localization, mapping.following
-        self._guessed = (
+        self._wheel_noise = config.localization, mapping.following
+        self._guessed_noise = (
             config.localization.model_copy(update=_GUESSED),
             mapping.following.model_copy(update=_MAY_START),
         )
@@ -113,9 +113,9 @@ class MapReplay:
         if not apart:
             return left_out
         told = (
-            f"{sum(apart):.1f} m of the way, in pieces: {len(apart)}, lie on the map by odometry "
-            "alone: scans fitted nothing before them, and what was seen there was found nowhere "
-            "else; it may be drawn at a wrong place"
+            f"{sum(apart):.1f} m of the way, parts of the map: {len(apart)}, lie only where the "
+            "robot was thought to be: scans fitted nothing before them, and what was seen there "
+            "was found nowhere else; it may be drawn at a wrong place"
         )
         return [*left_out, told]
 
@@ -147,7 +147,7 @@ class MapReplay:
         if self._by_scans is not None:
             here = self._by_scans.at(stamp, self.mapper.pace)
             self._by_scans, self._frame = None, here.compose(pose.inverse())
-            self.mapper.end_guessing(*self._told)
+            self.mapper.end_guessing(*self._wheel_noise)
         self._move(stamp, self._frame.compose(pose))
 
     def _has_gap_at(self, stamp: float) -> bool:
@@ -160,7 +160,7 @@ class MapReplay:
         """Go on at the robot's pace until a scan."""
         if self._by_scans is None:
             self._by_scans = PacedOdometry(self._fed, self._gaps[0].begin)
-            self.mapper.begin_guessing(*self._guessed)
+            self.mapper.begin_guessing(*self._guessed_noise)
         self._move(stamp, self._by_scans.at(stamp, self.mapper.pace))
 
     def _move(self, stamp: float, pose: Pose) -> None:
@@ -182,6 +182,8 @@ class MapReplay:
     def _hear_lifted(self, *, is_lifted: bool) -> None:
         """Leave out what it sees while it is carried; it goes on wherever it is set down."""
         if is_lifted:
+            # What waits for more odometry was seen on the floor.
+            self._see(self._waiting.last())
             self.mapper.lift(is_lifted)
         elif self._is_lifted:
             self.mapper.set_down()
@@ -194,6 +196,9 @@ class MapReplay:
         if not math.isfinite(self._stamp):
             self.left_out["scans before the first odometry"] += 1
             return
+        if self._is_lifted:
+            self.left_out["scans while it was carried"] += 1
+            return
         self._see(self._waiting.put(StampedScan(stamp, scan.ranges, scan.lidar)))
         self._see(self._waiting.ready(self._stamp))
 
@@ -203,9 +208,6 @@ class MapReplay:
         stamp = scan.stamp
         if stamp > self._stamp + _LATEST:
             self.left_out["scans of times without odometry"] += 1
-            return
-        if self._is_lifted:
-            self.left_out["scans while it was carried"] += 1
             return
         began = time.process_time()
         self.mapper.see(stamp, scan.ranges, scan.lidar)

@@ -67,4 +67,8 @@ def align_axes(graph: SubmapGraph, resolution: float, oblique: float) -> tuple[f
 def _steps_between_submaps(graph: SubmapGraph) -> dict[int, Link]:
     """Return the links that lead into submaps, by the number of their first keyframe."""
     firsts = np.cumsum([0, *(len(submap.keyframes) for submap in graph.submaps)])
-    return {int(firsts[link.child]): link for link in graph.links if not link.may_be_wrong}
+    return {
+        int(firsts[link.child]): link
+        for link in graph.links
+        if not link.may_be_wrong and graph.submaps[link.child].keyframes
+    }

@@ -41,22 +41,27 @@ class _Found(NamedTuple):
     place: ClearPlace
 
 
-def part_labels(count: int, links: Sequence[Link], hardly: float) -> Labels:
+def part_labels(count: int, links: Sequence[Link]) -> Labels:
     """Return for each of ``count`` submaps the first one of its part, int64 [count].
 
-    A link with a larger standard deviation than ``hardly``, m, was made without a scan.
+    Parts are the connected components of the graph without links that are guessed.
     """
     labels = np.arange(count)
     for link in links:
-        if not is_hardly_known(link, hardly):
+        if not link.is_guessed:
             first, second = labels[link.parent], labels[link.child]
             labels[labels == max(first, second)] = min(first, second)
     return labels
 
 
-def is_hardly_known(link: Link, hardly: float) -> bool:
-    """Whether a link says too little of where its child lies: its deviation is above this, m."""
-    return math.sqrt(1.0 / link.information[0, 0]) > hardly
+def hanging_on(part: int, labels: Labels, links: Sequence[Link]) -> NDArray[np.bool_]:
+    """Return the submaps of a part, and of the parts that lie where they do by guesses from it."""
+    hanging: NDArray[np.bool_] = labels == part
+    for link in sorted(links, key=lambda link: link.child):
+        # Parts before it stay where they are.
+        if link.is_guessed and hanging[link.parent] and labels[link.child] > part:
+            hanging |= labels == labels[link.child]
+    return hanging
 
 
 def found_part(
@@ -96,7 +101,7 @@ def _samples(
             cloud = cloud_of(frames[first : first + size])
             if len(cloud) >= config.link_points:
                 samples.append((number, cloud))
-    return samples
+    return samples[:: max(1, -(-len(samples) // most))]
 
 
 def _most_agreed(found: list[_Found], poses: Floats, config: MappingConfig) -> FoundPart | None:

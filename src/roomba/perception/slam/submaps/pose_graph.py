@@ -40,7 +40,8 @@ class Link:
     """A measurement: the pose of ``child`` in the frame of ``parent``.
 
     ``relative`` is float64 [3], x, y, theta; ``information`` float64 [3, 3], the inverse of its
-    covariance. A link that ``may_be_wrong`` loses weight when all others contradict it.
+    covariance. A link that ``may_be_wrong`` loses weight when all others contradict it. One that
+    ``is_guessed`` says where the child is thought to lie, though no scan confirmed the way to it.
     """
 
     parent: int
@@ -48,6 +49,7 @@ class Link:
     relative: Floats
     information: Floats
     may_be_wrong: bool = True
+    is_guessed: bool = False
 
 
 class Measurements(NamedTuple):

@@ -43,6 +43,10 @@ class MapRelocation:
             self._searched_at = self._found = None
         self.is_lifted = is_lifted
 
+    def set_down(self) -> None:
+        """Let the robot be on the floor again, wherever that is, without being lost."""
+        self.is_lifted = self.is_lost = False
+
     def find(
         self, points: Floats, reckoned: Floats, submaps: list[Submap], poses: Floats
     ) -> Floats | None:

@@ -17,7 +17,7 @@ from roomba.perception.slam.submaps.linking import Linker
 from roomba.perception.slam.submaps.parts import (
     FoundPart,
     found_part,
-    is_hardly_known,
+    hanging_on,
     part_labels,
 )
 from roomba.perception.slam.submaps.pose_graph import (
@@ -113,7 +113,7 @@ class SubmapGraph:
         away = piece.deviation + piece.share * unsure_way
         turn = piece.heading_deviation + piece.share * unsure_turn
         information = _information(away, turn)
-        self.links.append(Link(count - 1, count, relative.copy(), information, False))
+        self.links.append(Link(count - 1, count, relative.copy(), information, False, True))
         self._add(self.placed(relative), way)
 
     def begin_at(self, pose: Floats, way: float) -> None:
@@ -147,24 +147,25 @@ class SubmapGraph:
         """
         ends = [*(submap.way for submap in self.submaps[1:]), way]
         driven = np.array(ends) - [submap.way for submap in self.submaps]
-        labels = part_labels(len(self.submaps), self.links, self._config.windows.hardly)
-        return [float(driven[labels == part].sum()) for part in np.unique(labels)[1:].tolist()]
+        shows = np.array([bool(submap.keyframes) for submap in self.submaps])
+        labels = part_labels(len(self.submaps), self.links)
+        parts = np.unique(labels[shows]).tolist()[1:]
+        return [float(driven[labels == part].sum()) for part in parts]
 
     def join_parts(self) -> None:
         """Lay parts of the map that no scan joined where they are found on what is before them."""
-        hardly = self._config.windows.hardly
-        labels = part_labels(len(self.submaps), self.links, hardly)
+        labels = part_labels(len(self.submaps), self.links)
         for part in np.unique(labels)[1:].tolist():
             found = found_part(part, labels, self.submaps, self.poses, self._config)
             if found is not None:
-                self._lay_part(found, labels >= part)
-                labels = part_labels(len(self.submaps), self.links, hardly)
+                self._lay_part(found, hanging_on(part, labels, self.links))
+                labels = part_labels(len(self.submaps), self.links)
 
-    def _lay_part(self, found: FoundPart, which: NDArray[np.bool_]) -> None:
+    def _lay_part(self, found: FoundPart, moved: NDArray[np.bool_]) -> None:
         """Move a part, and what hangs on it, where it was found, if links say so as well."""
-        count, hardly = int(np.count_nonzero(which)), self._config.windows.hardly
         poses = self.poses.copy()
-        poses[which] = composed(np.repeat(found.moved[None], count, 0), poses[which])
+        there = np.repeat(found.moved[None], int(np.count_nonzero(moved)), axis=0)
+        poses[moved] = composed(there, poses[moved])
         links = [
             self._linker.link_at(parent, number, self.submaps, poses)
             for number, parent in found.parents.items()
@@ -173,9 +174,11 @@ class SubmapGraph:
         good = [link for link in links if link is not None]
         if not good:
             return
-        # Where it was thought to be holds no more.
+        # What was guessed of where it lies holds no more.
         known = [
-            _as_lies(link, poses) if which[link.child] and is_hardly_known(link, hardly) else link
+            _as_lies(link, poses)
+            if link.is_guessed and moved[link.parent] != moved[link.child]
+            else link
             for link in self.links
         ]
         self.links = known + good

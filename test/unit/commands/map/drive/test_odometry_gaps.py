@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -102,3 +103,33 @@ def test_a_recording_that_was_paused_has_no_gap(scans_from: float) -> None:
 def test_without_odometry_the_gap_is_all_of_the_drive() -> None:
     assert ALWAYS.begin == -math.inf
     assert ALWAYS.end == math.inf
+
+
+def test_odometry_that_begins_late_is_missing_before() -> None:
+    late = [e for e in drive() if not (isinstance(e.value, Odometry) and e.stamp < 20.0)]
+    (gap,) = odometry_gaps(late)
+    assert gap.begin == -math.inf
+    assert 19.9 < gap.end < 20.0
+    soon = [e for e in drive() if not (isinstance(e.value, Odometry) and e.stamp < 0.5)]
+    assert odometry_gaps(soon) == []
+
+
+def test_a_lidar_that_spins_up_while_the_robot_stands_is_no_gap() -> None:
+    readings: list[Reading] = []
+    for tick in range(100):
+        readings.append(Reading(0.1 * tick, Odometry(Pose()), 0))
+        ranges = RANGES if tick > 30 else np.full(36, math.inf)
+        readings.append(Reading(0.1 * tick, scan(ranges), 0))
+    assert odometry_gaps(readings) == []
+
+
+def test_a_time_that_is_missing_counts_once() -> None:
+    """Odometry stands for 10 s, is missing for 5, and stands again; the robot drives on."""
+    readings = [
+        each
+        for each in drive(still=(10.0, 30.0))
+        if not (isinstance(each.value, Odometry) and 20.0 < each.stamp < 25.0)
+    ]
+    gaps = odometry_gaps(readings)
+    assert sum(gap.end - gap.begin for gap in gaps) == pytest.approx(20.0, abs=0.3)
+    assert all(one.end <= other.begin for one, other in pairwise(gaps))

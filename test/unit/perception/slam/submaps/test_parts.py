@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose
-from roomba.perception.slam.submaps.parts import found_part, is_hardly_known, part_labels
+from roomba.perception.slam.submaps import parts
+from roomba.perception.slam.submaps.parts import found_part, hanging_on, part_labels
 from roomba.perception.slam.submaps.places import differ
 from roomba.perception.slam.submaps.pose_graph import Link
 from roomba.perception.slam.submaps.submap import Keyframe, Submap
@@ -22,16 +23,14 @@ from roomba.perception.slam.submaps.submap_graph import SubmapGraph
 from roomba.world.home.home import Home
 
 CONFIG, LOCALIZATION = MappingConfig(), LocalizationConfig()
-HARDLY = CONFIG.windows.hardly
 ALIKE = room_home(8.2, 4.0, ((4.0, 0.0, 4.2, 4.0), (3.0, 3.4, 4.0, 4.0), (7.2, 3.4, 8.2, 4.0)))
 """Two rooms that look the same."""
 CARRIED = Pose(2.5, -1.0, 1.9)
 """Where the frame of a part truly lies in that in which it is thought to lie."""
 
 
-def link(parent: int, child: int, deviation: float) -> Link:
-    information = np.diag([deviation**-2.0, deviation**-2.0, 100.0])
-    return Link(parent, child, np.zeros(3), information, False)
+def link(parent: int, child: int, *, guessed: bool = False) -> Link:
+    return Link(parent, child, np.zeros(3), np.eye(3), False, guessed)
 
 
 def submap(at: Pose, home: Home, frames: int = 10) -> Submap:
@@ -53,13 +52,23 @@ def seen(poses: list[Pose], home: Home, thought: Pose) -> tuple[list[Submap], ND
 
 
 def test_links_that_scans_made_hold_parts_together() -> None:
-    sure, unsure = 0.01, 0.5
-    links = [link(0, 1, sure), link(1, 2, unsure), link(2, 3, sure), link(3, 4, unsure)]
-    assert [is_hardly_known(each, HARDLY) for each in links] == [False, True, False, True]
-    assert part_labels(5, links, HARDLY).tolist() == [0, 0, 2, 2, 4]
-    assert part_labels(5, [*links, link(0, 4, sure)], HARDLY).tolist() == [0, 0, 2, 2, 0]
-    assert part_labels(5, [*links, link(0, 3, sure)], HARDLY).tolist() == [0, 0, 0, 0, 4]
-    assert part_labels(1, [], HARDLY).tolist() == [0]
+    links = [link(0, 1), link(1, 2, guessed=True), link(2, 3), link(3, 4, guessed=True)]
+    assert part_labels(5, links).tolist() == [0, 0, 2, 2, 4]
+    assert part_labels(5, [*links, link(0, 4)]).tolist() == [0, 0, 2, 2, 0]
+    assert part_labels(5, [*links, link(0, 3)]).tolist() == [0, 0, 0, 0, 4]
+    assert part_labels(1, []).tolist() == [0]
+
+
+def test_what_hangs_on_a_part_does_so_by_guesses_and_never_what_is_before_it() -> None:
+    # Carried at 2, put back at 4; 5 hangs on what is before, 6 on the carried one.
+    links = [
+        *(link(0, 1), link(1, 2, guessed=True), link(2, 3), link(3, 4, guessed=True)),
+        *(link(0, 4), link(4, 5, guessed=True), link(3, 6, guessed=True)),
+    ]
+    labels = part_labels(7, links)
+    assert labels.tolist() == [0, 0, 2, 2, 0, 5, 6]
+    assert np.flatnonzero(hanging_on(2, labels, links)).tolist() == [2, 3, 6]
+    assert np.flatnonzero(hanging_on(5, labels, links)).tolist() == [5]
 
 
 def test_a_part_is_found_where_it_truly_lies() -> None:
@@ -97,10 +106,18 @@ def test_the_graph_lays_a_part_and_what_hangs_on_it_where_it_was_found() -> None
     part, thought = seen([Pose(1.4, 2.0, -1.0), Pose(3.0, 1.2, 0.5)], FURNISHED, CARRIED)
     last = row(CARRIED.inverse().compose(Pose(3.2, 1.4, 0.9)))
     graph.submaps, graph.poses = [*known, *part, Submap(9.0)], np.vstack((at, thought, last))
+    graph.submaps[-1].keyframes = part[0].keyframes[:1]
     for number, each in enumerate(graph.submaps):
         each.way = 2.0 * number
     graph.links = [
-        Link(one, one + 1, row(relative(graph.poses, one)), np.diag([weight, weight, 1e4]), False)
+        Link(
+            one,
+            one + 1,
+            row(relative(graph.poses, one)),
+            np.diag([weight, weight, 1e4]),
+            False,
+            weight < 1e4,
+        )
         for one, weight in enumerate((1e4, 4.0, 1e4, 4.0))
     ]
     assert graph.ways_apart(9.0) == pytest.approx([4.0, 1.0])
@@ -115,6 +132,21 @@ def test_the_graph_lays_a_part_and_what_hangs_on_it_where_it_was_found() -> None
 def relative(poses: NDArray[np.float64], one: int) -> Pose:
     """Return where the next submap lies in this one."""
     return Pose(*poses[one].tolist()).inverse().compose(Pose(*poses[one + 1].tolist()))
+
+
+def test_no_more_samples_are_looked_for_than_that() -> None:
+    for count in range(1, 12):
+        submaps = [submap(Pose(1.0, 1.0, 0.3 * number), FURNISHED, 40) for number in range(2)]
+        several = (submaps * count)[:count]
+        samples = parts._samples(list(range(count)), several, CONFIG)
+        assert CONFIG.parts.backed <= len(samples) <= CONFIG.parts.looked_for
+
+
+def test_parts_without_a_scan_are_none() -> None:
+    graph = SubmapGraph(CONFIG, LOCALIZATION, np.zeros(3))
+    graph.submaps[0].keyframes = submap(Pose(1.0, 1.0, 0.5), FURNISHED, 1).keyframes
+    graph.begin_piece(np.zeros(3), 1.0, 0.0, 0.0)
+    assert graph.ways_apart(1.0) == []
 
 
 def test_a_map_in_one_part_stays_as_it_is() -> None:
