@@ -113,6 +113,10 @@ class FollowingConfig(Frozen):
     leap_turn: Angle = 0.35
     """And its share of what was driven and turned unconfirmed; a place that is farther from where
     the robot was thought to be is of a piece of its own, until more than one scan shows it."""
+    carried_way: Length = 0.3
+    carried_turn: Angle = 0.3
+    """From a scan that fitted to one that does not; after less the robot was carried: what it saw
+    before must be in sight still."""
     given_up_after: AtLeastOne = 7
     """Scans that show enough and confirm nothing,"""
     piece_way: NotNegative = 0.6

@@ -123,7 +123,8 @@ class Mapper:
             self._relocate(stamp, points)
             return
         if self._is_elsewhere or self._finding_back.is_without_hold(follower):
-            self._begin_piece()
+            is_carried = self._is_elsewhere or self._finding_back.shows_carried
+            self._begin_piece(is_carried=is_carried)
         follower.follow(stamp)
         self.finish_scan(stamp, ranges)
 
@@ -131,9 +132,10 @@ class Mapper:
         """Do what comes after the newest scan was followed: kernels left that, or :meth:`see`."""
         follower = self._follower
         if self.version and self._finding_back.is_due:
+            is_carried = self._finding_back.shows_carried
             has_leapt = self._finding_back.search(follower, self._map.clouds())
             if has_leapt:
-                self._begin_piece()
+                self._begin_piece(is_carried=is_carried)
         follower.compare_turns(stamp)
         points = follower.points
         if self._is_keyframe():
@@ -259,6 +261,11 @@ class Mapper:
         return count - 1, Pose(*pose.tolist())
 
     @property
+    def parts_laid(self) -> int:
+        """How many parts, seen after the robot was carried, were found on the rest of the map."""
+        return self._map.graph.laid
+
+    @property
     def ways_apart(self) -> list[float]:
         """How long parts of the map are that lie where dead reckoning puts them, m: no scan of them
         was found on the rest.
@@ -297,11 +304,16 @@ class Mapper:
         if found is not None:
             self.told(Pose(*found.tolist()))
 
-    def _begin_piece(self) -> None:
-        """Begin a submap that scans are matched to, though none tells where it lies."""
+    def _begin_piece(self, *, is_carried: bool) -> None:
+        """Begin a submap that scans are matched to, though none tells where it lies.
+
+        That may be anywhere if the robot ``is_carried``.
+        """
         follower, self._is_elsewhere = self._follower, False
         unsure = follower.unsure_way, follower.unsure_turn
-        self._map.begin_piece(follower.here, follower.way, unsure, self.range_noise)
+        self._map.begin_piece(
+            follower.here, follower.way, unsure, self.range_noise, is_carried=is_carried
+        )
         follower.begin_piece()
         self._finding_back.begin_again()
 

@@ -91,14 +91,21 @@ class SubmapMap:
         self._enter_newest([self._newest - 1])
 
     def begin_piece(
-        self, here: Floats, way: float, unsure: tuple[float, float], range_noise: float
+        self,
+        here: Floats,
+        way: float,
+        unsure: tuple[float, float],
+        range_noise: float,
+        *,
+        is_carried: bool,
     ) -> None:
         """Begin a submap that scans are matched to, though none tells where it lies.
 
-        As :meth:`begin`; ``unsure`` is what was driven, m, and turned, rad, unconfirmed.
+        As :meth:`begin`; ``unsure`` is what was driven, m, and turned, rad, unconfirmed. It may
+        lie anywhere if the robot ``is_carried``.
         """
         self.close(range_noise)
-        self.graph.begin_piece(here, way, *unsure)
+        self.graph.begin_piece(here, way, *unsure, is_carried=is_carried)
         self._enter_newest([])
 
     def begin_at(self, pose: Floats, way: float, range_noise: float) -> None:

@@ -117,6 +117,7 @@ def test_carried_unnoticed_what_it_sees_then_is_laid_where_it_fits(to: Pose) -> 
     assert len(robot.mapper.ways_apart) == 1
     made = robot.mapper.finish()
     assert robot.mapper.ways_apart == []
+    assert robot.mapper.parts_laid == 1
     assert wrong_cells(made, FURNISHED) == (0, 0)
     assert robot.error < WORST
 

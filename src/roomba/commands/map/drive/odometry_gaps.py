@@ -11,9 +11,11 @@ import numpy as np
 from roomba.geometry import Pose
 from roomba.recordings.readings import LidarScan, Odometry, Reading
 
-_LONGEST: Final = 1.0
-"""s between two messages of odometry, after which it is missing, or between two scans, after which
-they do not tell either how the robot went on."""
+_MISSING: Final = 1.0
+_LATER: Final = 3.0
+"""s, and times the usual time between two messages of odometry, after which it is missing."""
+_UNSEEN: Final = 1.5
+"""s between two scans, after which these do not tell either how the robot went on."""
 _LATE: Final = 0.5
 """s; scans may be so late: they show what was before odometry stood still."""
 _CHANGED: Final = 0.15
@@ -61,6 +63,8 @@ class _GapSeeker:
 
     def __init__(self) -> None:
         self._gaps: list[OdometryGap] = []
+        self._missing: list[OdometryGap] = []
+        self._steps: list[float] = []
         self._pose: Pose | None = None
         self._since = self._newest = self._scanned = -math.inf
         self._first_scan = math.inf
@@ -71,11 +75,13 @@ class _GapSeeker:
     def hear(self, stamp: float, pose: Pose) -> None:
         """Take a message of odometry."""
         since = self._first_scan if self._pose is None else self._newest
-        is_missing = stamp - since > _LONGEST
-        if is_missing and max(self._unseen, stamp - self._scanned) <= _LONGEST:
+        is_missing = stamp - since > _MISSING
+        if is_missing and max(self._unseen, stamp - self._scanned) <= _UNSEEN:
             self._end_standstill()
-            self._gaps.append(OdometryGap(self._newest, np.nextafter(stamp, -math.inf)))
+            self._missing.append(OdometryGap(self._newest, np.nextafter(stamp, -math.inf)))
             self._since = stamp
+        if self._pose is not None:
+            self._steps.append(stamp - self._newest)
         if pose != self._pose:
             self._end_standstill()
             self._pose, self._since = pose, stamp
@@ -96,9 +102,11 @@ class _GapSeeker:
     def finished(self) -> list[OdometryGap]:
         """Return all gaps, the drive being over."""
         self._end_standstill()
-        if self._pose is not None and self._scanned - self._newest > _LONGEST:
-            self._gaps.append(OdometryGap(self._newest, math.inf))
-        return self._gaps
+        least = max(_MISSING, _LATER * float(np.median(self._steps or [0.0])))
+        gaps = self._gaps + [gap for gap in self._missing if gap.end - gap.begin > least]
+        if self._pose is not None and self._scanned - self._newest > least:
+            gaps.append(OdometryGap(self._newest, math.inf))
+        return sorted(gaps)
 
     def _end_standstill(self) -> None:
         if self._has_moved:

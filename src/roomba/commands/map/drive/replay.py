@@ -35,7 +35,7 @@ _GUESSED: Final = {
 """m, rad per square root of m, rad: of motion that is only guessed from what was before."""
 _MAY_START: Final = {"standing_deviation": 0.05, "standing_heading": 0.05}
 """m, rad; of a guessed step of a robot that stood: it may start at any time."""
-_LONGEST: Final = 1.0
+_LONGEST: Final = 1.5
 """s; over a longer time a robot does not go on as it did."""
 _LATEST: Final = 1.0
 """s; a scan that odometry is so far behind is of a time that it knows nothing of."""
@@ -108,16 +108,20 @@ class MapReplay:
     @property
     def notes(self) -> list[str]:
         """What was left out, and what no scan joined to the map."""
-        left_out = [f"{count} {what}: left out" for what, count in self.left_out.items()]
-        apart = self.mapper.ways_apart
-        if not apart:
-            return left_out
-        told = (
-            f"{sum(apart):.1f} m of the way, parts of the map: {len(apart)}, lie only where the "
-            "robot was thought to be: scans fitted nothing before them, and what was seen there "
-            "was found nowhere else; it may be drawn at a wrong place"
-        )
-        return [*left_out, told]
+        told = [f"{count} {what}: left out" for what, count in self.left_out.items()]
+        apart, laid = self.mapper.ways_apart, self.mapper.parts_laid
+        if laid:
+            told.append(
+                "the robot was carried elsewhere: what it saw from then on was found on the rest "
+                f"of the map, and is drawn there (parts of the map: {laid})"
+            )
+        if apart:
+            told.append(
+                f"{sum(apart):.1f} m of the way, parts of the map: {len(apart)}, lie only where "
+                "the robot was thought to be: scans fitted nothing before them, and what was seen "
+                "there was found nowhere else; it may be drawn at a wrong place"
+            )
+        return told
 
     def hear(self, stamp: float, value: Value) -> None:
         """Take in a reading, in the order of time; true poses say nothing."""

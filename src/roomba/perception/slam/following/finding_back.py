@@ -50,6 +50,13 @@ class FindingBack:
         """Whether the newest scan is to be searched for."""
         return bool(is_due(self.state))
 
+    @property
+    def shows_carried(self) -> bool:
+        """Whether scans stopped to fit from one to the next, though it hardly moved."""
+        row, config = self._row, self._config
+        hardly_drove = row["lost_way"] < config.carried_way
+        return bool(hardly_drove and row["lost_turn"] < config.carried_turn)
+
     def is_without_hold(self, follower: ScanFollower) -> bool:
         """Whether it has gone on for so long unconfirmed that the map must come to where it is."""
         config = self._config

@@ -21,6 +21,8 @@ FINDING: Final = np.dtype(
         ("well_at", "f8", (3,)),  # where dead reckoning had the robot then
         ("misses", "i8"),  # scans in a row that show enough and confirm nothing
         ("doubts", "i8"),  # scans in a row that confirm less than is usual
+        ("lost_way", "f8"),  # m; driven from the last scan that fitted to the first that did not
+        ("lost_turn", "f8"),  # rad; turned meanwhile
         # what does not change: see FollowingConfig
         ("doubtful", "f8"),
         ("pace_fades", "f8"),  # s
@@ -72,7 +74,11 @@ def _count(findings: Rows, follower: Row, stamp: float) -> None:
     """Count the scans in a row that confirm nothing, or less than is usual."""
     finding = findings[0]
     if not follower.is_sure:
-        finding.misses += follower.points >= follower.least_points
+        if follower.points >= follower.least_points:
+            # The first scan of a map or a piece cannot fit yet.
+            if finding.misses == 0 or math.isnan(finding.well_since):
+                finding.lost_way, finding.lost_turn = follower.unsure_way, follower.unsure_turn
+            finding.misses += 1
         return
     finding.misses = 0
     agreement = follower.met * follower.close
@@ -80,6 +86,8 @@ def _count(findings: Rows, follower: Row, stamp: float) -> None:
     # On the way new things come into sight; but scans that are far apart may fit at a wrong place.
     is_doubted = stands or follower.way - finding.way >= finding.far_apart
     if agreement < least_usual(findings) and is_doubted:
+        if finding.doubts == 0:
+            finding.lost_way, finding.lost_turn = follower.way - finding.way, 0.0
         finding.doubts += 1
         return
     finding.doubts = 0

@@ -58,6 +58,10 @@ class SubmapGraph:
         self.poses = start[None].copy()
         self.links: list[Link] = []
         self._waiting: list[Link] = []
+        self._anywhere: set[int] = set()
+        """Submaps that began where the robot was carried; another process forgets them."""
+        self.laid = 0
+        """Parts that :meth:`join_parts` found."""
 
     def take_over(
         self, submaps: tuple[KeptSubmap, ...], poses: Floats, links: tuple[Link, ...]
@@ -102,13 +106,22 @@ class SubmapGraph:
         self._add(self.placed(relative), way)
 
     def begin_piece(
-        self, relative: Floats, way: float, unsure_way: float, unsure_turn: float
+        self,
+        relative: Floats,
+        way: float,
+        unsure_way: float,
+        unsure_turn: float,
+        *,
+        is_carried: bool = False,
     ) -> None:
         """Begin a submap at a pose of the newest one, [3].
 
-        No scan confirmed what was driven, m, and turned, rad, before it.
+        No scan confirmed what was driven, m, and turned, rad, before it. It may lie anywhere if the
+        robot ``is_carried``.
         """
         count = len(self.submaps)
+        if is_carried:
+            self._anywhere.add(count)
         piece = self._config.pieces
         away = piece.deviation + piece.share * unsure_way
         turn = piece.heading_deviation + piece.share * unsure_turn
@@ -153,9 +166,12 @@ class SubmapGraph:
         return [float(driven[labels == part].sum()) for part in parts]
 
     def join_parts(self) -> None:
-        """Lay parts of the map that no scan joined where they are found on what is before them."""
+        """Lay parts that begin where the robot was carried where they are found on the rest.
+
+        Other parts lie where dead reckoning says, however like another place they look.
+        """
         labels = part_labels(len(self.submaps), self.links)
-        for part in np.unique(labels)[1:].tolist():
+        for part in sorted(self._anywhere & set(labels.tolist())):
             found = found_part(part, labels, self.submaps, self.poses, self._config)
             if found is not None:
                 self._lay_part(found, hanging_on(part, labels, self.links))
@@ -183,6 +199,7 @@ class SubmapGraph:
         ]
         self.links = known + good
         self.poses = optimised(poses, self.links)
+        self.laid += 1
 
     def link_anew(self) -> None:
         """Look for all links anew, near where submaps lie by the present ones."""

@@ -133,3 +133,18 @@ def test_a_time_that_is_missing_counts_once() -> None:
     gaps = odometry_gaps(readings)
     assert sum(gap.end - gap.begin for gap in gaps) == pytest.approx(20.0, abs=0.3)
     assert all(one.end <= other.begin for one, other in pairwise(gaps))
+
+
+@pytest.mark.parametrize("period", [1.0, 1.3])
+def test_odometry_that_is_rare_is_not_missing(period: float) -> None:
+    """It comes so seldom as a rule; three times as long it is missing."""
+    rare, last = [], -math.inf
+    for each in drive():
+        if not isinstance(each.value, Odometry):
+            rare.append(each)
+        elif each.stamp >= last + period - 1e-9:
+            rare.append(each)
+            last = each.stamp
+    assert odometry_gaps(rare) == []
+    missing = [e for e in rare if not (isinstance(e.value, Odometry) and 20.0 < e.stamp < 27.0)]
+    assert len(odometry_gaps(missing)) == 1

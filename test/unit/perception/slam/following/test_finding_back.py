@@ -121,6 +121,20 @@ def test_a_piece_begins_where_the_wheels_say() -> None:
         mapper.see(FAR_APART * step, ranges, LIDAR)
         assert mapper.at_scan.distance_to(here.x, here.y) < 0.01
         here = here.compose(Pose(4.0, 0.0, 0.1))
+    assert len(mapper.ways_apart) == 1
+    # It drove far between the scans: it was not carried, and the piece is where the wheels say.
+    assert not mapper._map.graph._anywhere
+
+
+def test_what_stops_to_fit_from_one_scan_to_the_next_was_carried() -> None:
+    here, mapper = Pose(4.0, 1.2, 0.0), mapper_at(Pose(4.0, 1.2, 0.0))
+    for tick in range(40):
+        at = Pose(0.03 * tick)
+        # After 1 s it is where everything looks different; its wheels drive on as before.
+        ranges = EYE.scan(here.compose(at))[BEAMS] if tick < 10 else np.full(len(ANGLES), 0.9)
+        mapper.move(0.1 * tick, at, 0.0)
+        mapper.see(0.1 * tick, ranges.astype(np.float32), LIDAR)
+    assert mapper._map.graph._anywhere == {len(mapper._map.graph.submaps) - 1}
 
 
 CORNER = np.array(

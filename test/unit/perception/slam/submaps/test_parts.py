@@ -122,6 +122,12 @@ def test_the_graph_lays_a_part_and_what_hangs_on_it_where_it_was_found() -> None
     ]
     assert graph.ways_apart(9.0) == pytest.approx([4.0, 1.0])
     graph.join_parts()
+    # The robot was not carried: however like another place it looks, the part stays.
+    assert graph.laid == 0
+    assert np.array_equal(graph.poses[2:4], thought)
+    graph._anywhere.add(2)
+    graph.join_parts()
+    assert graph.laid == 1
     assert graph.ways_apart(9.0) == pytest.approx([1.0])
     true = [Pose(1.4, 2.0, -1.0), Pose(3.0, 1.2, 0.5), Pose(3.2, 1.4, 0.9)]
     for pose, expected in zip(graph.poses[2:], true, strict=True):
