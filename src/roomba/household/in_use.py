@@ -24,7 +24,8 @@ class InUse:
         """Touch nothing yet."""
         self._folder, self._tell = folder, tell
         self._lock: int | None = None
-        self._is_mine = False
+        self._owner = 0
+        """The process that marked it by this: this one, or one that it was forked from."""
 
     def begin(self) -> None:
         """Mark the household as this program's; another program that keeps it is told."""
@@ -32,30 +33,37 @@ class InUse:
             make_private(self._folder)
             flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW
             self._lock = os.open(self._folder / _NAME, flags, 0o600)
-            self.look()
-        if self._lock is not None and not self._is_mine:
-            other = os.pread(self._lock, _LONGEST, 0).decode("ascii", "replace").strip()
-            self._tell(
-                f"process {other or 'of another program'} keeps this household as well "
-                f"({self._folder}): plans begin in both, and what is edited in one can be lost in "
-                "the other; end one of them, or set ROOMBA_HOUSEHOLD to a folder of its own"
-            )
+            try:
+                self._mark(self._lock)
+            except BlockingIOError:
+                self._tell_other(self._lock)
 
     def look(self) -> None:
         """Take the mark over from a program that ended meanwhile."""
-        if self._lock is None or self._is_mine:
-            return
-        with contextlib.suppress(OSError):  # the other program still has it
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            self._is_mine = True
-            os.ftruncate(self._lock, 0)
-            os.pwrite(self._lock, f"{os.getpid()}\n".encode(), 0)
+        if self._lock is not None and not self._owner:
+            with contextlib.suppress(OSError):  # the other program still has it
+                self._mark(self._lock)
 
     def end(self) -> None:
         """Let another program have it."""
         lock, self._lock = self._lock, None
         if lock is not None:
-            if self._is_mine:  # also where a child of this process has the file open
+            # A child of this process may have the file open as well.
+            if self._owner == os.getpid():
                 fcntl.flock(lock, fcntl.LOCK_UN)
             os.close(lock)
-        self._is_mine = False
+        self._owner = 0
+
+    def _mark(self, lock: int) -> None:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        self._owner = os.getpid()
+        os.ftruncate(lock, 0)
+        os.pwrite(lock, f"{self._owner}\n".encode(), 0)
+
+    def _tell_other(self, lock: int) -> None:
+        other = os.pread(lock, _LONGEST, 0).decode("ascii", "replace").strip()
+        self._tell(
+            f"process {other or 'of another program'} keeps this household as well "
+            f"({self._folder}): plans begin in both, and what is edited in one can be lost in the "
+            "other; end one of them, or set ROOMBA_HOUSEHOLD to a folder of its own"
+        )

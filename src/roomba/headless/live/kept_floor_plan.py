@@ -11,7 +11,6 @@ from typing import Final
 
 from roomba.configuration.mapping import FloorsConfig
 from roomba.errors import HomeError, RoomsError
-from roomba.files.home_layer import LAYER_NAME, MAP_NAME
 from roomba.geometry import Pose
 from roomba.headless.live.floor_plan import FloorPlan
 from roomba.perception.floors.carry_over import carry_over, divided_as, moved
@@ -37,8 +36,8 @@ FOLDER: Final = "floor_plans"
 class KeptFloorPlan:
     """The floor plan of one map, in a folder of its own in ``folder``, beside the map itself.
 
-    What was edited last of the same floor counts, also on a map that is another one now: rooms and
-    zones outlive a change of the home.
+    A map that has none yet, and shows the floor of another one here, takes over what is kept of
+    that: rooms and zones outlive a change of the home.
     """
 
     def __init__(
@@ -59,10 +58,10 @@ class KeptFloorPlan:
         Rooms that cannot be read are those of ``plan``, of which it is told. Raises ZonesError for
         zones that cannot be read: without them a robot may go where it must not.
         """
-        folders = [each for each in self._folder.glob("[!.]*") if _has_plan(each)]
-        for folder in sorted(folders, key=_edited, reverse=True):
-            if folder == self._own:
-                return self._own_plan(plan)
+        if _has_plan(self._own):
+            return self._own_plan(plan)
+        others = [each for each in self._folder.glob("[!.]*") if _has_plan(each)]
+        for folder in sorted(others, key=_edited, reverse=True):
             floor = self._other_floor(folder)
             match = None if floor is None else match_floors(self._floor, floor, self._config)
             if floor is not None and match is not None and match.is_same:
@@ -75,9 +74,10 @@ class KeptFloorPlan:
 
     def _own_plan(self, plan: FloorPlan) -> FloorPlan:
         rooms, zones = self._read(self._own, self._floor)
-        # Older programs kept no map beside them.
+        # Older programs kept no map beside them, and one that is damaged is of no use.
         with self._telling_trouble():
-            self._write(self._own, plan, plan)
+            if not _has_floor(self._own):
+                self._write_floor(self._own)
         return _with(plan, rooms, zones)
 
     def _read(self, folder: Path, floor: FloorRecord) -> tuple[Rooms | None, Zones | None]:
@@ -91,13 +91,10 @@ class KeptFloorPlan:
         return rooms, zones if (folder / ZONES_NAME).exists() else None
 
     def _other_floor(self, folder: Path) -> FloorRecord | None:
-        """Return the floor of another plan; None of one that was kept without its map."""
-        if not _has_floor(folder):
-            return None
+        """Return the floor of another plan; None where its map is not there, or damaged."""
         try:
             return FloorRecord(*read_floor(folder))
-        except (HomeError, OSError) as error:
-            self._tell(f"rooms and zones of another map are of no use: {error}")
+        except (HomeError, OSError):
             return None
 
     def _taken_over(
@@ -106,7 +103,9 @@ class KeptFloorPlan:
         """Return a plan with what was kept of the map before it changed, and keep that."""
         kept = plan.zones
         for zone in moved(zones or Zones(), old_in_new).all:
-            kept = kept.with_zone(zone)
+            # One of the home's own files that has this name is another one.
+            is_taken = zone.name in kept.names and zone not in kept.all
+            kept = kept.with_zone(replace(zone, name=f"{zone.name} 2") if is_taken else zone)
         taken = _with(plan, self._divided(plan.rooms, rooms, old_in_new), kept)
         self._tell("the map changed since its rooms or zones were edited; they are taken over")
         with self._telling_trouble():
@@ -131,11 +130,14 @@ class KeptFloorPlan:
         """Write the map, by which it is found when that changed, and what is other than before."""
         occupancy = self._floor.occupancy
         if not _has_floor(folder):
-            write_floor(StoredMap(occupancy, self._floor.station), folder)
+            self._write_floor(folder)
         if plan.zones is not before.zones:
             save_zones(plan.zones, occupancy, folder / ZONES_NAME)
         if plan.rooms is not None and plan.rooms is not before.rooms:
             save_rooms(plan.rooms, occupancy, folder / ROOMS_NAME)
+
+    def _write_floor(self, folder: Path) -> None:
+        write_floor(StoredMap(self._floor.occupancy, self._floor.station), folder)
 
     @contextlib.contextmanager
     def _telling_trouble(self) -> Iterator[None]:
@@ -161,11 +163,18 @@ def _has_plan(folder: Path) -> bool:
 
 
 def _has_floor(folder: Path) -> bool:
-    """Whether all of the map was kept there."""
-    return all((folder / name).exists() for name in (MAP_NAME, LAYER_NAME))
+    """Whether all of the map was kept there, and can be read."""
+    try:
+        read_floor(folder)
+    except (HomeError, OSError):
+        return False
+    return True
 
 
 def _edited(folder: Path) -> float:
     """Return when rooms or zones were kept there last, s."""
-    files = [*folder.glob(f"{ROOMS_NAME}*"), *folder.glob(f"{ZONES_NAME}*")]
-    return max((file.stat().st_mtime for file in files), default=0.0)
+    times = [0.0]
+    for name in (ROOMS_NAME, ZONES_NAME):
+        with contextlib.suppress(OSError):
+            times.append((folder / name).stat().st_mtime)
+    return max(times)

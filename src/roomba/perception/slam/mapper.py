@@ -190,7 +190,7 @@ class Mapper:
 
     def told(self, pose: Pose) -> None:
         """Go on from a reported pose of the robot, map frame, right to within a few cm."""
-        self._relocation.is_lost = False
+        self._relocation.is_lost = self._is_elsewhere = False
         if not self.version:
             return
         self._map.begin_at(pose.as_array(), self._follower.way, self.range_noise)

@@ -234,15 +234,44 @@ def test_what_is_taken_over_and_cannot_be_kept_is_taken_over_again(
         assert "Den" in names(client)
 
 
-def test_a_home_that_is_as_before_again_has_the_newest_edits(tmp_path: Path) -> None:
+def test_what_is_kept_of_a_map_is_not_touched_by_another_one(tmp_path: Path) -> None:
     told: list[str] = []
     with lived(tmp_path / "kept", told) as client:
         client.put_zone(RUG)
+        client.rename_room(names(client)[0], "Den")
+        rooms = client.home().rooms
     home = changed(tmp_path / "home", with_post)
     with lived(tmp_path / "kept", told, home) as client:
         client.put_zone(replace(RUG, name="bowl"))
+        client.rename_room("Den", "Study")
     with lived(tmp_path / "kept", told) as client:
-        assert [zone.name for zone in client.home().zones] == ["rug", "bowl"]
+        assert client.home().zones == (RUG,)
+        assert client.home().rooms == rooms
+
+
+def test_a_zone_of_the_home_with_the_same_name_stays(tmp_path: Path) -> None:
+    told: list[str] = []
+    with lived(tmp_path / "kept", told) as client:
+        client.put_zone(RUG)
+    home = Path(changed(tmp_path / "home", with_post))
+    elsewhere = tuple((x + 0.8, y) for x, y in RUG.points)
+    of_home = Zones((Zone("rug", ZoneKind.NO_GO, elsewhere),))
+    save_zones(of_home, load_map(home / MAP_NAME), home / ZONES_NAME)
+    with lived(tmp_path / "kept", told, str(home)) as client:
+        zones = {zone.name: zone.points for zone in client.home().zones}
+        assert zones == {"rug": elsewhere, "rug 2": RUG.points}
+
+
+@pytest.mark.parametrize("name", [LAYER_NAME, "map.pgm"])
+def test_a_damaged_map_beside_a_plan_is_written_anew(tmp_path: Path, name: str) -> None:
+    told: list[str] = []
+    with lived(tmp_path / "kept", told) as client:
+        client.put_zone(RUG)
+    file_in(tmp_path / "kept", name).write_text("damaged", "utf-8")
+    with lived(tmp_path / "kept", told) as client:
+        assert client.home().zones == (RUG,)
+    with lived(tmp_path / "kept", told, changed(tmp_path / "home", with_post)) as client:
+        assert client.home().zones == (RUG,)
 
 
 def test_what_is_kept_without_its_map_gets_it(tmp_path: Path) -> None:

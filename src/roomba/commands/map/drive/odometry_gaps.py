@@ -14,6 +14,8 @@ from roomba.recordings.readings import LidarScan, Odometry, Reading
 _MISSING: Final = 1.0
 _LATER: Final = 3.0
 """s, and times the usual time between two messages of odometry, after which it is missing."""
+_KNOWN: Final = 3
+"""Steps between messages from which their usual time is known."""
 _UNSEEN: Final = 1.5
 """s between two scans, after which these do not tell either how the robot went on."""
 _LATE: Final = 0.5
@@ -48,10 +50,10 @@ def odometry_gaps(readings: Iterable[Reading]) -> list[OdometryGap]:
 
 def told_gaps(gaps: Sequence[OdometryGap]) -> str:
     """Return in words what is done in some gaps."""
-    ended = [gap for gap in gaps if gap.end == math.inf]
-    between = sum(gap.end - gap.begin for gap in gaps if gap.end < math.inf)
+    between = sum(gap.end - gap.begin for gap in gaps if math.isfinite(gap.end - gap.begin))
     told = [f"it stands still or is missing for {between:.0f} s while scans move"] * (between > 0.0)
-    told += ["it ends before the scans do"] * len(ended)
+    told += ["it begins later than the scans do"] * any(gap.begin == -math.inf for gap in gaps)
+    told += ["it ends before the scans do"] * any(gap.end == math.inf for gap in gaps)
     return f"odometry is not used where {' and '.join(told)}: there scans alone were followed"
 
 
@@ -63,7 +65,6 @@ class _GapSeeker:
 
     def __init__(self) -> None:
         self._gaps: list[OdometryGap] = []
-        self._missing: list[OdometryGap] = []
         self._steps: list[float] = []
         self._pose: Pose | None = None
         self._since = self._newest = self._scanned = -math.inf
@@ -75,10 +76,10 @@ class _GapSeeker:
     def hear(self, stamp: float, pose: Pose) -> None:
         """Take a message of odometry."""
         since = self._first_scan if self._pose is None else self._newest
-        is_missing = stamp - since > _MISSING
+        is_missing = stamp - since > self._longest()
         if is_missing and max(self._unseen, stamp - self._scanned) <= _UNSEEN:
             self._end_standstill()
-            self._missing.append(OdometryGap(self._newest, np.nextafter(stamp, -math.inf)))
+            self._gaps.append(OdometryGap(self._newest, np.nextafter(stamp, -math.inf)))
             self._since = stamp
         if self._pose is not None:
             self._steps.append(stamp - self._newest)
@@ -102,11 +103,17 @@ class _GapSeeker:
     def finished(self) -> list[OdometryGap]:
         """Return all gaps, the drive being over."""
         self._end_standstill()
-        least = max(_MISSING, _LATER * float(np.median(self._steps or [0.0])))
-        gaps = self._gaps + [gap for gap in self._missing if gap.end - gap.begin > least]
-        if self._pose is not None and self._scanned - self._newest > least:
-            gaps.append(OdometryGap(self._newest, math.inf))
-        return sorted(gaps)
+        if self._pose is not None and self._scanned - self._newest > self._longest():
+            self._gaps.append(OdometryGap(self._newest, math.inf))
+        return self._gaps
+
+    def _longest(self) -> float:
+        """Return the time without odometry after which it is missing, s, by what came so far."""
+        if self._pose is None:
+            return _MISSING
+        if len(self._steps) < _KNOWN:
+            return math.inf
+        return max(_MISSING, _LATER * float(np.median(self._steps)))
 
     def _end_standstill(self) -> None:
         if self._has_moved:

@@ -110,6 +110,7 @@ def test_odometry_that_begins_late_is_missing_before() -> None:
     (gap,) = odometry_gaps(late)
     assert gap.begin == -math.inf
     assert 19.9 < gap.end < 20.0
+    assert "it begins later than the scans do: there" in told_gaps([gap])
     soon = [e for e in drive() if not (isinstance(e.value, Odometry) and e.stamp < 0.5)]
     assert odometry_gaps(soon) == []
 
@@ -148,3 +149,15 @@ def test_odometry_that_is_rare_is_not_missing(period: float) -> None:
     assert odometry_gaps(rare) == []
     missing = [e for e in rare if not (isinstance(e.value, Odometry) and 20.0 < e.stamp < 27.0)]
     assert len(odometry_gaps(missing)) == 1
+
+
+def test_odometry_that_is_rare_and_stands_still_is_a_gap() -> None:
+    rare = [e for e in drive(still=(20.0, 45.0)) if not isinstance(e.value, Odometry)]
+    rare += [
+        e
+        for e in drive(still=(20.0, 45.0))
+        if isinstance(e.value, Odometry) and round(10.0 * e.stamp) % 12 == 0
+    ]
+    (gap,) = odometry_gaps(sorted(rare, key=lambda reading: reading.stamp))
+    assert gap.begin == pytest.approx(19.2, abs=1.3)
+    assert gap.end == pytest.approx(45.0, abs=1.3)
