@@ -195,6 +195,11 @@ class PartsConfig(Frozen):
     """So many must be found where the part lies then,"""
     clearer: Annotated[float, Field(ge=1.0, le=10.0)] = 2.0
     """and this many times as many as elsewhere."""
+    seen_through: Ratio = 0.05
+    """Share of a part's beams that go through surfaces seen before: with more it does not lie where
+    it is thought to lie, and its robot was carried."""
+    cell: Length = 0.1
+    """m; of the grid of these surfaces."""
 
 
 class RelocationConfig(Frozen):

@@ -26,6 +26,7 @@ from roomba.perception.slam.following.scan_kernels import Following
 from roomba.perception.slam.mapper_estimate import estimate_at, lost_estimate
 from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
 from roomba.perception.slam.submap_map import SubmapMap
+from roomba.perception.slam.submaps.parts import Carried
 from roomba.perception.slam.submaps.pose_graph import relative_to
 from roomba.perception.slam.submaps.relocation import MapRelocation
 from roomba.perception.slam.submaps.submap_graph import CLOUD
@@ -123,8 +124,7 @@ class Mapper:
             self._relocate(stamp, points)
             return
         if self._is_elsewhere or self._finding_back.is_without_hold(follower):
-            is_carried = self._is_elsewhere or self._finding_back.shows_carried
-            self._begin_piece(is_carried=is_carried)
+            self._begin_piece(Carried.TOLD if self._is_elsewhere else self._seen_carried())
         follower.follow(stamp)
         self.finish_scan(stamp, ranges)
 
@@ -132,10 +132,10 @@ class Mapper:
         """Do what comes after the newest scan was followed: kernels left that, or :meth:`see`."""
         follower = self._follower
         if self.version and self._finding_back.is_due:
-            is_carried = self._finding_back.shows_carried
+            seen = self._seen_carried()
             has_leapt = self._finding_back.search(follower, self._map.clouds())
             if has_leapt:
-                self._begin_piece(is_carried=is_carried)
+                self._begin_piece(seen)
         follower.compare_turns(stamp)
         points = follower.points
         if self._is_keyframe():
@@ -304,15 +304,18 @@ class Mapper:
         if found is not None:
             self.told(Pose(*found.tolist()))
 
-    def _begin_piece(self, *, is_carried: bool) -> None:
+    def _seen_carried(self) -> Carried | None:
+        return Carried.SEEN if self._finding_back.shows_carried else None
+
+    def _begin_piece(self, carried: Carried | None) -> None:
         """Begin a submap that scans are matched to, though none tells where it lies.
 
-        That may be anywhere if the robot ``is_carried``.
+        That may be anywhere if the robot was ``carried``.
         """
         follower, self._is_elsewhere = self._follower, False
         unsure = follower.unsure_way, follower.unsure_turn
         self._map.begin_piece(
-            follower.here, follower.way, unsure, self.range_noise, is_carried=is_carried
+            follower.here, follower.way, unsure, self.range_noise, carried=carried
         )
         follower.begin_piece()
         self._finding_back.begin_again()

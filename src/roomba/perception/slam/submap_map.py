@@ -14,6 +14,7 @@ from roomba.perception.slam.drawing.submap_drawing import SubmapDrawing
 from roomba.perception.slam.finishing.finish import finish
 from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
 from roomba.perception.slam.scan_matching.surfels import SurfelGrid
+from roomba.perception.slam.submaps.parts import Carried
 from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe, moved
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
 
@@ -97,15 +98,15 @@ class SubmapMap:
         unsure: tuple[float, float],
         range_noise: float,
         *,
-        is_carried: bool,
+        carried: Carried | None,
     ) -> None:
         """Begin a submap that scans are matched to, though none tells where it lies.
 
         As :meth:`begin`; ``unsure`` is what was driven, m, and turned, rad, unconfirmed. It may
-        lie anywhere if the robot ``is_carried``.
+        lie anywhere if the robot was ``carried``.
         """
         self.close(range_noise)
-        self.graph.begin_piece(here, way, *unsure, is_carried=is_carried)
+        self.graph.begin_piece(here, way, *unsure, carried=carried)
         self._enter_newest([])
 
     def begin_at(self, pose: Floats, way: float, range_noise: float) -> None:

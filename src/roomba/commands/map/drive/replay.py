@@ -112,8 +112,8 @@ class MapReplay:
         apart, laid = self.mapper.ways_apart, self.mapper.parts_laid
         if laid:
             told.append(
-                "the robot was carried elsewhere: what it saw from then on was found on the rest "
-                f"of the map, and is drawn there (parts of the map: {laid})"
+                "the robot seems to have been carried: what it saw from then on was found on the "
+                f"rest of the map, and is drawn there (parts of the map: {laid})"
             )
         if apart:
             told.append(

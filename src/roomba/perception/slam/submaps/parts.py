@@ -1,16 +1,17 @@
 """Parts of a map that no scan joined to the others, and where they lie on these.
 
 When scans stop to fit, the map goes on in a piece where dead reckoning puts it. A robot that was
-carried is elsewhere. Samples of such a part, some keyframes each, are then looked for on all that
-is before it, at any heading. The part lies where most of them are found, each by itself, if clearly
-fewer are found elsewhere.
+carried is elsewhere, and what it sees is seen through walls as it is thought to lie. Samples of
+such a part, some keyframes each, are then looked for on all that is before it, at any heading. The
+part lies where most of them are found, each by itself, if clearly fewer are found elsewhere.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from enum import Enum
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +19,20 @@ from numpy.typing import NDArray
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.slam.submaps.places import ClearPlace, clearly_best, differ
 from roomba.perception.slam.submaps.pose_graph import Link, composed, inverse, relative_to
-from roomba.perception.slam.submaps.submap import Submap, cloud_of
+from roomba.perception.slam.submaps.submap import Keyframe, Submap, cloud_of, moved
 
 Floats = NDArray[np.float64]
 Labels = NDArray[np.int64]
+
+_SHARES: Final = np.linspace(0.2, 0.8, 13)
+"""Of a beam's length, where it is looked at: not beside the robot, nor beside what it met."""
+
+
+class Carried(Enum):
+    """How it is known that the robot was carried."""
+
+    TOLD = "its wheels hung in the air"
+    SEEN = "scans stopped to fit from one to the next"
 
 
 class FoundPart(NamedTuple):
@@ -62,6 +73,46 @@ def hanging_on(part: int, labels: Labels, links: Sequence[Link]) -> NDArray[np.b
         if link.is_guessed and hanging[link.parent] and labels[link.child] > part:
             hanging |= labels == labels[link.child]
     return hanging
+
+
+def is_contradicted(
+    part: int, labels: Labels, submaps: Sequence[Submap], poses: Floats, config: MappingConfig
+) -> bool:
+    """Whether a part cannot lie where it is thought to: it was seen through what stands there."""
+    return seen_through(part, labels, submaps, poses, config) > config.parts.seen_through
+
+
+def seen_through(
+    part: int, labels: Labels, submaps: Sequence[Submap], poses: Floats, config: MappingConfig
+) -> float:
+    """Return the share of a part's beams, 0..1, that go through surfaces seen before it."""
+    cell, before = config.parts.cell, np.flatnonzero(labels < part).tolist()
+    clouds = [moved(submaps[number].cloud, poses[number])[:, :2] for number in before]
+    surfaces = np.floor(np.concatenate(clouds) / cell).astype(np.int64)
+    corner = surfaces.min(axis=0)
+    stands = np.zeros(surfaces.max(axis=0) - corner + 1, np.bool_)
+    stands[tuple((surfaces - corner).T)] = True
+    through = [
+        _go_through(frame, pose, stands, corner, cell)
+        for number in np.flatnonzero(labels == part).tolist()
+        for frame, pose in zip(
+            submaps[number].keyframes, submaps[number].poses(poses[number]), strict=True
+        )
+    ]
+    return float(np.concatenate(through).mean()) if through else 0.0
+
+
+def _go_through(
+    frame: Keyframe, pose: Floats, stands: NDArray[np.bool_], corner: Floats, cell: float
+) -> NDArray[np.bool_]:
+    """Return which beams of a keyframe go through cells in which something stands, bool [n]."""
+    ends = moved(frame.points, pose)[:, :2]
+    along = pose[:2] + _SHARES[:, None, None] * (ends - pose[:2])
+    cells = np.floor(along / cell).astype(np.int64) - corner
+    inside = np.all((cells >= 0) & (cells < stands.shape), axis=2)
+    cells[~inside] = 0
+    met: NDArray[np.bool_] = (stands[cells[..., 0], cells[..., 1]] & inside).any(axis=0)
+    return met
 
 
 def found_part(

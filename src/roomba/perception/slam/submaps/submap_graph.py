@@ -15,9 +15,11 @@ from roomba.configuration.mapping import MappingConfig
 from roomba.perception.slam.submaps.agreement import is_backed, is_far
 from roomba.perception.slam.submaps.linking import Linker
 from roomba.perception.slam.submaps.parts import (
+    Carried,
     FoundPart,
     found_part,
     hanging_on,
+    is_contradicted,
     part_labels,
 )
 from roomba.perception.slam.submaps.pose_graph import (
@@ -58,8 +60,9 @@ class SubmapGraph:
         self.poses = start[None].copy()
         self.links: list[Link] = []
         self._waiting: list[Link] = []
-        self._anywhere: set[int] = set()
-        """Submaps that began where the robot was carried; another process forgets them."""
+        self._anywhere: dict[int, bool] = {}
+        """Submaps that began where the robot was carried, and whether its wheels told that; another
+        process forgets them."""
         self.laid = 0
         """Parts that :meth:`join_parts` found."""
 
@@ -112,16 +115,16 @@ class SubmapGraph:
         unsure_way: float,
         unsure_turn: float,
         *,
-        is_carried: bool = False,
+        carried: Carried | None = None,
     ) -> None:
         """Begin a submap at a pose of the newest one, [3].
 
         No scan confirmed what was driven, m, and turned, rad, before it. It may lie anywhere if the
-        robot ``is_carried``.
+        robot was ``carried``.
         """
         count = len(self.submaps)
-        if is_carried:
-            self._anywhere.add(count)
+        if carried is not None:
+            self._anywhere[count] = carried is Carried.TOLD
         piece = self._config.pieces
         away = piece.deviation + piece.share * unsure_way
         turn = piece.heading_deviation + piece.share * unsure_turn
@@ -168,10 +171,15 @@ class SubmapGraph:
     def join_parts(self) -> None:
         """Lay parts that begin where the robot was carried where they are found on the rest.
 
-        Other parts lie where dead reckoning says, however like another place they look.
+        Other parts lie where dead reckoning says, however like another place they look; so do those
+        to which it only seems to have been carried, and that may well be there.
         """
         labels = part_labels(len(self.submaps), self.links)
-        for part in sorted(self._anywhere & set(labels.tolist())):
+        for part in sorted(self._anywhere.keys() & set(labels.tolist())):
+            if not self._anywhere[part] and not is_contradicted(
+                part, labels, self.submaps, self.poses, self._config
+            ):
+                continue
             found = found_part(part, labels, self.submaps, self.poses, self._config)
             if found is not None:
                 self._lay_part(found, hanging_on(part, labels, self.links))

@@ -134,7 +134,7 @@ def test_what_stops_to_fit_from_one_scan_to_the_next_was_carried() -> None:
         ranges = EYE.scan(here.compose(at))[BEAMS] if tick < 10 else np.full(len(ANGLES), 0.9)
         mapper.move(0.1 * tick, at, 0.0)
         mapper.see(0.1 * tick, ranges.astype(np.float32), LIDAR)
-    assert mapper._map.graph._anywhere == {len(mapper._map.graph.submaps) - 1}
+    assert mapper._map.graph._anywhere == {len(mapper._map.graph.submaps) - 1: False}
 
 
 CORNER = np.array(

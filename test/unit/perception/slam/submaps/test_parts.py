@@ -125,7 +125,13 @@ def test_the_graph_lays_a_part_and_what_hangs_on_it_where_it_was_found() -> None
     # The robot was not carried: however like another place it looks, the part stays.
     assert graph.laid == 0
     assert np.array_equal(graph.poses[2:4], thought)
-    graph._anywhere.add(2)
+    # Nor where it seems to have been carried, and all could be where it is thought to be.
+    graph._anywhere[2] = False
+    far = graph.poses.copy()
+    graph.poses[2:] += (30.0, 0.0, 0.0)
+    graph.join_parts()
+    assert graph.laid == 0
+    graph.poses = far
     graph.join_parts()
     assert graph.laid == 1
     assert graph.ways_apart(9.0) == pytest.approx([1.0])
@@ -153,6 +159,15 @@ def test_parts_without_a_scan_are_none() -> None:
     graph.submaps[0].keyframes = submap(Pose(1.0, 1.0, 0.5), FURNISHED, 1).keyframes
     graph.begin_piece(np.zeros(3), 1.0, 0.0, 0.0)
     assert graph.ways_apart(1.0) == []
+
+
+def test_a_part_is_contradicted_where_surfaces_stand_on_the_way() -> None:
+    known, at = seen([Pose(1.0, 1.0, 0.5), Pose(2.4, 1.6, 2.0)], FURNISHED, Pose())
+    labels = np.array([0, 0, 2, 2])
+    for thought, contradicted in ((Pose(), False), (CARRIED, True), (Pose(-30.0), False)):
+        part, there = seen([Pose(1.4, 2.0, -1.0), Pose(3.0, 1.2, 0.5)], FURNISHED, thought)
+        poses = np.vstack((at, there))
+        assert parts.is_contradicted(2, labels, known + part, poses, CONFIG) is contradicted
 
 
 def test_a_map_in_one_part_stays_as_it_is() -> None:
