@@ -26,6 +26,8 @@ Labels = NDArray[np.int64]
 
 _SHARES: Final = np.linspace(0.2, 0.8, 13)
 """Of a beam's length, where it is looked at: not beside the robot, nor beside what it met."""
+_ROW: Final = 1 << 31
+"""More cells than any map has in a row."""
 
 
 class Carried(Enum):
@@ -88,31 +90,32 @@ def seen_through(
     """Return the share of a part's beams, 0..1, that go through surfaces seen before it."""
     cell, before = config.parts.cell, np.flatnonzero(labels < part).tolist()
     clouds = [moved(submaps[number].cloud, poses[number])[:, :2] for number in before]
-    surfaces = np.floor(np.concatenate(clouds) / cell).astype(np.int64)
-    corner = surfaces.min(axis=0)
-    stands = np.zeros(surfaces.max(axis=0) - corner + 1, np.bool_)
-    stands[tuple((surfaces - corner).T)] = True
+    surfaces = np.unique(_cells(np.concatenate(clouds), cell))
     through = [
-        _go_through(frame, pose, stands, corner, cell)
+        _go_through(frame, pose, surfaces, cell)
         for number in np.flatnonzero(labels == part).tolist()
         for frame, pose in zip(
             submaps[number].keyframes, submaps[number].poses(poses[number]), strict=True
         )
     ]
-    return float(np.concatenate(through).mean()) if through else 0.0
+    beams = np.concatenate(through) if through else np.zeros(0, np.bool_)
+    return float(beams.mean()) if len(beams) else 0.0
 
 
 def _go_through(
-    frame: Keyframe, pose: Floats, stands: NDArray[np.bool_], corner: Floats, cell: float
+    frame: Keyframe, pose: Floats, surfaces: NDArray[np.int64], cell: float
 ) -> NDArray[np.bool_]:
     """Return which beams of a keyframe go through cells in which something stands, bool [n]."""
     ends = moved(frame.points, pose)[:, :2]
     along = pose[:2] + _SHARES[:, None, None] * (ends - pose[:2])
-    cells = np.floor(along / cell).astype(np.int64) - corner
-    inside = np.all((cells >= 0) & (cells < stands.shape), axis=2)
-    cells[~inside] = 0
-    met: NDArray[np.bool_] = (stands[cells[..., 0], cells[..., 1]] & inside).any(axis=0)
+    met: NDArray[np.bool_] = np.isin(_cells(along, cell), surfaces).any(axis=0)
     return met
+
+
+def _cells(points: Floats, cell: float) -> NDArray[np.int64]:
+    """Return a number for the cell of each point, [..., 2], m: parts may be far from each other."""
+    cells = np.floor(points / cell).astype(np.int64)
+    return np.asarray(cells[..., 0] * _ROW + cells[..., 1])
 
 
 def found_part(

@@ -170,6 +170,13 @@ def test_a_part_is_contradicted_where_surfaces_stand_on_the_way() -> None:
         assert parts.is_contradicted(2, labels, known + part, poses, CONFIG) is contradicted
 
 
+def test_where_nothing_was_seen_nothing_is_seen_through() -> None:
+    whole, blind = submap(Pose(1.0, 1.0, 0.5), FURNISHED), Submap(0.0)
+    labels, poses = np.array([0, 1]), np.zeros((2, 3))
+    assert parts.seen_through(1, labels, [blind, whole], poses, CONFIG) == 0.0
+    assert parts.seen_through(1, labels, [whole, blind], poses, CONFIG) == 0.0
+
+
 def test_a_map_in_one_part_stays_as_it_is() -> None:
     graph = SubmapGraph(CONFIG, LOCALIZATION, np.zeros(3))
     graph.begin(np.array([1.0, 0.0, math.pi / 2]), 1.0)
