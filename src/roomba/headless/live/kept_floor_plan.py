@@ -28,6 +28,7 @@ from roomba.storage.map_folder import (
 )
 from roomba.storage.rooms import load_rooms, save_rooms
 from roomba.storage.zones import load_zones, save_zones
+from roomba.vocabulary import LONGEST_NAME
 
 FOLDER: Final = "floor_plans"
 """The name of the folder of these files."""
@@ -105,7 +106,8 @@ class KeptFloorPlan:
         for zone in moved(zones or Zones(), old_in_new).all:
             # One of the home's own files that has this name is another one.
             is_taken = zone.name in kept.names and zone not in kept.all
-            kept = kept.with_zone(replace(zone, name=f"{zone.name} 2") if is_taken else zone)
+            name = f"{zone.name[: LONGEST_NAME - 2]} 2" if is_taken else zone.name
+            kept = kept.with_zone(replace(zone, name=name))
         taken = _with(plan, self._divided(plan.rooms, rooms, old_in_new), kept)
         self._tell("the map changed since its rooms or zones were edited; they are taken over")
         with self._telling_trouble():
