@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection
 from dataclasses import dataclass
 from enum import Enum
@@ -91,6 +92,16 @@ def fault_of_name(name: str) -> str:
         return ""
     # Of an endless one, the beginning tells enough.
     return f"expected a name of 1 to {LONGEST_NAME} printable characters, got {name[:40]!r}"
+
+
+def another_name(name: str, taken: Collection[str]) -> str:
+    """Return a name with the first number, "X 2", "X 3" ..., with which none is ``taken``.
+
+    It is cut so that it is no longer than a name may be.
+    """
+    ends = (f" {number}" for number in itertools.count(2))
+    names = (f"{name[: LONGEST_NAME - len(end)].rstrip()}{end}" for end in ends)
+    return next(new for new in names if new not in taken)
 
 
 def listed(names: Collection[str]) -> str:

@@ -11,6 +11,7 @@ from typing import Final
 
 from roomba.configuration.mapping import FloorsConfig
 from roomba.errors import HomeError, RoomsError
+from roomba.files.home_layer import LAYER_NAME
 from roomba.geometry import Pose
 from roomba.headless.live.floor_plan import FloorPlan
 from roomba.perception.floors.carry_over import carry_over, divided_as, moved
@@ -28,7 +29,7 @@ from roomba.storage.map_folder import (
 )
 from roomba.storage.rooms import load_rooms, save_rooms
 from roomba.storage.zones import load_zones, save_zones
-from roomba.vocabulary import LONGEST_NAME
+from roomba.vocabulary import another_name
 
 FOLDER: Final = "floor_plans"
 """The name of the folder of these files."""
@@ -63,7 +64,7 @@ class KeptFloorPlan:
             return self._own_plan(plan)
         others = [each for each in self._folder.glob("[!.]*") if _has_plan(each)]
         for folder in sorted(others, key=_edited, reverse=True):
-            floor = self._other_floor(folder)
+            floor = _floor_in(folder)
             match = None if floor is None else match_floors(self._floor, floor, self._config)
             if floor is not None and match is not None and match.is_same:
                 return self._taken_over(plan, *self._read(folder, floor), match.old_in_new)
@@ -77,7 +78,7 @@ class KeptFloorPlan:
         rooms, zones = self._read(self._own, self._floor)
         # Older programs kept no map beside them, and one that is damaged is of no use.
         with self._telling_trouble():
-            if not _has_floor(self._own):
+            if _floor_in(self._own) is None:
                 self._write_floor(self._own)
         return _with(plan, rooms, zones)
 
@@ -91,13 +92,6 @@ class KeptFloorPlan:
             rooms = None
         return rooms, zones if (folder / ZONES_NAME).exists() else None
 
-    def _other_floor(self, folder: Path) -> FloorRecord | None:
-        """Return the floor of another plan; None where its map is not there, or damaged."""
-        try:
-            return FloorRecord(*read_floor(folder))
-        except (HomeError, OSError):
-            return None
-
     def _taken_over(
         self, plan: FloorPlan, rooms: Rooms | None, zones: Zones | None, old_in_new: Pose
     ) -> FloorPlan:
@@ -106,7 +100,7 @@ class KeptFloorPlan:
         for zone in moved(zones or Zones(), old_in_new).all:
             # One of the home's own files that has this name is another one.
             is_taken = zone.name in kept.names and zone not in kept.all
-            name = f"{zone.name[: LONGEST_NAME - 2]} 2" if is_taken else zone.name
+            name = another_name(zone.name, kept.names) if is_taken else zone.name
             kept = kept.with_zone(replace(zone, name=name))
         taken = _with(plan, self._divided(plan.rooms, rooms, old_in_new), kept)
         self._tell("the map changed since its rooms or zones were edited; they are taken over")
@@ -131,7 +125,7 @@ class KeptFloorPlan:
     def _write(self, folder: Path, before: FloorPlan, plan: FloorPlan) -> None:
         """Write the map, by which it is found when that changed, and what is other than before."""
         occupancy = self._floor.occupancy
-        if not _has_floor(folder):
+        if not (folder / LAYER_NAME).exists():  # the last file of a map
             self._write_floor(folder)
         if plan.zones is not before.zones:
             save_zones(plan.zones, occupancy, folder / ZONES_NAME)
@@ -164,13 +158,12 @@ def _has_plan(folder: Path) -> bool:
     return any(any(folder.glob(f"{name}*")) for name in (ROOMS_NAME, ZONES_NAME))
 
 
-def _has_floor(folder: Path) -> bool:
-    """Whether all of the map was kept there, and can be read."""
+def _floor_in(folder: Path) -> FloorRecord | None:
+    """Return the map beside a plan; None where it is not there, or damaged."""
     try:
-        read_floor(folder)
+        return FloorRecord(*read_floor(folder))
     except (HomeError, OSError):
-        return False
-    return True
+        return None
 
 
 def _edited(folder: Path) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -19,7 +18,7 @@ from roomba.perception.rooms.floor_kernels import contacts
 from roomba.perception.rooms.outlines import cells_inside, line_on, outline_of
 from roomba.perception.rooms.segmentation import room_labels
 from roomba.raster.distance import distance_to_nearest
-from roomba.vocabulary import LONGEST_NAME, fault_of_name, listed
+from roomba.vocabulary import LONGEST_NAME, another_name, fault_of_name, listed
 
 Point = tuple[float, float]
 
@@ -198,8 +197,7 @@ class Rooms:
             )
         names = list(self.names)
         for _ in range(int(labels.max()) - len(names)):
-            tries = (_numbered(name, number) for number in itertools.count(2))
-            names.append(next(new for new in tries if new not in names))
+            names.append(another_name(name, names))
         return Rooms(self.frame, labels, tuple(names))
 
     def _cells(self, label: int) -> NDArray[np.bool_]:
@@ -209,12 +207,6 @@ class Rooms:
             )
         cells: NDArray[np.bool_] = self.labels == label
         return cells
-
-
-def _numbered(name: str, number: int) -> str:
-    """Return a name with a number, "X 2", cut so that it is no longer than a name may be."""
-    end = f" {number}"
-    return f"{name[: LONGEST_NAME - len(end)].rstrip()}{end}"
 
 
 def segment(occupancy: OccupancyMap, config: RoomsConfig | None = None) -> Rooms:

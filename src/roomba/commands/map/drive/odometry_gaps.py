@@ -76,7 +76,8 @@ class _GapSeeker:
     def hear(self, stamp: float, pose: Pose) -> None:
         """Take a message of odometry."""
         since = self._first_scan if self._pose is None else self._newest
-        is_missing = stamp - since > self._longest()
+        # What is usual takes a while to reckon, and is seldom asked for.
+        is_missing = stamp - since > _MISSING and stamp - since > self._longest()
         if is_missing and max(self._unseen, stamp - self._scanned) <= _UNSEEN:
             self._end_standstill()
             self._gaps.append(OdometryGap(self._newest, np.nextafter(stamp, -math.inf)))

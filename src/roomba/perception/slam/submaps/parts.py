@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
-from roomba.perception.slam.submaps.places import ClearPlace, clearly_best, differ
+from roomba.perception.matching.pose_kernels import is_apart
+from roomba.perception.slam.submaps.places import ClearPlace, clearly_best
 from roomba.perception.slam.submaps.pose_graph import Link, composed, inverse, relative_to
 from roomba.perception.slam.submaps.submap import Keyframe, Submap, cloud_of, moved
 
@@ -188,4 +189,4 @@ def _agree(one: _Found, other: _Found, poses: Floats, config: MappingConfig) -> 
     expected = composed(one.place.pose[None], step)[0]
     backing, drifted = config.backing, config.drift * math.hypot(step[0, 0], step[0, 1])
     way = backing.same_place + drifted
-    return not differ(other.place.pose, expected, way, backing.same_heading)
+    return not is_apart(other.place.pose, expected, way, backing.same_heading)

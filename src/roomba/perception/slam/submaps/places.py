@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.angles import wrapped
 from roomba.configuration.mapping import MappingConfig
+from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher, is_in_reach
 from roomba.perception.slam.submaps.pose_graph import composed
 from roomba.perception.slam.submaps.submap import Submap
@@ -53,12 +53,6 @@ def clearly_best(
     return [_clear(places, mapping) for places in found]
 
 
-def differ(pose: Floats, other: Floats, way: float, turn: float) -> bool:
-    """Whether two poses [3] are more than ``way``, m, or ``turn``, rad, apart."""
-    away = math.hypot(pose[0] - other[0], pose[1] - other[1])
-    return away > way or abs(wrapped(pose[2] - other[2])) > turn
-
-
 def _clear(places: list[ClearPlace], mapping: MappingConfig) -> ClearPlace | None:
     """Return the best of some places, None if another one is nearly as good."""
     if not places:
@@ -67,6 +61,6 @@ def _clear(places: list[ClearPlace], mapping: MappingConfig) -> ClearPlace | Non
     others = [
         place.score
         for place in places
-        if differ(place.pose, best.pose, config.elsewhere_way, config.elsewhere_turn)
+        if is_apart(place.pose, best.pose, config.elsewhere_way, config.elsewhere_turn)
     ]
     return best if max(others, default=0.0) <= config.clearly * best.score else None

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.pose_kernels import is_apart
-from roomba.perception.slam.submaps.places import clearly_best, differ
+from roomba.perception.slam.submaps.places import clearly_best
 from roomba.perception.slam.submaps.pose_graph import composed, relative_to
 from roomba.perception.slam.submaps.submap import Submap
 
@@ -67,6 +67,6 @@ class MapRelocation:
         if found is None or earlier is None or before is None:
             return None
         expected = composed(earlier[None], relative_to(before[None], reckoned[None]))[0]
-        if differ(found, expected, config.same_place, config.same_heading):
+        if is_apart(found, expected, config.same_place, config.same_heading):
             return None
         return found

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose
+from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.slam.submaps import parts
 from roomba.perception.slam.submaps.parts import found_part, hanging_on, part_labels
-from roomba.perception.slam.submaps.places import differ
 from roomba.perception.slam.submaps.pose_graph import Link
 from roomba.perception.slam.submaps.submap import Keyframe, Submap
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
@@ -77,7 +77,7 @@ def test_a_part_is_found_where_it_truly_lies() -> None:
     labels, poses = np.array([0, 0, 2, 2]), np.vstack((at, thought))
     found = found_part(2, labels, known + part, poses, CONFIG)
     assert found is not None
-    assert not differ(found.moved, row(CARRIED), 0.1, 0.05)
+    assert not is_apart(found.moved, row(CARRIED), 0.1, 0.05)
     assert set(found.parents) == {2, 3}
     assert set(found.parents.values()) <= {0, 1}
 
@@ -137,7 +137,7 @@ def test_the_graph_lays_a_part_and_what_hangs_on_it_where_it_was_found() -> None
     assert graph.ways_apart(9.0) == pytest.approx([1.0])
     true = [Pose(1.4, 2.0, -1.0), Pose(3.0, 1.2, 0.5), Pose(3.2, 1.4, 0.9)]
     for pose, expected in zip(graph.poses[2:], true, strict=True):
-        assert not differ(pose, row(expected), 0.03, 0.02)
+        assert not is_apart(pose, row(expected), 0.03, 0.02)
     assert np.array_equal(graph.poses[0], at[0])
 
 

@@ -9,7 +9,8 @@ from fixtures.robots.mapped import FURNISHED, points_of, row
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose
-from roomba.perception.slam.submaps.places import clearly_best, differ
+from roomba.perception.matching.pose_kernels import is_apart
+from roomba.perception.slam.submaps.places import clearly_best
 from roomba.perception.slam.submaps.submap import Keyframe, Submap
 from roomba.world.home.home import Home
 
@@ -35,7 +36,7 @@ def test_points_are_found_at_any_heading_and_the_submap_is_told() -> None:
         [cloud], submaps, np.array([row(each) for each in poses]), CONFIG, LEAST
     )
     assert found is not None
-    assert not differ(found.pose, row(there), 0.05, 0.02)
+    assert not is_apart(found.pose, row(there), 0.05, 0.02)
     assert found.submap in (0, 1)
     assert 0.8 < found.score <= 1.0
 
@@ -48,7 +49,7 @@ def test_where_two_places_look_alike_none_is_best_but_of_the_others_one_is() -> 
     assert clearly_best(clouds, submaps, rows, CONFIG, LEAST)[0] is None
     one, none = clearly_best(clouds, submaps[:1], rows[:1], CONFIG, 0.8)
     assert one is not None
-    assert not differ(one.pose, row(Pose(1.5, 1.0, 1.0)), 0.05, 0.02)
+    assert not is_apart(one.pose, row(Pose(1.5, 1.0, 1.0)), 0.05, 0.02)
     assert none is None  # of another home
 
 
