@@ -39,8 +39,7 @@ class Wanted:
     """What is to be read: names of channels, and where the lidar is on the robot; None: see.
 
     ``laser_is_upside_down`` says how it hangs where ``laser`` says where; None: as recorded.
-    ``beside`` are the kinds that are read, too, where they are there. A drive without odometry is
-    refused if it ``needs_odometry``.
+    ``beside`` are the kinds that are read, too, where they are there.
     """
 
     scan: str | None = None
@@ -49,7 +48,6 @@ class Wanted:
     laser: Pose | None = None
     laser_is_upside_down: bool | None = None
     beside: frozenset[Kind] = frozenset({Kind.TRUTH, Kind.LIFTED})
-    needs_odometry: bool = True
 
     def name(self, kind: Kind) -> str | None:
         """Return the name that was given for a kind."""
@@ -83,21 +81,32 @@ def chosen(paths: Sequence[Path], channels: Sequence[Channel], wanted: Wanted) -
     """Return what to read of the ``channels`` of all logs; raises LogError."""
     notes: list[str] = []
     scan = _required(paths, channels, Kind.SCAN, wanted, "", notes)
-    is_missing = not any(channel.kind is Kind.ODOMETRY for channel in channels)
-    if is_missing and not wanted.needs_odometry and wanted.odometry is None:
-        notes.append("no odometry was recorded: it goes by scans alone")
-        return Chosen((scan,), tuple(notes))
-    odometry = _required(paths, channels, Kind.ODOMETRY, wanted, scan.name, notes)
-    taken = [scan, odometry]
-    gyro = _gyro(paths, channels, wanted, odometry.name, notes)
+    motion = _odometry_and_gyro(paths, channels, wanted, scan, notes)
+    robot = motion[0] if motion else scan
     beside = [
         channel
         for kind in sorted(wanted.beside)
-        for channel in _usual(channels, kind, odometry.name, _BESIDE.get(kind, ()))
+        for channel in _usual(channels, kind, robot.name, _BESIDE.get(kind, ()))
     ]
     if Kind.TRUTH in wanted.beside:
         beside += [channel for channel in channels if channel.kind is Kind.TRUTH][:1]
-    return Chosen((*taken, *gyro, *beside), tuple(notes))
+    return Chosen((scan, *motion, *beside), tuple(notes))
+
+
+def _odometry_and_gyro(
+    paths: Sequence[Path],
+    channels: Sequence[Channel],
+    wanted: Wanted,
+    scan: Channel,
+    notes: list[str],
+) -> list[Channel]:
+    """Return the channels of how it moved, of the robot that has the scan; [] if there are none."""
+    is_missing = not any(channel.kind is Kind.ODOMETRY for channel in channels)
+    if is_missing and wanted.odometry is None:
+        notes.append("no odometry was recorded: it goes by scans alone")
+        return []
+    odometry = _required(paths, channels, Kind.ODOMETRY, wanted, scan.name, notes)
+    return [odometry, *_gyro(paths, channels, wanted, odometry.name, notes)]
 
 
 def _required(

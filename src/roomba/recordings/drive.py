@@ -51,8 +51,8 @@ class LoggedDrive:
     def __init__(self, paths: Sequence[Path], wanted: Wanted | None = None) -> None:
         """Open; raises LogError."""
         wanted = wanted or Wanted()
-        self.keeps_odometry = wanted.needs_odometry or wanted.odometry is not None
-        """Whether it does not go by scans alone: odometry is needed, or was named."""
+        self.keeps_odometry = wanted.odometry is not None
+        """Whether it does not go by scans alone: odometry was named."""
         self.counts = StampCounts()
         self.refused: Counter[str] = Counter()
         """How many messages of what could not be used."""
@@ -97,6 +97,11 @@ class LoggedDrive:
     def odometry_frame(self) -> str:
         """The frame in which odometry tells poses."""
         return self._frames.odometry
+
+    @property
+    def body_frame(self) -> str:
+        """The frame of the robot's body."""
+        return self._frames.body
 
     @property
     def notes(self) -> list[str]:

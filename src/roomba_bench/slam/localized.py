@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from roomba.commands.localize.replay import Replay, Row
 from roomba.commands.map.drive.mapped import MappedDrive
+from roomba.commands.map.drive.whole_odometry import whole_odometry_of
 from roomba.configuration.robot import load_robot_config
 from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import CONFIGURATION
@@ -140,8 +141,9 @@ def coarsened(occupancy: OccupancyMap, times: int) -> OccupancyMap:
 
 def _rows(log: Path, occupancy: OccupancyMap, start: Pose | None) -> list[Row]:
     """Return what was known at each moment of a drive."""
-    replay = Replay(occupancy, load_robot_config(CONFIGURATION / "robot.yaml"), start)
+    config = load_robot_config(CONFIGURATION / "robot.yaml")
     with LoggedDrive([log]) as drive:
+        replay = Replay(occupancy, config, whole_odometry_of(drive, config), start)
         heard = (replay.hear(reading) for reading in drive.readings())
         return [row for row in heard if row is not None]
 
@@ -152,8 +154,8 @@ def _judged(cells: str, is_told: bool, rows: list[Row], trajectory: Floats) -> F
     if not usable:
         return Followed(cells, is_told, np.array([np.inf]), np.array([np.inf]), None)
     first, last = trajectory[0, 0], trajectory[-1, 0]
-    kept = [row for row in rows[usable[0] :] if first <= row.stamp <= last]
-    true = poses_at(trajectory, np.array([row.stamp for row in kept]))
+    kept = [row for row in rows[usable[0] :] if first <= row.scan_stamp <= last]
+    true = poses_at(trajectory, np.array([row.scan_stamp for row in kept]))
     poses = np.array([(row.estimate.pose.x, row.estimate.pose.y) for row in kept])
     off = poses - true[:, :2]
     spread = np.array([row.estimate.covariance[:2, :2] for row in kept])
@@ -165,7 +167,7 @@ def _judged(cells: str, is_told: bool, rows: list[Row], trajectory: Floats) -> F
 
 def _at_walls(log: Path, occupancy: OccupancyMap, known: list[Row]) -> float:
     """Return the share of beams of the last scans that end at walls, where it took itself to be."""
-    frame, stamps = occupancy.frame, np.array([row.stamp for row in known])
+    frame, stamps = occupancy.frame, np.array([row.scan_stamp for row in known])
     is_open = (occupancy.values != OCCUPIED).astype(np.uint8)
     away = frame.resolution * cv2.distanceTransform(is_open, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
     with LoggedDrive([log]) as drive:

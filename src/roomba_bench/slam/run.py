@@ -64,10 +64,7 @@ def judged(log: Path, rounds: int) -> Judged:
     """
     relations = relations_beside(log)
     true = None if relations is None else load_relations(relations)
-    drives = [
-        mapped_drive([log], Wanted(needs_odometry=False), lambda share, words: None)
-        for _ in range(rounds)
-    ]
+    drives = [mapped_drive([log], Wanted(), lambda share, words: None) for _ in range(rounds)]
     drive, seconds = drives[-1], min(each.replay.seconds for each in drives)
     ours = by_odometry = None
     if true is not None:

@@ -70,14 +70,12 @@ def test_of_a_log_odometry_is_what_comes_with_the_scans() -> None:
 
 
 def test_without_odometry_scans_may_do_unless_one_is_named() -> None:
-    wanted = Wanted(needs_odometry=False)
-    done = chosen(PATHS, [SCAN, IMU], wanted)
-    assert names([SCAN, IMU], wanted) == ["/scan"]
+    done = chosen(PATHS, [SCAN, IMU, DROP], Wanted())
+    assert names([SCAN, IMU, DROP]) == ["/scan", DROP.name]
     assert not done.has_odometry
     assert "it goes by scans alone" in done.notes[0]
-    assert names([SCAN, ODOM], wanted) == ["/scan", "/odom"]
     with pytest.raises(LogError, match="expected nav_msgs/Odometry on /odom"):
-        names([SCAN, IMU], Wanted(odometry="/odom", needs_odometry=False))
+        names([SCAN, IMU], Wanted(odometry="/odom"))
 
 
 def test_a_gyro_of_an_unusual_name_is_only_told() -> None:
@@ -111,7 +109,7 @@ def test_poses_of_a_named_robot_are_those_beside_its_odometry() -> None:
 
 def test_a_topic_that_tells_two_kinds_is_listed_once() -> None:
     with pytest.raises(LogError) as refusal:
-        chosen(PATHS, [SCAN, AMCL, OWN_AMCL], Wanted())
+        chosen(PATHS, [ODOM, AMCL, OWN_AMCL], Wanted())
     assert str(refusal.value).count("/amcl_pose") == 1
 
 
@@ -119,7 +117,11 @@ def test_a_topic_that_tells_two_kinds_is_listed_once() -> None:
     ("channels", "wanted", "said"),
     [
         ([ODOM, IMAGE], Wanted(), "expected sensor_msgs/LaserScan on /scan, there is none; no"),
-        ([SCAN, IMAGE], Wanted(), "expected nav_msgs/Odometry on /odom, there is none; no other"),
+        (
+            [SCAN, IMAGE],
+            Wanted(odometry="/odom"),
+            "expected nav_msgs/Odometry on /odom, there is none; no other",
+        ),
         ([SCAN, ODOM, IMAGE], Wanted(scan="/image"), "on /image, it is sensor_msgs/Image; try"),
         ([SCAN, ODOM, REAR], Wanted(scan="/none"), "try --scan /scan or --scan /rear_scan"),
         ([SCAN, ODOM], Wanted(gyro="/imu"), "expected sensor_msgs/Imu on /imu, there is none"),

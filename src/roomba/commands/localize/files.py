@@ -60,7 +60,7 @@ class RowFile(Protocol):
 
 
 class RowTable:
-    """A CSV file: t (s, the recording's stamps), x, y (m), theta (rad), deviations, state."""
+    """A CSV file: t (s, by the stamps of scans), x, y (m), theta (rad), deviations, state."""
 
     def __init__(self, path: Path) -> None:
         """Begin the file; raises OSError."""
@@ -81,7 +81,7 @@ class RowTable:
         estimate, pose = row.estimate, row.estimate.pose
         self._writer.writerow(
             (
-                f"{row.stamp:.6f}",
+                f"{row.scan_stamp:.6f}",
                 f"{pose.x:.5f}",
                 f"{pose.y:.5f}",
                 f"{pose.theta:.5f}",
@@ -93,7 +93,7 @@ class RowTable:
 
 
 class RowTrajectory:
-    """A text file of lines ``t x y theta``: s, by the recording's stamps, m and rad."""
+    """A text file of lines ``t x y theta``: s, by the stamps of scans, m and rad."""
 
     def __init__(self, path: Path) -> None:
         """Begin the file; raises OSError."""
@@ -109,7 +109,7 @@ class RowTrajectory:
 
     def write(self, row: Row) -> None:
         """Write a line."""
-        self._file.write(trajectory_line(row.stamp, row.estimate.pose))
+        self._file.write(trajectory_line(row.scan_stamp, row.estimate.pose))
 
 
 class RowBag:

@@ -14,6 +14,7 @@ from roomba.commands.localize.options import LocalizeOptions
 from roomba.commands.localize.replay import Replay, Row
 from roomba.commands.localize.tally import Tally
 from roomba.commands.map.drive.looking import look_at_drive
+from roomba.commands.map.drive.whole_odometry import whole_odometry_of
 from roomba.commands.progress import Show
 from roomba.configuration.robot import load_robot_config
 from roomba.files.shipped import CONFIGURATION
@@ -64,7 +65,8 @@ def localized_drive(
     with LoggedDrive(options.logs, options.wanted) as drive:
         look_at_drive(drive)
         config = load_robot_config(CONFIGURATION / "robot.yaml")
-        replay, tally = Replay(occupancy, config, options.start), Tally()
+        odometry = whole_odometry_of(drive, config)
+        replay, tally = Replay(occupancy, config, odometry, options.start), Tally()
         _replay(drive, replay, tally, options, show)
         if tally.last is None:
             raise LogError(f"{_names(options.logs)}: no message of odometry could be read")
@@ -91,7 +93,7 @@ def _replay(
 ) -> None:
     is_placed = False
     with contextlib.ExitStack() as stack:
-        files = [stack.enter_context(file) for file in _files(options, drive.odometry_frame)]
+        files = [stack.enter_context(file) for file in _files(options, drive)]
         for number, reading in enumerate(drive.readings()):
             if number % _SHOWN == 0:
                 show(number / len(drive), f"{tally.seconds:.0f} s, {replay.scans} scans")
@@ -107,13 +109,18 @@ def _replay(
                 file.write(row)
 
 
-def _files(options: LocalizeOptions, odometry_frame: str) -> Iterator[RowFile]:
+def _files(options: LocalizeOptions, drive: LoggedDrive) -> Iterator[RowFile]:
     if options.csv is not None:
         yield RowTable(options.csv)
     if options.trajectory is not None:
         yield RowTrajectory(options.trajectory)
     if options.output is not None:
-        yield RowBag(options.output, odometry_frame)
+        yield RowBag(options.output, _moved_frame(drive))
+
+
+def _moved_frame(drive: LoggedDrive) -> str:
+    """Return the frame that lies on the map where rows say: the body's, if none is of odometry."""
+    return drive.odometry_frame if drive.chosen.has_odometry else drive.body_frame
 
 
 def _words_of_start(options: LocalizeOptions) -> str:
@@ -135,7 +142,7 @@ def _how_to_play(options: LocalizeOptions, drive: LoggedDrive) -> list[str]:
     return [
         "the bag may have such topics of its own; to play both, leave those out: ./roomba exec "
         f"rosbag filter {bags[0]} NEW.bag \"topic not in {OUTPUT_TOPICS} and not (topic == '/tf' "
-        f"and any(x.child_frame_id == '{drive.odometry_frame}' for x in m.transforms))\""
+        f"and any(x.child_frame_id == '{_moved_frame(drive)}' for x in m.transforms))\""
     ]
 
 

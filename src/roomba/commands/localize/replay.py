@@ -7,6 +7,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Final
 
+from roomba.commands.map.drive.whole_odometry import WholeOdometry
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
@@ -15,7 +16,6 @@ from roomba.perception.localization.localizer import Localizer
 from roomba.recordings.readings import (
     LidarScan,
     Lifted,
-    Odometry,
     Reading,
     ToldPose,
     Turning,
@@ -38,9 +38,13 @@ class Row:
     """What was known at a moment: ``stamp`` and ``arrival`` are those of the recording, s.
 
     ``elapsed`` is the time of the recording that has passed, s; ``way`` what was travelled, m.
+    ``map_to_odometry`` is where the frame of the recorded odometry lies in the map.
+    ``scan_stamp`` is the time by the stamps of scans, which may come late: scans so stamped were
+    taken there, and a map of the drive has its places by them as well.
     """
 
     stamp: float
+    scan_stamp: float
     arrival: float
     elapsed: float
     way: float
@@ -51,19 +55,25 @@ class Row:
 class Replay:
     """Feeds a localizer; ``notes`` says what was left out, and why."""
 
-    def __init__(self, occupancy: OccupancyMap, config: RobotConfig, start: Pose | None) -> None:
+    def __init__(
+        self,
+        occupancy: OccupancyMap,
+        config: RobotConfig,
+        odometry: WholeOdometry,
+        start: Pose | None,
+    ) -> None:
         """Begin at ``start``, map frame; without one the whole map is searched."""
         self.scans = 0
         """Scans that were taken in."""
         self.was_told = False
         """Whether it begins at a pose that was recorded."""
-        self._map, self._config = occupancy, config
+        self._map, self._config, self._odometry = occupancy, config, odometry
         self._begin, self._deviation = start, _GIVEN_DEVIATION
         self._localizer: Localizer | None = None
         self._turning = NewestTurning()
         self._waiting = WaitingScan()
         self._left_out: Counter[str] = Counter()
-        self._stamp = self._told_row = -math.inf
+        self._stamp = self._scan_stamp = self._told_row = -math.inf
         self._elapsed = self._way = 0.0
         self._reckoned = Pose()
 
@@ -75,9 +85,10 @@ class Replay:
     def hear(self, reading: Reading) -> Row | None:
         """Take in a reading, in the order of time; return what is known then, if it is time to."""
         stamp, value, _ = reading
-        if isinstance(value, Odometry):
-            self._hear_odometry(stamp, value.pose)
-        elif isinstance(value, Turning):
+        odometry = self._odometry.hear(reading)
+        if odometry is not None:
+            self._hear_odometry(stamp, odometry)
+        if isinstance(value, Turning):
             self._turning.hear(stamp, value.speed)
         elif isinstance(value, LidarScan):
             self._hear_scan(StampedScan(stamp, value.ranges, value.lidar))
@@ -85,7 +96,7 @@ class Replay:
             self._localizer.lift(value.is_lifted)
         elif isinstance(value, ToldPose):
             self._hear_told(value)
-        return self._row(reading)
+        return self._row(reading, is_moved=odometry is not None)
 
     def _hear_odometry(self, stamp: float, pose: Pose) -> None:
         if self._localizer is None:
@@ -136,11 +147,11 @@ class Replay:
         if self._localizer is not None:
             self._localizer.told(self._begin, self._deviation)
 
-    def _row(self, reading: Reading) -> Row | None:
+    def _row(self, reading: Reading, *, is_moved: bool) -> Row | None:
         localizer = self._localizer
         if localizer is None:
             return None
-        period = _ROW_PERIOD if isinstance(reading.value, Odometry) else _SILENCE
+        period = _ROW_PERIOD if is_moved else _SILENCE
         passed = reading.stamp - self._told_row
         if passed < period:
             return None
@@ -148,11 +159,14 @@ class Replay:
             self._elapsed += passed
         self._told_row = reading.stamp
         localizer.pass_time(reading.stamp)
+        # It never goes back, though the scans may turn out to be less late.
+        self._scan_stamp = max(self._scan_stamp, reading.stamp + localizer.latency)
         return Row(
             reading.stamp,
+            self._scan_stamp,
             reading.arrival,
             self._elapsed,
             self._way,
             localizer.estimate,
-            localizer.map_to_odometry,
+            localizer.map_to_odometry.compose(self._odometry.frame),
         )

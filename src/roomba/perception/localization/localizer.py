@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from roomba.clock import ClockJumps
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
-from roomba.geometry import Pose
+from roomba.geometry import Pose, wrap_angle
 from roomba.grid import OccupancyMap
 from roomba.perception.calibration.kernels import apply_lidar
 from roomba.perception.calibration.lidar import lidar_correction
@@ -29,13 +29,20 @@ from roomba.perception.localization.doubt import Doubt
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.localization.global_search import FoundPlace, GlobalSearch
 from roomba.perception.localization.knowledge import Circumstances, Searched, knowledge_in
+from roomba.perception.localization.latency import learn_latency, no_latency
 from roomba.perception.localization.learned_walls import LearnedWalls
 from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.localization.relocation import Expectation
 from roomba.perception.localization.search.near_search import better_near
 from roomba.perception.localization.tracker import Tracker
 from roomba.perception.matching.pose_kernels import pose_then
-from roomba.perception.matching.scan_view import LidarModel, PlacedScan, ScanView, plain_ranges
+from roomba.perception.matching.scan_view import (
+    Fit,
+    LidarModel,
+    PlacedScan,
+    ScanView,
+    plain_ranges,
+)
 from roomba.perception.matching.surface_field import SurfaceField
 
 _ANYWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
@@ -79,6 +86,7 @@ class Localizer:
         self._walls = LearnedWalls(self.field, self.belief)
         self._doubt = Doubt(config, body_radius)
         self._confirmation = Confirmation(config, self._doubt)
+        self._latency, self._heading = no_latency(), math.nan
         self._search: GlobalSearch | None = None
         self._reckoning = DeadReckoning(config, gyro, self.belief)
         self.path = self._reckoning.path
@@ -107,10 +115,11 @@ class Localizer:
 
     def see(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
         """Take a scan, float32 [beams], m; raises ValueError for another number of beams."""
-        still = lidar.at_once(stamp, ranges, self.path)
+        taken = stamp - self.latency
+        still = lidar.at_once(taken, ranges, self.path)
         self.view = view = lidar.view(still)
         self.placed = None
-        reckoned = self._reckoning.at(stamp)
+        reckoned = self._reckoning.at(taken)
         self._row["beams"] = len(view)
         self._is_blind = len(view) == 0
         if self._is_blind or self._is_lifted or reckoned is None or self._map is None:
@@ -118,8 +127,9 @@ class Localizer:
         self._row["seen"] = stamp
         tells_places_apart = len(view) >= self._config.least_beams
         if self._search is None:
-            self._follow(view, stamp, reckoned, tells_places_apart)
-            self._doubt.note(stamp, reckoned, view)
+            heading = self._follow(view, taken, reckoned, tells_places_apart)
+            self._doubt.note(taken, reckoned, view)
+            self._compare_turns(stamp, heading)
         elif tells_places_apart:
             newest, believed = self._reckoning.pose, self._tracker.pose
             found = self._search.see(self._now, view, reckoned, newest, believed)
@@ -128,9 +138,17 @@ class Localizer:
         self.placed = PlacedScan(self._pose_then(reckoned), still, plain_ranges(ranges), lidar)
 
     @property
+    def latency(self) -> float:
+        """How late scans are against odometry, s, as learned so far."""
+        return float(self._latency[0]["seconds"])
+
+    @property
     def is_calm(self) -> bool:
-        """Whether the place is known and nothing waits to be done: the belief says it all."""
-        if self._is_lifted or self._search is not None or self._map is None:
+        """Whether the place is known and nothing waits to be done: the belief says it all.
+
+        Kernels take each scan for one that comes in time.
+        """
+        if self._is_lifted or self._search is not None or self._map is None or self.latency:
             return False
         if self._confirmation.is_open:
             return False
@@ -144,6 +162,7 @@ class Localizer:
     def resumed(self, now: float) -> None:
         """Go on after kernels that brought the belief up to ``now``, s, from when it was calm."""
         self._stamps.last = float(self._row["stamp"])
+        self._heading = math.nan
         self._times.last = max(self._times.last or now, now)
         self._now = max(self._now, now)
 
@@ -177,6 +196,7 @@ class Localizer:
         apply_lidar(self._row["calibration"])
         by = before.compose(lidar_correction(self.belief).inverse())
         self._tracker.pose = self._tracker.pose.compose(by)
+        self._heading = math.nan
 
     def pass_time(self, now: float) -> None:
         """Tell the time when no sensor does: silence counts, too."""
@@ -314,8 +334,11 @@ class Localizer:
 
     def _follow(
         self, view: ScanView, stamp: float, reckoned: Pose, tells_places_apart: bool
-    ) -> None:
-        """Correct the pose by a scan that was taken at ``reckoned``, perhaps a little ago."""
+    ) -> float:
+        """Correct the pose by a scan that was taken at ``reckoned``, perhaps a little ago.
+
+        Return how the robot was turned then, rad, map frame; nan if the scan does not tell.
+        """
         tracker, is_late = self._tracker, not self._reckoning.is_newest(stamp)
         if is_late:
             tracker.pose = self._pose_then(reckoned)
@@ -325,18 +348,29 @@ class Localizer:
             self._confirmation.await_at(tracker.pose, spread)
         tracker.see(view)
         fit = tracker.judge(view) if tells_places_apart else None
+        tells_turn = fit is not None and not tracker.is_doubtful
+        heading = tracker.pose.theta if tells_turn else math.nan
         self._walls.learn()
         if is_late:
             tracker.pose = self._pose_since(reckoned)
         calibrate(self.belief)
-        if fit is None:
-            return
+        if fit is not None:
+            self._heed(fit, stamp, view, reckoned)
+        return heading
+
+    def _heed(self, fit: Fit, stamp: float, view: ScanView, reckoned: Pose) -> None:
+        """Look for the robot if a scan says that it is elsewhere."""
         if self._confirmation.is_open:
             refuted = self._confirmation.refuted(self._now, fit, view, reckoned, self.field)
             if refuted is not None:
                 self._search_for(refuted.why, refuted.expectation)
-        elif tracker.is_doubtful:
+        elif self._tracker.is_doubtful:
             self._reconsider(stamp, view, reckoned)
+
+    def _compare_turns(self, stamp: float, heading: float) -> None:
+        """Learn how late scans are from the turn since the scan before, if both fit the map."""
+        learn_latency(self._latency, wrap_angle(heading - self._heading), stamp, self.path)
+        self._heading = heading
 
     def _pose_then(self, reckoned: Pose) -> Pose:
         """Return where the robot was on the map when dead reckoning had it at ``reckoned``.
@@ -393,4 +427,5 @@ class Localizer:
         self._tracker.trust(found.fit)
 
     def _tracker_at(self, pose: Pose, covariance: NDArray[np.float64]) -> Tracker:
+        self._heading = math.nan
         return Tracker(self.field, self._config, pose, covariance, self.belief, self.numbers)

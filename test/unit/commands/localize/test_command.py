@@ -19,6 +19,7 @@ from fixtures.drives.made_logs import (
     Item,
     changed,
     drive,
+    held,
     pose_at,
     ranges_from,
     room_map,
@@ -35,6 +36,7 @@ from roomba.commands.localize.command import main
 from roomba.files.occupancy_map import save_map
 from roomba.geometry import Pose
 from roomba.plots.style import BLUE
+from roomba.recordings.message_types import known_types
 from roomba.recordings.readings import Lifted, OwnPose, ToldPose
 
 SECONDS = 14.0
@@ -228,6 +230,36 @@ def test_a_robot_with_other_names_for_its_topics(
         assert done.is_at_the_end
         assert done.figures["differences"][0]["topic"] == topic
         assert done.figures["differences"][0]["median"] == pytest.approx(OFFSET, abs=0.02)
+
+
+def test_a_drive_without_odometry_is_followed(localize: Localize, tmp_path: Path) -> None:
+    items = [item for item in drive(SECONDS) if item.topic == "/scan"]
+    output = tmp_path / "out.bag"
+    done = localize(write_bag(tmp_path / "made.bag", items), *at_start(), "--out", output)
+    assert done.is_at_the_end
+    assert done.figures["shares"]["known"] > 0.95
+    assert "no odometry was recorded: it goes by scans alone" in done.figures["notes"]
+    with Reader(output) as written:
+        store = known_types(is_first=True)
+        moved = [
+            store.deserialize_ros1(raw, each.msgtype).transforms[0]
+            for each, _, raw in written.messages()
+            if each.topic == "/tf"
+        ]
+    # No frame of odometry: the robot's own lies where it is.
+    assert {each.child_frame_id for each in moved} == {"base_link"}
+    assert moved[-1].transform.translation.x == pytest.approx(float(done.rows[-1]["x"]), abs=0.1)
+
+
+@pytest.mark.parametrize("goes_on_there", [True, False])
+def test_odometry_that_stands_still_for_a_while_loses_nothing(
+    localize: Localize, tmp_path: Path, goes_on_there: bool
+) -> None:
+    items = changed(drive(SECONDS), "/odom", held(4.0, 10.0, goes_on_there=goes_on_there))
+    done = localize(write_bag(tmp_path / "made.bag", items), *at_start())
+    assert done.is_at_the_end
+    assert done.figures["losses"] == []
+    assert any("stands still or is missing for 6 s" in note for note in done.figures["notes"])
 
 
 def test_where_the_lidar_is_may_be_told(localize: Localize, tmp_path: Path) -> None:

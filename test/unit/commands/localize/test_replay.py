@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from fixtures.robots.located import CONFIG, FURNISHED
+import pytest
+from fixtures.robots.located import CONFIG, FURNISHED, LIDAR, Eye
 
 from roomba.commands.localize.replay import Replay, Row
+from roomba.commands.map.drive.whole_odometry import WholeOdometry
+from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.recordings.readings import LidarScan, Odometry, Reading, Turning, Value
@@ -17,7 +20,7 @@ START = Pose(1.4, 1.0, 0.3)
 
 
 def replay() -> Replay:
-    return Replay(FURNISHED.map, CONFIG, START)
+    return Replay(FURNISHED.map, CONFIG, WholeOdometry(CONFIG, MappingConfig(), ()), START)
 
 
 def hear(robot: Replay, seconds: float, value: Value) -> Row | None:
@@ -72,3 +75,27 @@ def test_rows_come_as_often_as_the_live_node_tells_its_pose() -> None:
     assert told[-1].stamp == BEGAN + 1.0
     assert told[-1].arrival == BEGAN + 1.0 + 86400.0
     assert abs(told[-1].way - 0.1) < 1e-6
+
+
+def test_of_late_scans_rows_tell_the_times_that_scans_of_those_places_have() -> None:
+    """A map of the drive has its places by the stamps of scans, too."""
+    robot, generator, rows = replay(), np.random.default_rng(1), []
+    eye, late = Eye(FURNISHED), 0.2
+
+    def here(seconds: float) -> Pose:
+        return Pose(START.x, START.y, START.theta + math.sin(seconds))
+
+    for tick in range(600):
+        seconds = 0.05 * tick
+        rows.append(hear(robot, seconds, Odometry(START.inverse().compose(here(seconds)))))
+        if tick % 4 == 0:
+            ranges = eye.scan(here(seconds - late), generator)
+            rows.append(hear(robot, seconds, LidarScan(ranges, LIDAR)))
+    told = [row for row in rows if row is not None]
+    assert told[0].scan_stamp == told[0].stamp
+    assert told[-1].scan_stamp - told[-1].stamp == pytest.approx(late, abs=0.01)
+    stamps = [row.scan_stamp for row in told]
+    assert stamps == sorted(stamps)
+    assert told[-1].estimate.pose.theta == pytest.approx(
+        here(told[-1].stamp - BEGAN).theta, abs=0.01
+    )

@@ -159,6 +159,16 @@ def test_the_way_of_a_beam_begins_at_the_lidar() -> None:
     assert fit_at(Pose(1.0, 1.0, 0.5 * math.pi), sideways, two_walls()).agree == 1.0
 
 
+def test_what_a_map_shows_where_the_lidar_is_hides_nothing() -> None:
+    """A person who walked behind the robot was drawn there."""
+    values = np.full((40, 80), FREE, np.int8)
+    values[:, 60:] = OCCUPIED
+    values[19:21, 20] = OCCUPIED
+    field = SurfaceField.of(OccupancyMap(GridFrame(0.05, 0.0, 0.0, 40, 80), values))
+    assert fit_at(Pose(1.02, 1.0, 0.0), one_beam(1.98), field).agree == 1.0
+    assert fit_at(Pose(0.8, 1.0, 0.0), one_beam(2.2), field).through == 1.0
+
+
 def test_the_lidar_sees_past_an_edge_that_the_middle_of_the_robot_does_not() -> None:
     """A wall ahead for y < 1 m, and one a metre behind it for the rest."""
     values = np.full((40, 80), FREE, np.int8)
@@ -189,8 +199,10 @@ def test_beams_go_through_what_a_ray_of_its_own_meets_before(seed: int) -> None:
     for x, y, along, across in view.ends.tolist():
         length = math.hypot(x, y)
         there = off.compose(Pose(along, across))
-        met = expected_range(
-            FIELD.values, FIELD.place, off.x, off.y, there.x - off.x, there.y - off.y, length
+        to_x, to_y = there.x - off.x, there.y - off.y
+        # The robot itself fills the first 0.1 m.
+        met = 0.1 + expected_range(
+            FIELD.values, FIELD.place, off.x + 0.1 * to_x, off.y + 0.1 * to_y, to_x, to_y, length
         )
         through += met < length - (0.06 + 0.01 * length)
     assert fit_at(off, view).through * len(view) == pytest.approx(through, abs=0.5)

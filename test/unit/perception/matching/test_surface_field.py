@@ -82,11 +82,21 @@ def test_no_middle_is_farther_off_than_half_the_diagonal_of_a_cell(
             )
 
 
-def test_what_is_unknown_is_solid() -> None:
-    values = np.full((5, 6), FREE, np.int8)
-    values[2, 3] = UNKNOWN
-    field = SurfaceField.of(OccupancyMap(GridFrame(0.1, 0.0, 0.0, 5, 6), values))
-    assert field.values[2, 2:5] == pytest.approx([0.05, -0.05, 0.05])
+def test_a_spot_that_is_unknown_is_as_the_known_cell_nearest_to_it() -> None:
+    """On the floor it is floor, and in a wall it closes the gap."""
+    values = np.full((7, 12), FREE, np.int8)
+    values[:, 8], values[:, 9:] = OCCUPIED, UNKNOWN
+    values[3, 3] = values[3, 4] = values[2, 8] = UNKNOWN
+    field = SurfaceField.of(OccupancyMap(GridFrame(0.1, 0.0, 0.0, 7, 12), values))
+    expected = [0.05 * (2 * (8 - column) - 1) for column in range(12)]
+    assert field.values == pytest.approx(np.tile(expected, (7, 1)))
+
+
+def test_a_larger_area_that_is_unknown_is_solid() -> None:
+    values = np.full((9, 20), FREE, np.int8)
+    values[:, 10:] = UNKNOWN
+    field = SurfaceField.of(OccupancyMap(GridFrame(0.1, 0.0, 0.0, 9, 20), values))
+    assert field.values[4] == pytest.approx(0.1 * (9.5 - np.arange(20)))
 
 
 @pytest.mark.parametrize("is_solid", [True, False])

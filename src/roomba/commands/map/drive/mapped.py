@@ -11,12 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.commands.map.drive.looking import look_at_drive
-from roomba.commands.map.drive.odometry_gaps import (
-    ALWAYS,
-    OdometryGap,
-    odometry_gaps,
-    told_gaps,
-)
+from roomba.commands.map.drive.odometry_gaps import OdometryGap, gaps_of
 from roomba.commands.map.drive.replay import MapReplay
 from roomba.commands.progress import Show
 from roomba.configuration.frozen import load_config
@@ -78,7 +73,7 @@ def mapped_drive(logs: Sequence[Path], wanted: Wanted, show: Show) -> MappedDriv
     with LoggedDrive(logs, wanted) as drive:
         look_at_drive(drive)
         start = _first_truth(drive)
-        replay, true = _replayed(drive, start or Pose(), _gaps_of(drive), show)
+        replay, true = _replayed(drive, start or Pose(), gaps_of(drive), show)
         notes = [*drive.notes, *replay.notes]
         if not replay.scans:
             reasons = "; ".join(notes) or "it has none beside odometry"
@@ -103,16 +98,6 @@ def mapped_drive(logs: Sequence[Path], wanted: Wanted, show: Show) -> MappedDriv
             refused,
             (*drive.notes, *replay.notes),
         )
-
-
-def _gaps_of(drive: LoggedDrive) -> Sequence[OdometryGap]:
-    """Return when odometry tells nothing, and say so."""
-    if not drive.chosen.has_odometry:
-        return (ALWAYS,)
-    gaps = odometry_gaps(drive.readings())
-    if gaps:
-        drive.remark(told_gaps(gaps))
-    return gaps
 
 
 def _replayed(

@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from roomba.geometry import Pose
+from roomba.recordings.drive import LoggedDrive
 from roomba.recordings.readings import LidarScan, Odometry, Reading
 
 _MISSING: Final = 1.0
@@ -35,6 +36,35 @@ class OdometryGap(NamedTuple):
 
 ALWAYS: Final = OdometryGap(-math.inf, math.inf)
 """That of a drive without odometry."""
+
+
+class GapsInOrder:
+    """The gaps of a drive, asked for in the order of time."""
+
+    def __init__(self, gaps: Iterable[OdometryGap]) -> None:
+        """Begin before the first one."""
+        self._gaps = list(gaps)
+
+    def has(self, stamp: float) -> bool:
+        """Whether a time, s, is in a gap."""
+        while self._gaps and stamp > self._gaps[0].end:
+            self._gaps.pop(0)
+        return bool(self._gaps) and stamp > self._gaps[0].begin
+
+    @property
+    def begin(self) -> float:
+        """When the gap began, s, in which the newest time is that was asked for."""
+        return self._gaps[0].begin
+
+
+def gaps_of(drive: LoggedDrive) -> Sequence[OdometryGap]:
+    """Return when odometry tells nothing in a drive, and say so there."""
+    if not drive.chosen.has_odometry:
+        return (ALWAYS,)
+    gaps = odometry_gaps(drive.readings())
+    if gaps:
+        drive.remark(told_gaps(gaps))
+    return gaps
 
 
 def odometry_gaps(readings: Iterable[Reading]) -> list[OdometryGap]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -43,8 +43,7 @@ def options_of(arguments: list[str] | None) -> DriveOptions:
     given = _parser().parse_args(arguments)
     written = [("--trajectory", given.trajectory), ("--online", given.online)]
     output = output_of(given, [("--bag", path) for path in given.bag], written)
-    wanted = replace(wanted_of(given), needs_odometry=False)
-    return DriveOptions(tuple(given.bag), wanted, given.trajectory, given.online, output)
+    return DriveOptions(tuple(given.bag), wanted_of(given), given.trajectory, given.online, output)
 
 
 def add_read(parser: argparse.ArgumentParser) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.commands.map.blind_map import BlindMap
-from roomba.commands.map.drive.odometry_gaps import ALWAYS, OdometryGap
+from roomba.commands.map.drive.odometry_gaps import ALWAYS, GapsInOrder, OdometryGap
 from roomba.commands.map.drive.trajectory import Trajectory
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig
@@ -67,7 +67,7 @@ class MapReplay:
         gaps: Sequence[OdometryGap] = (),
     ) -> None:
         """Begin at ``start``, map frame; in ``gaps`` of odometry it goes by scans alone."""
-        self._gaps = list(gaps)
+        self._gaps = GapsInOrder(gaps)
         self._by_scans: PacedOdometry | None = None
         self.has_odometry = ALWAYS not in gaps
         self._wheel_noise = config.localization, mapping.following
@@ -146,7 +146,7 @@ class MapReplay:
         return occupancy
 
     def _hear_odometry(self, stamp: float, pose: Pose) -> None:
-        if self._has_gap_at(stamp):
+        if self._gaps.has(stamp):
             return
         if self._by_scans is not None:
             here = self._by_scans.at(stamp, self.mapper.pace)
@@ -154,16 +154,10 @@ class MapReplay:
             self.mapper.end_guessing(*self._wheel_noise)
         self._move(stamp, self._frame.compose(pose))
 
-    def _has_gap_at(self, stamp: float) -> bool:
-        """Whether odometry tells nothing at a time; call it in the order of time."""
-        while self._gaps and stamp > self._gaps[0].end:
-            self._gaps.pop(0)
-        return bool(self._gaps) and stamp > self._gaps[0].begin
-
     def _move_by_scans(self, stamp: float) -> None:
         """Go on at the robot's pace until a scan."""
         if self._by_scans is None:
-            self._by_scans = PacedOdometry(self._fed, self._gaps[0].begin)
+            self._by_scans = PacedOdometry(self._fed, self._gaps.begin)
             self.mapper.begin_guessing(*self._guessed_noise)
         self._move(stamp, self._by_scans.at(stamp, self.mapper.pace))
 
@@ -195,7 +189,7 @@ class MapReplay:
 
     def _hear_scan(self, stamp: float, scan: LidarScan) -> None:
         """Keep a scan until odometry has reached its last beam, or the next scan comes."""
-        if self._has_gap_at(stamp):
+        if self._gaps.has(stamp):
             self._move_by_scans(stamp)
         if not math.isfinite(self._stamp):
             self.left_out["scans before the first odometry"] += 1

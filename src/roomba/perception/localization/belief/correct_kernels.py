@@ -32,6 +32,8 @@ _WIDE: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05])
 """m; beams that end farther off than this lose weight, round by round."""
 _STRIDE: Final = 8
 """Stride over the beams that are judged; of 360 these are enough to notice a wrong pose."""
+_LEAST_JUDGED: Final = 24
+"""Beams; of scans in which few met something, so many are judged: fewer tell too little."""
 _OF_MAP: Final = 0.1
 """Share of the newest scan in what the map's errors are taken for."""
 _OF_WALLS: Final = 0.02
@@ -242,7 +244,8 @@ def judge_ends(
     belief, known = beliefs[0], numbers[0]
     pose, fit = belief.pose, belief.fit
     counts = belief.counts
-    judge(field, place, ends, count, pose, mount, int(_STRIDE), counts, lanes)
+    stride = min(int(_STRIDE), max(1, count // int(_LEAST_JUDGED)))
+    judge(field, place, ends, count, pose, mount, stride, counts, lanes)
     looked_at = max(counts[LOOKED_AT], 1.0)
     fit[AGREE], fit[SHORT] = counts[AGREEING] / looked_at, counts[ALL_SHORT] / looked_at
     fit[THROUGH], fit[EVIDENCE] = counts[ALL_THROUGH] / looked_at, counts[ALL_EVIDENCE]

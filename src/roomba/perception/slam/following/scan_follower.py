@@ -11,12 +11,12 @@ from roomba.configuration.mapping import FollowingConfig, MappingConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.belief.belief import Rows
 from roomba.perception.localization.dead_reckoning import DeadReckoning
+from roomba.perception.localization.latency import no_latency
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.range_noise import unknown_noise
 from roomba.perception.matching.reckoned_path import pose_at
 from roomba.perception.matching.sweep import SWEEP_WORK
 from roomba.perception.slam.following.follow_kernels import FOLLOWER, follow, moved_since
-from roomba.perception.slam.following.latency import no_latency
 from roomba.perception.slam.following.scan_kernels import (
     Following,
     compare_turns,
@@ -49,6 +49,8 @@ class ScanFollower:
         self._reckoning, self._finding = reckoning, finding
         self.state = np.zeros(1, FOLLOWER)
         self._noise, self._latency = unknown_noise(), no_latency()
+        self._late: Rows | None = None
+        """What was learned of latency, while dead reckoning is guessed."""
         self._row = row = self.state[0]
         row["variance"] = config.point_deviation**2
         self._config = config.following
@@ -82,13 +84,21 @@ class ScanFollower:
         )
 
     def begin_guessing(self, config: FollowingConfig) -> None:
-        """Go on with dead reckoning that is guessed, of which nothing was learned yet."""
+        """Go on with dead reckoning that is guessed, of which nothing was learned yet.
+
+        It is guessed from scans, which are not late against it.
+        """
+        self._late = self._latency.copy()
+        self._latency[:] = no_latency()
         self._learned = self._row["odometry_scale"].copy()
         self._row["odometry_scale"] = 1.0
         self._use_standing(config)
 
     def end_guessing(self, config: FollowingConfig) -> None:
         """Go on with dead reckoning as it was known before."""
+        if self._late is not None:
+            self._latency[:] = self._late
+            self._latency["before"], self._late = np.nan, None
         self._row["odometry_scale"] = self._learned
         self._use_standing(config)
 
@@ -112,7 +122,8 @@ class ScanFollower:
 
     def compare_turns(self, stamp: float) -> None:
         """Learn how late scans are, if the newest two confirmed where the robot was."""
-        compare_turns(self.following, stamp)
+        if self._late is None:
+            compare_turns(self.following, stamp)
 
     @property
     def range_noise(self) -> float:

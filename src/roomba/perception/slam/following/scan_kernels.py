@@ -13,6 +13,7 @@ from roomba.compilation import entry, inner_part
 from roomba.perception.calibration.kernels import drop_window
 from roomba.perception.calibration.place_kernels import note_pose
 from roomba.perception.localization.belief.belief import Rows
+from roomba.perception.localization.latency import learn_latency
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.matching.range_noise import measure_noise
@@ -20,7 +21,6 @@ from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
 from roomba.perception.matching.sweep import at_once
 from roomba.perception.slam.following.finding_back_kernels import is_due, least_usual, saw
 from roomba.perception.slam.following.follow_kernels import COVARIANCE, follow, moved_since
-from roomba.perception.slam.following.latency import learn_latency
 from roomba.perception.slam.scan_matching.surface_kernels import surface_points
 from roomba.perception.slam.scan_matching.surfel_kernels import Surfels
 

@@ -23,7 +23,7 @@ def mapped(
     path: Path, items: list[Item], wanted: Wanted | None = None, *, with_mount: bool = False
 ) -> MappedDrive:
     bag = write_bag(path / f"{id(items)}.bag", items, with_mount=with_mount)
-    return mapped_drive([bag], wanted or Wanted(needs_odometry=False), lambda share, words: None)
+    return mapped_drive([bag], wanted or Wanted(), lambda share, words: None)
 
 
 def off(done: MappedDrive) -> float:
@@ -119,7 +119,7 @@ def test_odometry_that_is_of_no_use_is_left_out_and_that_is_told(
 
 
 def test_odometry_that_was_named_is_used_all_the_same_with_a_word(tmp_path: Path) -> None:
-    wanted = Wanted(odometry="/odom", needs_odometry=False)
+    wanted = Wanted(odometry="/odom")
     done = mapped(tmp_path, changed(round_drive(), "/odom", in_feet), wanted, with_mount=True)
     [note] = [note for note in done.notes if "odometry" in note]
     assert note.startswith("the odometry is doubtful: it tells ways of ")

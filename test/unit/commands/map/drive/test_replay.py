@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from fixtures.drives.made_logs import BEGAN, Item, changed, drive, pose_at, write_bag
+from fixtures.drives.made_logs import BEGAN, Item, changed, drive, held, pose_at, write_bag
 
 from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
-from roomba.geometry import Pose
 from roomba.recordings.choice import Wanted
 from roomba.recordings.readings import Lifted
 
@@ -20,7 +17,7 @@ BEGIN = pose_at(0.0).inverse()
 
 
 def mapped(path: Path, items: list[Item]) -> MappedDrive:
-    wanted = Wanted(needs_odometry=False)
+    wanted = Wanted()
     return mapped_drive([write_bag(path / "made.bag", items)], wanted, lambda share, words: None)
 
 
@@ -29,22 +26,6 @@ def off(made: MappedDrive) -> float:
     true = [BEGIN.compose(pose_at(stamp - BEGAN)) for stamp in made.trajectory[:, 0].tolist()]
     ways = made.trajectory[:, 1:3] - [(pose.x, pose.y) for pose in true]
     return float(np.hypot(*ways.T).max())
-
-
-def held(begin: float, end: float, *, goes_on_there: bool) -> Callable[[int, Item], Item]:
-    """Let odometry stand still for a while; then it goes on from where it stood, or leaps."""
-
-    def change(_: int, item: Item) -> Item:
-        passed = item.stamp - BEGAN
-        stood, then = (BEGIN.compose(pose_at(at)) for at in (begin, end))
-        if begin < passed < end:
-            return replace(item, value=stood)
-        if passed >= end and goes_on_there:
-            assert isinstance(item.value, Pose)
-            return replace(item, value=stood.compose(then.inverse()).compose(item.value))
-        return item
-
-    return change
 
 
 @pytest.mark.parametrize("goes_on_there", [True, False])

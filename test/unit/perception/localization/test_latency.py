@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from roomba.perception.localization.latency import learn_latency, no_latency
 from roomba.perception.matching.reckoned_path import ReckonedPath, remember
-from roomba.perception.slam.following.latency import learn_latency, no_latency
 
 
 def heading(time: float) -> float:

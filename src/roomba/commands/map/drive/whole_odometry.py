@@ -1,0 +1,89 @@
+"""Odometry of a whole drive: where the recorded one tells nothing, it goes on by scans."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from roomba.commands.map.drive.odometry_gaps import GapsInOrder, OdometryGap, gaps_of
+from roomba.commands.map.drive.replay import MapReplay
+from roomba.configuration.frozen import load_config
+from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.robot import RobotConfig
+from roomba.files.shipped import CONFIGURATION
+from roomba.geometry import Pose
+from roomba.perception.slam.mapper import Mapper
+from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.readings import LidarScan, Odometry, Reading
+
+
+class WholeOdometry:
+    """Recorded odometry, and in its ``gaps`` the steps that a map shows which is made meanwhile.
+
+    ``frame`` is where the frame of the recorded odometry lies in that of this one. They are the
+    same until the first gap ends. It ``is_guessed`` while there is a gap.
+    """
+
+    def __init__(
+        self, config: RobotConfig, mapping: MappingConfig, gaps: Sequence[OdometryGap]
+    ) -> None:
+        """Without gaps no map is made."""
+        self.frame = Pose()
+        self.is_guessed = False
+        self._pose = self._recorded = Pose()
+        self._gaps = GapsInOrder(gaps)
+        self._replay = MapReplay(config, mapping, Pose(), gaps) if gaps else None
+
+    def hear(self, reading: Reading) -> Pose | None:
+        """Take in a reading, in the order of time; return where odometry is then, if it tells."""
+        value, replay = reading.value, self._replay
+        if replay is None:
+            return value.pose if isinstance(value, Odometry) else None
+        has_gap = self._gaps.has(reading.stamp)
+        before = _Place(replay.mapper)
+        replay.hear(reading.stamp, value)
+        if isinstance(value, Odometry):
+            if has_gap:
+                return None
+            if self.is_guessed:
+                self._go_on(before, replay.mapper)
+                self.frame = self._pose.compose(value.pose.inverse())
+            self.is_guessed, self._recorded = False, value.pose
+            self._pose = self.frame.compose(value.pose)
+            return self._pose
+        if isinstance(value, LidarScan) and has_gap:
+            self._go_on(before, replay.mapper)
+            self.frame = self._pose.compose(self._recorded.inverse())
+            self.is_guessed = True
+            return self._pose
+        return None
+
+    def _go_on(self, before: _Place, mapper: Mapper) -> None:
+        """Move on by what the robot moved since it was at a place of the map."""
+        self._pose = self._pose.compose(before.now(mapper).inverse().compose(mapper.pose))
+
+
+def whole_odometry_of(drive: LoggedDrive, config: RobotConfig) -> WholeOdometry:
+    """Return that of a drive, with a remark there on its gaps."""
+    mapping = load_config(MappingConfig, CONFIGURATION / "mapping.yaml")
+    return WholeOdometry(config, mapping, gaps_of(drive))
+
+
+class _Place:
+    """Where a mapped robot is, beside the newest keyframe, which may move afterwards."""
+
+    def __init__(self, mapper: Mapper) -> None:
+        """Note where it is."""
+        self._pose, self._number = mapper.pose, -1
+        self._beside: Pose | None = None
+        if mapper.version:
+            self._number, keyframe = mapper.newest_keyframe
+            self._beside = keyframe.inverse().compose(self._pose)
+
+    def now(self, mapper: Mapper) -> Pose:
+        """Return where that place is on the map as it is now."""
+        if self._beside is None:
+            return self._pose
+        number, keyframe = mapper.newest_keyframe
+        if number != self._number:
+            keyframe = Pose(*mapper.trajectory[self._number].tolist())
+        return keyframe.compose(self._beside)
