@@ -19,6 +19,7 @@ from roomba.configuration.sensors import GyroConfig
 from roomba.geometry import Pose, wrap_angle
 from roomba.grid import OccupancyMap
 from roomba.perception.calibration.kernels import apply_lidar
+from roomba.perception.calibration.latency import learn_latency, no_latency
 from roomba.perception.calibration.lidar import lidar_correction
 from roomba.perception.localization.belief.belief import numbers_of, unknown_belief
 from roomba.perception.localization.belief.correct_kernels import calibrate, deviation, is_calm
@@ -29,7 +30,6 @@ from roomba.perception.localization.doubt import Doubt
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.localization.global_search import FoundPlace, GlobalSearch
 from roomba.perception.localization.knowledge import Circumstances, Searched, knowledge_in
-from roomba.perception.localization.latency import learn_latency, no_latency
 from roomba.perception.localization.learned_walls import LearnedWalls
 from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.localization.relocation import Expectation

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mapping import FollowingConfig, MappingConfig
 from roomba.geometry import Pose
+from roomba.perception.calibration.latency import no_latency
 from roomba.perception.localization.belief.belief import Rows
 from roomba.perception.localization.dead_reckoning import DeadReckoning
-from roomba.perception.localization.latency import no_latency
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.range_noise import unknown_noise
 from roomba.perception.matching.reckoned_path import pose_at

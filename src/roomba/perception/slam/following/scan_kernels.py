@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from roomba.angles import wrapped
 from roomba.compilation import entry, inner_part
 from roomba.perception.calibration.kernels import drop_window
+from roomba.perception.calibration.latency import learn_latency
 from roomba.perception.calibration.place_kernels import note_pose
 from roomba.perception.localization.belief.belief import Rows
-from roomba.perception.localization.latency import learn_latency
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.matching.range_noise import measure_noise

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from roomba.perception.localization.latency import learn_latency, no_latency
+from roomba.perception.calibration.latency import learn_latency, no_latency
 from roomba.perception.matching.reckoned_path import ReckonedPath, remember
 
 

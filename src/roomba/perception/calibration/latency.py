@@ -10,11 +10,14 @@ import math
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roomba.angles import wrapped
 from roomba.compilation import entry, inner_part
-from roomba.perception.localization.belief.belief import Row, Rows
+from roomba.perception.calibration.state import Row
 from roomba.perception.matching.reckoned_path import ReckonedPath, is_told_within, pose_at
+
+Rows = NDArray[np.void]
 
 _STEP: Final = 0.05
 _COUNT: Final = 9
