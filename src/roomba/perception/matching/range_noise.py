@@ -2,7 +2,8 @@
 
 Along a straight wall 1/r is a sinusoid of the beam's angle, so that its fourth difference over five
 neighbouring beams is next to nothing but noise. Where beams meet corners, legs or different things
-it is large, which the median of many leaves out.
+it is large, which the median of many leaves out. Where single ranges are wrong, each spoils five
+differences, and soon most: then the tenth that is least tells more.
 """
 
 from __future__ import annotations
@@ -27,6 +28,10 @@ _MOST_SAMPLES: Final = 100_000
 """With more the older ones count half."""
 _PER_MEDIAN: Final = 1.4826
 """Standard deviation of a normal distribution in medians of its absolute values."""
+_PER_TENTH: Final = 1.0 / 0.12566
+"""The same in those of its absolute values that a tenth of them lie below."""
+_SPOILT: Final = 0.05
+"""m; no lidar is so noisy: most differences are of wrong ranges."""
 _OF_FIVE: Final = math.sqrt(1.0 + 16.0 + 36.0 + 16.0 + 1.0)
 """Standard deviation of a fourth difference in those of its terms."""
 _FARTHEST: Final = 8.0
@@ -64,17 +69,25 @@ def measure_noise(
     counts = noise.counts
     noise.total += _count(ranges, nearest, min(farthest, _FARTHEST), counts)
     if noise.total >= LEAST_SAMPLES:
-        sum_so_far, middle = 0, 0
-        while sum_so_far + counts[middle] < 0.5 * noise.total:
-            sum_so_far += counts[middle]
-            middle += 1
-        median = _FIRST * math.exp((middle + 0.5) * _STEP)
-        noise.deviation = max(_LEAST, _PER_MEDIAN * median)
+        noise.deviation = max(_LEAST, _PER_MEDIAN * _quantile(counts, 0.5 * noise.total))
+        if noise.deviation > _SPOILT:
+            of_least = _PER_TENTH * _quantile(counts, 0.1 * noise.total)
+            noise.deviation = max(_LEAST, min(noise.deviation, of_least))
     if noise.total > _MOST_SAMPLES:
         noise.total = 0
         for place in range(_BINS):
             counts[place] //= 2
             noise.total += counts[place]
+
+
+@inner_part
+def _quantile(counts: NDArray[np.int64], below: float) -> float:
+    """Return the deviation, m, that so many of ``counts`` [_BINS] lie below."""
+    sum_so_far, place = 0, 0
+    while sum_so_far + counts[place] < below:
+        sum_so_far += counts[place]
+        place += 1
+    return _FIRST * math.exp((place + 0.5) * _STEP)
 
 
 @inner_part

@@ -45,6 +45,19 @@ def test_what_stands_around_hardly_changes_it() -> None:
     assert noise[0]["deviation"] == pytest.approx(0.01, rel=0.3)
 
 
+@pytest.mark.parametrize("share", [0.12, 0.15, 0.2, 0.25])
+def test_single_wrong_ranges_are_not_taken_for_noise(share: float) -> None:
+    """Each spoils five differences: of these most are wrong then."""
+    generator, noise = np.random.default_rng(4), unknown_noise()
+    clean = walls(np.linspace(-np.pi, np.pi, 720))
+    for _ in range(20):
+        ranges = clean + generator.normal(0.0, 0.005, 720)
+        is_wrong = generator.random(720) < share
+        ranges[is_wrong] = generator.uniform(0.2, 6.0, np.count_nonzero(is_wrong))
+        measure_noise(noise, ranges.astype(np.float32), NEAREST, FARTHEST)
+    assert 0.004 < noise[0]["deviation"] < 0.03
+
+
 def test_neighbours_count_only_where_all_five_met_something() -> None:
     """Each fifth beam has no echo: no five in a row have one."""
     noise, ranges = unknown_noise(), np.full(720, 2.0, np.float32)
