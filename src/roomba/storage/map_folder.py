@@ -17,7 +17,7 @@ import shapely
 
 from roomba.errors import HomeError, RoombaError, RoomsError
 from roomba.files.home_layer import LAYER_NAME, MAP_NAME, read_layer
-from roomba.files.kept import write_kept
+from roomba.files.kept import remove_kept, write_kept
 from roomba.files.occupancy_map import load_map, save_map
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
@@ -85,11 +85,13 @@ class StoredMap:
 def write_map(stored: StoredMap, folder: Path) -> None:
     """Write a map's files into an existing folder, read them back, and compare.
 
-    Raises MapStoreError for a map that files cannot hold, and OSError when the disk refuses.
+    What the map does not have, an earlier one there may have had: that goes. Raises MapStoreError for a map that files cannot hold, and OSError when the disk refuses.
     """
     try:
         write_floor(stored, folder)
         save_zones(stored.zones, stored.occupancy, folder / ZONES_NAME)
+        for name in (LOW_THINGS_NAME, CARPETS_NAME, ROOMS_NAME):
+            remove_kept(folder / name)
         if stored.low_things.all:
             save_low_things(stored.low_things, stored.occupancy, folder / LOW_THINGS_NAME)
         if stored.carpets.all:

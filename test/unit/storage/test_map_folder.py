@@ -144,6 +144,13 @@ def test_without_rooms_and_zones_it_has_none(folder: Path) -> None:
     assert read.zones == Zones()
 
 
+def test_of_a_map_that_was_there_before_nothing_is_left(folder: Path) -> None:
+    bare = StoredMap(flat().occupancy, Pose(1.0, 2.0, 0.5))
+    write_map(bare, folder)
+    assert read_map(folder).is_same(bare)
+    assert not list(folder.glob("rooms.yaml*"))
+
+
 @pytest.mark.parametrize(
     ("file", "old", "new", "reason"),
     [
