@@ -213,7 +213,7 @@ class MissionTicks:
             case Phase.RETURNING:
                 return phases.go_home(drives, self._retries, senses, limit)
             case Phase.DOCKING:
-                return self._at_station.dock(senses, context.station)
+                return self._at_station.dock(senses, context.station, context.staging)
             case Phase.CHARGING:
                 return self._at_station.charge(senses, job, context.tool_width)
             case Phase.EMPTYING:

@@ -91,7 +91,7 @@ def clean_unknown(task: Task) -> Cleaned:
     """Clean a home that the robot has never seen, counted alike."""
     home = home_named(task.home, task.folder)
     robot = HeadlessMission(home, ROBOT, seed=task.seed, known=MappingConfig())
-    staging = staging_pose(home.station, DockingConfig())
+    staging = staging_pose(home.station, DockingConfig().staging_distance)
     record = robot.clean()
     is_home = robot.seen.battery.is_docked
     return _cleaned(home, staging, record.poses, record.result, is_home=is_home)

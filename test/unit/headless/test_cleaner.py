@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import IDEAL, NOISY
 from fixtures.robots.headless_cleans import THING, assert_all_clean, begun, command
 from fixtures.robots.missions import (
@@ -44,6 +45,19 @@ from roomba.mission.phases.machine import Event, Phase
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba.world.engine.state.arrays import Fault
+
+
+@pytest.mark.parametrize("width", [0.75, 0.8, 1.0])
+def test_a_room_with_hardly_any_room_before_the_station_is_cleaned_without_a_hit(
+    width: float,
+) -> None:
+    """The place before the station, 0.65 m off, would be in the wall."""
+    station = Pose(IDEAL.body.radius + 0.035, 0.4, math.pi)
+    robot = HeadlessMission(room_home(width, 0.8, station=station), NOISY, seed=1)
+    record = robot.clean()
+    assert record.result.outcome is CleanOutcome.COMPLETED
+    assert record.hits == 0
+    assert record.result.duration < 60.0
 
 
 @pytest.mark.parametrize("config", [IDEAL, NOISY], ids=["ideal", "noisy"])

@@ -21,9 +21,12 @@ __all__ = ["DockSenses", "DockState", "DockStep", "Docking", "Trouble", "staging
 _DOCKED_BLIND: Final = "docked without its beams: wipe the robot's infrared receiver"
 
 
-def staging_pose(station: Pose, config: DockingConfig) -> Pose:
-    """Return where path planning should bring the robot, facing the station; map frame."""
-    return station.compose(Pose(-config.staging_distance, 0.0, 0.0))
+def staging_pose(station: Pose, distance: float) -> Pose:
+    """Return where path planning should bring the robot, so far, m, before the station; map frame.
+
+    It faces the station.
+    """
+    return station.compose(Pose(-distance, 0.0, 0.0))
 
 
 class Docking:

@@ -89,6 +89,9 @@ class Undocking:
                 return UndockState.OUT, ""
             return failed, "the robot does not get out of its station: see whether it is held"
         if self._time.elapsed - self._moved[0] > config.stuck_timeout:
+            if self._way >= config.undocked_distance and not senses.is_charging:
+                # A wall is behind it, and room enough between the two.
+                return UndockState.OUT, ""
             return failed, "the robot does not move: see what is behind it or holds its wheels"
         if self._time.elapsed > config.undock_time_limit:
             return failed, "it took too long: see what is behind the robot or holds its wheels"

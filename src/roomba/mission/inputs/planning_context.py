@@ -32,6 +32,8 @@ from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
 
 Mask = NDArray[np.bool_]
 
+_NEARER: Final = 0.02
+"""m; by so much the place before the station comes nearer to it, until there is room."""
 UNWATCHED: Final = contextlib.nullcontext()
 """Around plans that are not counted."""
 
@@ -91,7 +93,6 @@ class PlanningContext:
         self.occupancy, self.station = occupancy, station
         self.rooms, self.zones = rooms, zones or Zones()
         self.known = self.zones.kept_out(occupancy)
-        self.staging = staging_pose(station, docking)
         driving, radius = mission.driving, robot.body.radius
         self.reach, self._gap_spare = radius + driving.clearance, driving.gap_spare
         self._growing_reach = radius + mission.exploring.cleaning_clearance
@@ -110,6 +111,21 @@ class PlanningContext:
             self.paths: PathPlanner = CarefulPathPlanner(self.known, radius, *clearances)
         else:
             self.paths = PathPlanner(self.known, radius, self._clearance, self._least)
+        self.staging = self._staging(docking)
+
+    def _staging(self, docking: DockingConfig) -> Pose:
+        """Return the place before the station, nearer to it where a wall is behind the robot.
+
+        On a map that is growing nothing says so for sure.
+        """
+        far = staging_pose(self.station, docking.staging_distance)
+        if self.is_growing:
+            return far
+        for distance in np.arange(docking.staging_distance, docking.shortest_way, -_NEARER):
+            place = staging_pose(self.station, float(distance))
+            if self.paths.is_free(np.array([[place.x, place.y]] * 2)):
+                return place
+        return far
 
     @cached_property
     def coverage(self) -> CoveragePlanner:

@@ -54,15 +54,16 @@ class AtStation:
             return PhaseStep(twist, failure=Failure(CleanOutcome.STUCK, step.reason))
         return PhaseStep(twist)
 
-    def dock(self, senses: Senses, station: Pose) -> PhaseStep:
-        """Drive into the station."""
+    def dock(self, senses: Senses, station: Pose, staging: Pose) -> PhaseStep:
+        """Drive into the station from the place before it, ``staging``; both map frame."""
         sensed = self._sensed(senses)
         if self._is_turned:
             # What its bumper meets is not the station.
             sensed = replace(sensed, bumper_left=False, bumper_right=False)
         if self._docking is None:
-            robot = self._robot
-            self._docking = Docking(self._config, robot.body, robot.station, station, sensed)
+            robot, far = self._robot, station.distance_to(staging.x, staging.y)
+            config = self._config.model_copy(update={"staging_distance": far})
+            self._docking = Docking(config, robot.body, robot.station, station, sensed)
         step = self._docking.tick(sensed)
         twist = self._as_wanted(step.twist)
         if step.state is DockState.DOCKED:

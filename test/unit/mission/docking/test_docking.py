@@ -280,7 +280,7 @@ def test_by_any_senses_it_keeps_to_its_speeds_and_ends(
 
 
 def test_the_place_where_it_is_brought_looks_at_the_station() -> None:
-    place = staging_pose(Pose(2.0, 1.0, math.pi / 2.0), CONFIG)
+    place = staging_pose(Pose(2.0, 1.0, math.pi / 2.0), CONFIG.staging_distance)
     assert (place.x, place.y) == pytest.approx((2.0, 0.35))
     assert place.theta == pytest.approx(math.pi / 2.0)
 

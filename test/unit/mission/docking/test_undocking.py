@@ -141,6 +141,14 @@ def test_what_stands_behind_it_holds_it() -> None:
     assert rig.pose.x == pytest.approx(-0.35 + 0.05 + ROBOT.body.radius, abs=0.01)
 
 
+def test_a_wall_behind_a_robot_that_is_out_already_holds_nothing() -> None:
+    rig = Rig()
+    behind = STATION.compose(Pose(-0.3 - 0.05 - ROBOT.body.radius, 0.0, 0.0))
+    rig.world.place_obstacle(behind.x, behind.y, 0.05)
+    assert rig.run().state is UndockState.OUT
+    assert rig.pose.x == pytest.approx(-0.3, abs=0.01)
+
+
 def test_current_that_stays_tells_that_it_did_not_get_out() -> None:
     rig = Rig(is_known=False, faults=STALLED)
     step = rig.run()

@@ -8,12 +8,14 @@ from contextlib import AbstractContextManager
 import numpy as np
 import pytest
 import shapely
+from fixtures.homes.rooms import room_home
 from fixtures.robots.missions import DEN, HALL, HOME, STATION, TABLE, TWO_ROOMS, WALL_X, two_rooms
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.errors import RoomsError
+from roomba.geometry import Pose
 from roomba.headless.plan_watch import PlanWatch
 from roomba.mission.inputs.planning_context import UNWATCHED, PlanningContext
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
@@ -41,6 +43,22 @@ def test_the_staging_place_is_in_front_of_the_station() -> None:
     staging = context().staging
     assert staging.x == pytest.approx(STATION.x + DockingConfig().staging_distance)
     assert staging.y == pytest.approx(STATION.y)
+
+
+@pytest.mark.parametrize("width", [0.75, 0.85, 1.0])
+def test_where_a_wall_is_near_the_staging_place_is_nearer_to_the_station(width: float) -> None:
+    station = Pose(0.2, 0.5, math.pi)
+    staging = context(room_home(width, 1.0, station=station)).staging
+    room = width - ROBOT.body.radius - staging.x
+    assert 0.0 < room < 0.03 or staging.x == pytest.approx(0.85)
+    assert (staging.y, staging.theta) == pytest.approx((0.5, math.pi))
+
+
+def test_where_it_is_nowhere_free_the_staging_place_is_as_told() -> None:
+    """And a way there is refused."""
+    station = Pose(0.2, 0.5, math.pi)
+    staging = context(room_home(0.4, 1.0, station=station)).staging
+    assert staging.x == pytest.approx(station.x + DockingConfig().staging_distance)
 
 
 def test_what_zones_keep_from_it_cannot_be_cleaned_nor_reached() -> None:

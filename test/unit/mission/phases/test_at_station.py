@@ -26,12 +26,19 @@ from roomba.perception.swept.dirt_map import DirtMap
 
 DOCKED = Senses(0.0, STATION, battery=Battery(0.5, 26.0, is_docked=True))
 BEFORE = Senses(0.0, Pose(0.9, 1.25, 0.0))
+STAGING = STATION.compose(Pose(-0.65, 0.0, 0.0))
 BACK = Twist(-0.1, 0.0)
 TOOL = 0.2
 
 
 def at_the_station() -> AtStation:
     return AtStation(DockingConfig(), RobotConfig())
+
+
+def four_twists(at_it: AtStation, senses: Senses) -> list[Twist]:
+    """Return what docking wants at its first ticks of a robot that senses so."""
+    ticks = (replace(senses, now=0.05 * tick) for tick in range(4))
+    return [at_it.dock(each, STATION, STAGING).twist for each in ticks]
 
 
 def test_it_drives_out_backwards() -> None:
@@ -51,13 +58,17 @@ def test_with_contacts_behind_it_drives_out_ahead_and_in_backwards() -> None:
     before = STATION.compose(Pose(-0.6, 0.0, 0.0))
     # The bumper is at its other end: what it meets is not the station.
     away = Senses(0.0, backwards.docked_at(before), bumper_left=True)
-    wanted = [at_it.dock(replace(away, now=0.05 * tick), STATION).twist for tick in range(4)]
+    wanted = [
+        at_it.dock(replace(away, now=0.05 * tick), STATION, STAGING).twist for tick in range(4)
+    ]
     assert wanted[-1].linear < 0.0
     assert abs(wanted[-1].angular) < 0.05
     # One that looks at the station turns about first.
     at_it.forget()
     faces = replace(away, pose=before)
-    turns = [at_it.dock(replace(faces, now=0.05 * tick), STATION).twist for tick in range(4)]
+    turns = [
+        at_it.dock(replace(faces, now=0.05 * tick), STATION, STAGING).twist for tick in range(4)
+    ]
     assert turns[-1].linear == 0.0
     assert abs(turns[-1].angular) > 0.5
 
@@ -90,7 +101,7 @@ def test_how_docking_ends(
 ) -> None:
     ended = DockStep(state, BACK, "no power")
     monkeypatch.setattr(Docking, "tick", lambda docking, senses: ended)
-    assert at_the_station().dock(BEFORE, STATION) == PhaseStep(BACK, event, failure)
+    assert at_the_station().dock(BEFORE, STATION, STAGING) == PhaseStep(BACK, event, failure)
 
 
 def test_it_goes_on_docking_until_that_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -104,10 +115,10 @@ def test_it_goes_on_docking_until_that_is_forgotten(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(at_station, "Docking", Counted)
     station = at_the_station()
     for number in range(5):
-        station.dock(replace(BEFORE, now=0.05 * number), STATION)
+        station.dock(replace(BEFORE, now=0.05 * number), STATION, STAGING)
     assert len(begun) == 1
     station.forget()
-    station.dock(BEFORE, STATION)
+    station.dock(BEFORE, STATION, STAGING)
     assert len(begun) == 2
 
 
