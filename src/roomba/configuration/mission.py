@@ -232,6 +232,8 @@ class ExploringConfig(Frozen):
     """m2; smaller patches of the unknown are not driven to."""
     look_from: Length = 1.2
     """m; the farthest viewpoint from its frontier."""
+    look_nearer: Length = 0.15
+    """m; a long frontier that was left is looked at again from a place that is so much nearer."""
     nearer_worth: NotNegative = 2.0
     """m of way that one metre nearer to the frontier is worth."""
     small_frontier: NotNegative = 0.4

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +47,13 @@ class ExploreResult:
         return self.outcome is CleanOutcome.COMPLETED
 
 
+class _Look(NamedTuple):
+    """The middle of a frontier that was left after a look at it, and from how far that was, m."""
+
+    middle: Point
+    distance: float
+
+
 class Exploration:
     """Chooses where to go; ``unseen`` are the frontiers that it gave up, m, map frame."""
 
@@ -66,6 +73,7 @@ class Exploration:
         )
         self.goal: Frontier | None = None
         self.unseen: list[Point] = []
+        self._looked_at: list[_Look] = []
         self._vanished: list[Point] = []
         self._sought: tuple[Point, float] | None = None
         self.is_as_near_as_it_gets = False
@@ -96,7 +104,8 @@ class Exploration:
         the robot is shut in.
 
         Those that are ``farthest`` m of way off and more are left out. A frontier to which no way
-        leads is given up. When none is left, gaps that only a clean passes are looked through.
+        leads is given up. When none is left, gaps that only a clean passes are looked through, and
+        longer frontiers that were looked at from afar are looked at from nearer.
         """
         self._leave_behind(here, context)
         at = (here.x, here.y)
@@ -105,42 +114,62 @@ class Exploration:
         except NoPathError:
             return None
         roomy = context.paths.roomy(obstacles)
-        points = self._way_to_next(
-            context,
-            at,
-            fits,
-            roomy,
-            farthest,
-            lambda there: context.paths.plan(at, there, obstacles).points,
-        )
+
+        def plan(there: Point) -> NDArray[np.float64]:
+            return context.paths.plan(at, there, obstacles).points
+
+        found = frontiers(context.known, fits, roomy, at, self.unseen, self._choice)
+        points = self._way_to_one_of(found, farthest, plan)
         if points is not None or not math.isinf(farthest):
             return points
         narrow = context.narrow_floor(at, obstacles)
-        if not (narrow.places & ~fits).any():
-            return None
-        return self._way_to_next(
-            context,
-            at,
-            narrow.places,
-            roomy,
-            farthest,
-            lambda there: context.squeeze(at, narrow.place_near(there), obstacles),
+        if (narrow.places & ~fits).any():
+            found = frontiers(context.known, narrow.places, roomy, at, self.unseen, self._choice)
+            points = self._way_to_one_of(
+                found,
+                farthest,
+                lambda there: context.squeeze(at, narrow.place_near(there), obstacles),
+            )
+        if points is None:
+            found = self._seen_from_nearer(context, fits, roomy, at)
+            points = self._way_to_one_of(found, farthest, plan)
+        return points
+
+    def _seen_from_nearer(
+        self, context: PlanningContext, fits: NDArray[np.bool_], roomy: NDArray[np.bool_], at: Point
+    ) -> list[Frontier]:
+        """Return long frontiers that were given up, but can be looked at from nearer by now.
+
+        The map went on there meanwhile, or showed where the robot fits: what is black, or met at a
+        flat angle, is seen from near alone.
+        """
+        looked = {look.middle for look in self._looked_at}
+        left_out = [point for point in self.unseen if point not in looked]
+        for _ in range(_MOST_TRIES):
+            found = frontiers(context.known, fits, roomy, at, left_out, self._choice)
+            large = [each for each in found if each.length >= self._config.small_frontier]
+            nearer = [each for each in large if self._is_nearer(each)]
+            if nearer or not large:
+                return nearer
+            left_out += [each.middle for each in large]
+        return []
+
+    def _is_nearer(self, frontier: Frontier) -> bool:
+        """Whether the viewpoint is clearly nearer than those that this place was seen from."""
+        distance = math.dist(frontier.viewpoint, frontier.middle) + self._config.look_nearer
+        return all(
+            distance < look.distance
+            for look in self._looked_at
+            if math.dist(look.middle, frontier.middle) <= self._config.same_frontier
         )
 
-    def _way_to_next(
+    def _way_to_one_of(
         self,
-        context: PlanningContext,
-        at: Point,
-        fits: NDArray[np.bool_],
-        roomy: NDArray[np.bool_],
+        found: list[Frontier],
         farthest: float,
         plan: Callable[[Point], NDArray[np.float64]],
     ) -> NDArray[np.float64] | None:
-        """Return the way to the next viewpoint on floor where the robot ``fits``, or None.
-
-        Rather to one where it has room, ``roomy``.
-        """
-        found = frontiers(context.known, fits, roomy, at, self.unseen, self._choice)
+        """Return the way to the viewpoint of the first frontier to which one leads, or None."""
         for frontier in [each for each in found if each.way < farthest][:_MOST_TRIES]:
             try:
                 points = plan(frontier.viewpoint)
@@ -219,6 +248,8 @@ class Exploration:
             return
         if is_there:
             self.unseen.append(goal.middle)
+            distance = math.dist(goal.viewpoint, goal.middle)
+            self._looked_at.append(_Look(goal.middle, distance))
 
     def _is_left(self, occupancy: OccupancyMap, middle: Point) -> bool:
         """Whether something of a frontier is left on a map."""

@@ -126,6 +126,26 @@ def test_what_was_looked_at_and_is_still_unknown_is_given_up() -> None:
     assert len(exploration.unseen) == len(set(exploration.unseen)) <= 4
 
 
+def test_what_was_looked_at_from_afar_is_looked_at_from_nearer_when_it_can() -> None:
+    """What is black, or met at a flat angle, is seen from near alone."""
+    across = [(DOORWAY[0] - 0.6, y, 0.06) for y in np.arange(0.0, 2.5, 0.1).tolist()]
+    exploration, here, looks = Exploration(CONFIG), HERE, 0
+    while exploration.next_path(here, HALL_SITE, across) is not None:
+        here, looks = at_goal(exploration), looks + 1
+        assert looks < 20
+    assert looks > 0
+    given_up = list(exploration.unseen)
+    for _ in range(20):
+        if exploration.next_path(here, HALL_SITE, []) is None:
+            break
+        assert exploration.goal is not None
+        assert exploration.goal.viewpoint[0] > DOORWAY[0] - 0.6
+        here = at_goal(exploration)
+    else:
+        pytest.fail("it looks for ever")
+    assert len(exploration.unseen) > len(given_up)
+
+
 def test_what_a_newer_map_shows_is_not_told_as_unseen() -> None:
     exploration = begun()
     assert exploration.goal is not None
