@@ -53,7 +53,8 @@ class LidarBook:
         """Return the lidar of a scan."""
         frame = str(message.header.frame_id)
         first, step, beams = message.angle_min, message.angle_increment, len(message.ranges)
-        ranges, increment = (message.range_min, self._farthest(message)), message.time_increment
+        nearest, _ = _told_ranges(message)
+        ranges, increment = (nearest, self._farthest(message)), message.time_increment
         key = (frame, beams, first, step, *ranges, increment)
         if key not in self._known:
             mount = self.mount_of(frame, Kind.SCAN)
@@ -67,12 +68,12 @@ class LidarBook:
 
         Some drivers cut ranges, and tell another largest one.
         """
-        frame, told = str(message.header.frame_id), float(message.range_max)
+        frame, (nearest, told) = str(message.header.frame_id), _told_ranges(message)
         ranges = np.asarray(message.ranges, np.float32)
         longest = float(ranges.max(initial=0.0, where=ranges < np.float32(told)))
         if longest > self._cut_at.get(frame, 0.0):
             self._cut_at.pop(frame, None)
-            if longest > message.range_min and np.mean(ranges == np.float32(longest)) > _CLIPPED:
+            if longest > nearest and np.mean(ranges == np.float32(longest)) > _CLIPPED:
                 self._cut_at[frame] = longest
         return min(told, self._cut_at.get(frame, told))
 
@@ -98,10 +99,15 @@ def transforms_in(message: Any) -> Iterator[tuple[float, FrameTransform]]:
         yield stamp.sec + 1e-9 * stamp.nanosec, transform
 
 
+def _told_ranges(message: Any) -> tuple[float, float]:
+    """Return from and to which range, m, a scan counts; a driver that tells 0 as the last, none."""
+    return float(message.range_min), float(message.range_max) or math.inf
+
+
 def _scan(message: Any, lidars: LidarBook) -> Value | Refused:
     ranges = np.asarray(message.ranges, np.float32)
     first, step = message.angle_min, message.angle_increment
-    fault = scan_fault(ranges, first, step, message.range_min, message.range_max)
+    fault = scan_fault(ranges, first, step, *_told_ranges(message))
     if fault:
         return Refused(UNUSABLE_SCANS, fault)
     return LidarScan(ranges, lidars.lidar_of(message))

@@ -19,12 +19,16 @@ from roomba.commands.progress import Show
 from roomba.configuration.robot import load_robot_config
 from roomba.files.shipped import CONFIGURATION
 from roomba.grid import FREE, OccupancyMap
+from roomba.perception.localization.estimate import Knowledge
 from roomba.recordings.drive import LoggedDrive
 from roomba.recordings.readings import Kind, LogError, OwnPose
 from roomba.recordings.times.stamps import StampCounts
 
 _SHOWN: Final = 64
 """Readings between two updates of the progress."""
+
+_MOSTLY: Final = 0.5
+"""Share of the time in which the place is known on the map of a drive, however hard that is."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,6 +87,7 @@ def localized_drive(
                 *drive.notes,
                 *replay.notes,
                 *_remarks(options, occupancy),
+                *_doubts(tally),
                 *_how_to_play(options, drive),
             ),
         )
@@ -132,6 +137,17 @@ def _remarks(options: LocalizeOptions, occupancy: OccupancyMap) -> list[str]:
     if start is None or occupancy.values[occupancy.frame.cell_of(start.x, start.y)] == FREE:
         return []
     return [f"the start ({start.x:g}, {start.y:g}) is not on free floor of {options.map}"]
+
+
+def _doubts(tally: Tally) -> list[str]:
+    """Return what is told of a map on which the place was found, and seldom known."""
+    known = tally.shares[Knowledge.KNOWN.value]
+    if tally.found is None or known >= _MOSTLY or not tally.loss_count:
+        return []
+    return [
+        f"the place was known {100.0 * known:.0f} % of the time, and lost on the way: is this the "
+        "map of the drive, and not of another floor, or mirrored?"
+    ]
 
 
 def _how_to_play(options: LocalizeOptions, drive: LoggedDrive) -> list[str]:

@@ -292,6 +292,22 @@ def test_a_lidar_of_few_beams(localize: Localize, tmp_path: Path) -> None:
     assert done.figures["shares"]["known"] > 0.95
 
 
+def test_where_the_place_is_lost_for_most_of_a_drive_it_asks_for_the_right_map(
+    localize: Localize, tmp_path: Path
+) -> None:
+    """After 4 s it is in a hall that the map does not have."""
+
+    def elsewhere(_: int, item: Item) -> Item:
+        seen = np.linspace(3.0, 9.0, 180) + np.arange(180) % 7 if item.stamp > BEGAN + 4.0 else None
+        return item if seen is None else replace(item, value=seen)
+
+    whole = drive(SECONDS)
+    for items, is_asked in ((whole, False), (changed(whole, "/scan", elsewhere), True)):
+        done = localize(write_bag(tmp_path / f"{is_asked}.bag", items), *at_start())
+        notes = done.figures["notes"]
+        assert any("is this the map of the drive" in note for note in notes) is is_asked
+
+
 def test_it_says_where_and_why_a_robot_was_lost(localize: Localize, tmp_path: Path) -> None:
     """After 5 s it is slid by half of its circle, without lifting its wheels."""
     random = np.random.default_rng(2)
