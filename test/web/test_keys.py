@@ -116,3 +116,32 @@ def test_in_a_dialog_it_can_be_stopped(opened: Opened) -> None:
     assert page.locator("#ask").is_visible()
     page.locator("#ask").get_by_role("button", name="Cancel").click()
     assert page.locator("#ask").is_hidden()
+
+
+PRESS_TWICE = "button => { button.click(); button.click(); }"
+
+
+def test_no_action_is_asked_for_twice(opened: Opened) -> None:
+    page, asked = opened.page, wishes_of(opened.page)
+    page.locator("#clean").dblclick()
+    opened.wait_for_phase("cleaning")
+    # Nor by keys or programs, which know no double click.
+    page.locator("#pause").evaluate(PRESS_TWICE)
+    opened.wait_for_phase("paused")
+    page.locator("#stop").evaluate(PRESS_TWICE)
+    opened.wait_for_phase("idle")
+    assert asked == ["clean", "pause", "stop"]
+    assert page.is_hidden("#ask")
+    # An emergency stop is never held back.
+    page.keyboard.press("Escape")
+    page.keyboard.press("Escape")
+    wait_until(lambda: asked[3:] == ["emergency_stop"] * 2, DEADLINE, lambda: f"two, not {asked}")
+
+
+def test_the_next_wish_takes_an_old_refusal_away(opened: Opened) -> None:
+    page = opened.page
+    page.evaluate("async () => (await import('/link.js')).wish('resume')")
+    page.locator("#refusal").wait_for()
+    page.locator("#clean").click()
+    assert page.is_hidden("#refusal")
+    opened.wait_for_phase("cleaning")

@@ -166,13 +166,21 @@ def test_the_network_is_cut_and_back_while_it_cleans(opened: Opened) -> None:
     page = opened.page
     page.get_by_role("button", name="Clean all").click()
     opened.wait_for_phase("cleaning")
+    page.keyboard.press("1")
     port = int(opened.server.address.rsplit(":", 1)[1].strip("/"))
     opened.server.stop()
     page.wait_for_selector("body[data-link='reconnecting']")
     assert "Connecting again" in page.inner_text("#headline")
     assert "Last seen at" in page.inner_text("#explanation")
-    for name in ("Clean all", "Pause"):
-        assert page.get_by_role("button", name=name).is_disabled()
+    for name in ("Clean all", "Pause", "Rename", "No-go zone", "New plan …"):
+        assert all(each.is_disabled() for each in page.get_by_role("button", name=name).all())
+    assert page.locator("#passes").is_disabled()
+    opened.tap(*opened.robot.home().rooms[0].anchor)
+    assert page.is_hidden("#offer")
+    # What can be read can be opened still, and stopping is tried at any time.
+    page.locator("#charts summary").click()
+    assert page.locator("#chart-battery").is_visible()
+    assert page.get_by_role("button", name="Stop now").first.is_enabled()
     covered = opened.robot.robot().vacuum.covered
     wait_until(lambda: opened.robot.robot().vacuum.covered > covered, DEADLINE, "it to go on")
     again = PageServer(
@@ -181,6 +189,7 @@ def test_the_network_is_cut_and_back_while_it_cleans(opened: Opened) -> None:
     again.start()
     try:
         page.wait_for_selector("body[data-link='live']")
+        page.keyboard.press("1")
         page.get_by_role("button", name="Pause").click()
         opened.wait_for_phase("paused")
         page.get_by_role("button", name="Stop", exact=True).click()

@@ -60,6 +60,9 @@ def test_a_robot_that_tells_nothing_is_stale_comes_back_and_is_gone(opened: Open
     try:
         page.wait_for_selector("body[data-link='stale']")
         assert "what is shown is old" in page.inner_text("#explanation")
+        for name in ("Clean all", "Dock"):
+            assert page.get_by_role("button", name=name).is_disabled()
+        assert page.get_by_role("button", name="Stop now").first.is_enabled()
     finally:
         goes_on.set()
         held.join()
@@ -69,3 +72,22 @@ def test_a_robot_that_tells_nothing_is_stale_comes_back_and_is_gone(opened: Open
     assert page.inner_text("#headline") == "The robot does not answer"
     assert "Last seen at" in page.inner_text("#explanation")
     assert page.get_by_role("button", name="Clean all").is_disabled()
+
+
+@pytest.mark.parametrize("size", [SIZES["desktop"]])
+def test_the_drive_is_not_released_by_an_old_look(opened: Opened) -> None:
+    page, goes_on = opened.page, threading.Event()
+    page.keyboard.press("Escape")
+    opened.wait_for_phase("emergency stop")
+    release = page.get_by_role("button", name="Release")
+    assert release.is_enabled()
+    held = threading.Thread(target=lambda: opened.robot.ask(lambda _: goes_on.wait(20.0)))
+    held.start()
+    try:
+        page.wait_for_selector("body[data-link='stale']")
+        assert release.is_disabled()
+    finally:
+        goes_on.set()
+        held.join()
+    release.click()
+    page.wait_for_selector("body[data-held=no]")

@@ -6,9 +6,11 @@ import { sentence } from "./words.js";
 const STALE = 1500; // ms without news after which what is shown is told to be old
 const PATIENCE = 10_000; // ms until an answer counts as lost
 const RETRY = [300, 1000, 2000, 4000]; // ms before another attempt
+const AGAIN = ["emergency_stop", "speed", "replay", "play/put"]; // the stop is never held back, and of the others the newest value counts
 
 const timers = {};
 let socket = null;
+const underWay = new Set(); // what was asked for, and is not answered yet
 let attempts = 0;
 let heard = 0; // ms of the page's clock
 let heardAt = 0; // and of the day
@@ -97,9 +99,30 @@ function show(id, text, period) {
 }
 
 const ONLY_LOOKS = "This page may only look. Open it by the address that the robot's program printed: that holds the token.";
+const SILENT = "The robot's program does not answer. The page connects again by itself.";
 
 /** Ask the robot for something; what it refuses is shown. Returns whether it obeys. */
 export async function wish(path, body, method = "POST") {
+  const reason = await askFor(path, body, method);
+  if (reason) refuse(reason);
+  return reason === "";
+}
+
+/**
+ * Ask the robot for something; returns why it is refused, empty when the robot obeys, null when the same action is
+ * under way. A refusal of before is old news then.
+ */
+export async function askFor(path, body, method = "POST") {
+  const isOnce = method === "POST" && !AGAIN.includes(path);
+  if (isOnce && underWay.has(path)) return null;
+  if (isOnce) underWay.add(path);
+  document.getElementById("refusal").hidden = true;
+  const reason = await send(path, body, method);
+  underWay.delete(path);
+  return reason;
+}
+
+async function send(path, body, method) {
   try {
     const answer = await fetch(`${BASE}api/v1/${path}`, {
       method,
@@ -108,14 +131,13 @@ export async function wish(path, body, method = "POST") {
       signal: AbortSignal.timeout(PATIENCE),
     });
     set("mayChange", answer.status !== 401);
-    if (answer.ok) return true;
-    if (answer.status === 401) { refuse(ONLY_LOOKS); return false; }
+    if (answer.ok) return "";
+    if (answer.status === 401) return ONLY_LOOKS;
     const told = await answer.json();
-    refuse(typeof told.detail === "string" ? told.detail : told.detail.map((one) => one.msg).join("; "));
+    return typeof told.detail === "string" ? told.detail : told.detail.map((one) => one.msg).join("; ");
   } catch {
-    refuse("The robot's program does not answer. The page connects again by itself.");
+    return SILENT;
   }
-  return false;
 }
 
 /** Return what the server has at a path, or null; what is wrong is shown. */
@@ -125,7 +147,7 @@ export async function ask(path) {
     if (answer.ok) return told;
     refuse(told.detail);
   } catch {
-    refuse("The robot's program does not answer. The page connects again by itself.");
+    refuse(SILENT);
   }
   return null;
 }
@@ -146,5 +168,6 @@ export async function picture(angle) {
 
 /** Send a twist, m/s and rad/s, at once. */
 export function drive(linear, angular) {
-  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ type: "drive", linear, angular }));
+  const stands = linear === 0 && angular === 0; // which is never too late
+  if (socket?.readyState === WebSocket.OPEN && (stands || get("link") === "live")) socket.send(JSON.stringify({ type: "drive", linear, angular }));
 }

@@ -26,8 +26,14 @@ export function on(names, listener) {
   listener();
 }
 
-/** Whether this page may ask the robot for something: it has the token, and shows no recording. */
-export function mayAsk() { return get("mayChange") !== false && !get("state")?.replay; }
+/** Whether the server is there. */
+export function isConnected() { return ["live", "stale"].includes(get("link")); }
+
+/** Whether this page may ask the robot for something: the server is there, it has the token, and shows no recording. */
+export function mayAsk() { return isConnected() && get("mayChange") !== false && !get("state")?.replay; }
+
+/** Whether it may ask for what sets the robot in motion: what is shown is not old, either. */
+export function mayMove() { return mayAsk() && get("link") === "live"; }
 
 /** Whether the robot offers a way to play with its home. */
 export function offers(act) { return Boolean(get("limits")?.play.includes(act)); }

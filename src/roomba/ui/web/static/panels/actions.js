@@ -1,7 +1,7 @@
 /** The buttons: clean, pause, dock, stop, explore; and how is cleaned. */
 import { $, offer, put } from "../dom.js";
 import { wish } from "../link.js";
-import { get, on, set } from "../store.js";
+import { get, isConnected, mayMove, on, set } from "../store.js";
 import { CARPETS, EDGES, MODES } from "../words.js";
 import { askYes } from "./ask.js";
 import * as queue from "./queue.js";
@@ -9,28 +9,31 @@ import * as queue from "./queue.js";
 const STANDS = ["docked", "idle"];
 const STEP = 0.1; // m/s between two top speeds that can be chosen
 
-let isAsked = false; // whether a wish to pause or go on is under way
-
 /** Connect the buttons. */
 export function begin() {
   $("clean").onclick = () => (adds() ? queue.add() : clean());
-  $("pause").onclick = (event) => { if (event.detail < 2) pauseOrResume(); }; // a double click means one
+  $("pause").onclick = pauseOrResume;
   $("dock").onclick = () => wish("dock");
   $("stop").onclick = () => wish("stop");
   $("explore").onclick = () => wish("explore");
   $("bin").onclick = () => wish("empty_bin");
   $("locate").onclick = () => wish("locate");
   $("top-speed").onchange = () => wish("speed", { speed: Number($("top-speed").value) });
+  document.addEventListener("click", onceOnly, true);
   on("limits", showLimits);
   on("state chosen home mayChange link limits", show);
 }
 
-/** Pause, or go on. */
+/** A double click means one press, but of what zooms; and no stop is held back. */
+function onceOnly(event) {
+  if (event.detail < 2 || !event.target.closest("button") || event.target.closest(".emergency, .tools")) return;
+  event.preventDefault();
+  event.stopImmediatePropagation();
+}
+
+/** Pause, or go on, when the button offers it. */
 export async function pauseOrResume() {
-  if (isAsked) return;
-  isAsked = true;
-  await wish(isPaused() ? "resume" : "pause");
-  isAsked = false;
+  if (!$("pause").disabled) await wish(isPaused() ? "resume" : "pause");
 }
 
 function isPaused() { return ["paused", "error"].includes(get("state")?.vacuum.phase); }
@@ -83,21 +86,22 @@ export function numbers(most) { return Array.from({ length: most }, (_, index) =
 function show() {
   const state = get("state"), chosen = get("chosen"), phase = state?.vacuum.phase ?? "";
   const stands = STANDS.includes(phase), isHeld = Boolean(state?.held), home = get("home");
-  const isHeard = ["live", "stale"].includes(get("link")), hasNoMap = Boolean(home) && !home.furniture.length && !home.rooms.length;
+  const isHeard = isConnected(), hasNoMap = Boolean(home) && !home.furniture.length && !home.rooms.length;
   const isFull = phase === "bin full" || /bin/.test(state?.vacuum.message ?? "");
   put($("clean"), adds() ? "Add what is chosen" : chosen.length ? `Clean ${chosen.length} room${chosen.length > 1 ? "s" : ""}` : "Clean all");
   put($("pause"), isPaused() ? "Go on" : "Pause");
   const isUnderWay = !stands && !isHeld && phase !== "" && !isFull;
   $("pause").classList.toggle("first", isUnderWay);
   $("clean").classList.toggle("first", !isUnderWay && !isFull && !(hasNoMap && stands));
-  $("pause").disabled = stands || isHeld || !isHeard;
+  for (const mover of document.querySelectorAll(".moves")) mover.disabled = !mayMove();
+  $("pause").disabled = stands || isHeld || !isHeard || (isPaused() && !mayMove());
   $("stop").disabled = (stands && !state?.speed) || isHeld || !isHeard;
-  $("clean").disabled = isHeld || !isHeard || (adds() && queue.more().length === 0);
-  $("dock").disabled = phase === "docked" || isHeld || !isHeard;
+  $("clean").disabled ||= isHeld || adds() && queue.more().length === 0;
+  $("dock").disabled ||= isHeld || phase === "docked";
   $("mode").disabled = chosen.length > 0;
   if (state?.top_speed && document.activeElement !== $("top-speed")) $("top-speed").value = state.top_speed.toFixed(1);
   $("no-map").hidden = !hasNoMap || !stands || isHeld || !isHeard || Boolean(state?.replay);
   $("bin").hidden = !isFull;
   $("only-looks").hidden = get("mayChange") !== false || Boolean(state?.replay);
-  for (const controls of document.querySelectorAll(".asks, #explore")) controls.disabled = get("mayChange") === false;
+  for (const controls of document.querySelectorAll(".asks, #note-undo")) controls.disabled = get("mayChange") === false || !isHeard;
 }

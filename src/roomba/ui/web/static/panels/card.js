@@ -1,6 +1,7 @@
 /** A card beside a place of the map: what can be done there. */
 import { $, button } from "../dom.js";
 import { toScreen } from "../map/view.js";
+import { get, on } from "../store.js";
 
 const MARGIN = 8, BESIDE = 20; // pixels
 
@@ -9,6 +10,7 @@ let dismiss = null; // what is to be done when the card is closed without a choi
 /** Let the card close when something else is touched. */
 export function begin() {
   addEventListener("resize", close);
+  on("link", () => { if (get("link") !== "live") close(); }); // what it offers may be old
   document.addEventListener("pointerdown", (event) => { if (!event.target.closest("#offer")) close(); }, true);
 }
 

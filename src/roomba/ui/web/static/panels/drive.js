@@ -1,6 +1,6 @@
 /** Driving by hand: a stream of twists while a button or key is held, and none when the page is hidden. */
 import { drive } from "../link.js";
-import { get } from "../store.js";
+import { get, on } from "../store.js";
 
 const PERIOD = 100; // ms
 
@@ -19,6 +19,7 @@ export function begin() {
   document.addEventListener("visibilitychange", () => { if (document.hidden) releaseAll(); });
   addEventListener("blur", releaseAll);
   addEventListener("pagehide", releaseAll);
+  on("link", () => { if (get("link") !== "live") releaseAll(); }); // that it is let go could be missed
 }
 
 /** Whether the arrows drive now. */

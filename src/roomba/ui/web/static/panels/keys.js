@@ -35,7 +35,7 @@ function down(event) {
   const writes = event.target.matches?.("input, select, textarea"), onButton = event.target.matches?.("button, summary, a");
   if (writes || event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
   if (event.repeat && ["Enter", " "].includes(event.key)) event.preventDefault(); // a key that is held asks once
-  else if (!onButton && zones.key(event)) event.preventDefault();
+  else if (!onButton && mayAsk() && zones.key(event)) event.preventDefault();
   else if (event.key in ARROWS && !event.target.closest?.(".parts")?.matches(":focus")) {
     event.preventDefault();
     const [ahead, aside] = ARROWS[event.key];

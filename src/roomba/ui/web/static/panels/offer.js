@@ -3,7 +3,7 @@ import { $ } from "../dom.js";
 import { wish } from "../link.js";
 import { isKnown } from "../map/grids.js";
 import { isInside, zoneAt } from "../map/zones.js";
-import { get, mayAsk, offers, set } from "../store.js";
+import { get, mayAsk, mayMove, offers, set } from "../store.js";
 import { title } from "../words.js";
 import { beginClean } from "./actions.js";
 import { open } from "./card.js";
@@ -32,7 +32,7 @@ function roomAt(x, y) { return get("home")?.rooms.find((one) => isInside(one.rin
 
 /** Offer what can be done at a place of the map; rooms are chosen as `before` when it was the place that was meant. */
 function offerPlace(x, y, name, before) {
-  if (!isKnown(x, y)) return;
+  if (!isKnown(x, y) || !mayMove()) return;
   open(name, [
     ["Go here", () => wish("go", { x, y })],
     ["Clean here", () => beginClean({ mode: "spot", spot: [x, y] })],

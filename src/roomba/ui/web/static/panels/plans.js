@@ -1,7 +1,7 @@
 /** Plans: what comes next, what waits and why; plans, presets, quiet hours, people. */
 import { $, button, put, span } from "../dom.js";
 import { ask, note, wish } from "../link.js";
-import { get, on } from "../store.js";
+import { get, mayMove, on } from "../store.js";
 import { title } from "../words.js";
 import { mayEnd } from "./actions.js";
 import { askName, askYes } from "./ask.js";
@@ -86,8 +86,11 @@ function planLine(plan) {
 
 function presetLine(preset) {
   const made = entry(preset.name, orderInWords(preset.order));
+  const begin = button("Begin", async () => await mayEnd() && wish(`presets/${encodeURIComponent(preset.name)}/begin`), `Begin ${preset.name}`);
+  begin.className = "moves";
+  begin.disabled = !mayMove();
   made.append(
-    button("Begin", async () => await mayEnd() && wish(`presets/${encodeURIComponent(preset.name)}/begin`), `Begin ${preset.name}`),
+    begin,
     button("Edit", () => edit("Preset", preset, false), `Edit ${preset.name}`),
     remover("presets", preset.name, preset),
   );
