@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ from roomba.commands.play.living import live_client
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunSource
+from roomba.history.unfinished import INTERRUPTED, WHY
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
 
@@ -76,6 +78,27 @@ def test_a_run_that_ended_is_looked_back_at(opened: Opened, history: History) ->
     assert page.inner_text("#headline").startswith("Recorded: ")
     page.get_by_role("link", name="Back to the robot").click()
     page.wait_for_selector("body[data-replay=no][data-link=live]")
+
+
+def test_a_run_that_was_interrupted_before_the_start_is_the_last_one(
+    windows: Windows, history: History, size: tuple[int, int]
+) -> None:
+    robot = live_client("studio", seed=1, speed=10.0, knows_map=True)
+    source = RunSource("play", "studio", 1)
+    cut = replace(made_figures(), source=source, outcome=INTERRUPTED, message=WHY)
+    history.add(cut)
+    keeper = HistoryKeeper(history, source, lambda text: pytest.fail(text))
+    robot.start()
+    with (
+        serving(create_app(robot, Guard(new_token()), keeper)) as server,
+        page_at(windows, server.address, size) as page,
+    ):
+        page.wait_for_selector("#last:not([hidden])", state="attached")
+        assert (page.text_content("#last-text") or "").startswith("Interrupted")
+        told = page.inner_text("#explanation")
+        assert told.startswith("Last run: interrupted")
+        assert told.endswith("Clean again what is left.")
+    robot.end()
 
 
 def test_reports_open_and_two_are_compared(opened: Opened) -> None:

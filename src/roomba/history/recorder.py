@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -9,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from roomba.client.household import TotalsView
-from roomba.client.plain import home_of
+from roomba.client.plain import home_of, report_of
 from roomba.client.protocol import AT_REST, CleanReport, ErrandOutcome
 from roomba.client.told_once import ToldOnce
 from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
@@ -28,7 +29,7 @@ from roomba.history.run import (
     turning_of,
     untold,
 )
-from roomba.history.unfinished import RunSoFar, UnfinishedFile, interrupted_runs
+from roomba.history.unfinished import INTERRUPTED, RunSoFar, UnfinishedFile, interrupted_runs
 
 BEGINS: Final = ("undocking", "cleaning", "exploring")
 """Phases in which a run has begun."""
@@ -106,6 +107,8 @@ class HistoryKeeper:
         self._has_looked = False
         self._set_aside: Path | None = None
         self._totals: TotalsView | None = None
+        self.interrupted: dict[str, Any] | None = None
+        """How the newest run ended, as plain values, if it was interrupted before this start."""
 
     def note(self, wish: Mapping[str, Any] | None) -> None:
         """Remember what the next run is asked for by, plain values; None: it was refused."""
@@ -127,6 +130,7 @@ class HistoryKeeper:
             self._keep_so_far(home, layer)
             return
         trouble = ""
+        self.interrupted = None
         try:
             self.history.add(*ended)
         except RoombaError as error:
@@ -147,6 +151,15 @@ class HistoryKeeper:
                         self.history.add(*run.interrupted())
         except (RoombaError, OSError) as error:
             self._tell(f"a run that was interrupted was not kept: {error}")
+        # A history that cannot be read is told of when it is to keep a run.
+        with contextlib.suppress(RoombaError):
+            self.interrupted = self._newest_interrupted()
+
+    def _newest_interrupted(self) -> dict[str, Any] | None:
+        source = self._recorder.source
+        runs = (run.figures for run in self.history.runs(limit=10, home=source.home))
+        newest = next((run for run in runs if run.source.program == source.program), None)
+        return None if newest is None or newest.outcome != INTERRUPTED else _end_of(newest)
 
     def _has_kept(self, run: RunSoFar) -> bool:
         """Whether the program was killed only after it had kept the run."""
@@ -236,6 +249,21 @@ class _RunUnderWay:
     def recording(self, home: HomeView, layer: Layers) -> RunRecording:
         """Return what was seen."""
         return RunRecording(self.so_far().trace, tuple(self._words), home_of(home), _cells(layer))
+
+
+def _end_of(run: RunFigures) -> dict[str, Any]:
+    """Return how a run ended as the plain values of a report; no robot tells its outcome."""
+    report = CleanReport(
+        ErrandOutcome.FAULT,
+        run.message,
+        run.covered,
+        run.wanted,
+        run.dirt,
+        run.distance,
+        run.duration,
+        run.energy,
+    )
+    return {**report_of(report), "outcome": run.outcome}
 
 
 def _cells(layer: Layers) -> dict[str, CellLayer]:

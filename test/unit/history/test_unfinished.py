@@ -18,7 +18,7 @@ from unit.history.seen import HOME, REPORT, SOURCE, layer, view
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunFigures, RunRecording
-from roomba.history.unfinished import INTERRUPTED, interrupted_runs
+from roomba.history.unfinished import INTERRUPTED, WHY, interrupted_runs
 
 ROOT: Final = Path(__file__).parents[3]
 WRITER: Final = """
@@ -81,6 +81,26 @@ def test_a_run_that_was_killed_is_kept_as_interrupted(tmp_path: Path, killed_at:
     assert np.all(recording.layers["coverage"].cells == 1)
     assert [word.phase for word in recording.words] == ["cleaning"]
     assert not list(tmp_path.glob("unfinished-*"))
+
+
+def test_a_run_that_was_killed_is_the_last_one_until_another_ends(
+    tmp_path: Path, killed_at: float
+) -> None:
+    for _ in range(2):  # it stays so when the program starts once more
+        keeper = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
+        keeper.look(view(2.0, "docked"), HOME, layer)
+        assert keeper.interrupted is not None
+        assert keeper.interrupted["outcome"] == INTERRUPTED
+        assert keeper.interrupted["message"] == WHY
+    other = HistoryKeeper(History(tmp_path), replace(SOURCE, home="other"), pytest.fail)
+    other.look(view(2.0, "docked"), HOME, layer)
+    assert other.interrupted is None
+    keeper.look(view(3.0, "cleaning"), HOME, layer)
+    keeper.look(view(9.0, "docked", REPORT), HOME, layer)
+    assert keeper.interrupted is None
+    again = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
+    again.look(view(2.0, "docked"), HOME, layer)
+    assert again.interrupted is None
 
 
 def test_a_robot_that_goes_on_goes_on_with_its_run(tmp_path: Path, killed_at: float) -> None:

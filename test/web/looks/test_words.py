@@ -62,6 +62,48 @@ def test_a_clean_that_achieved_nothing_is_told_with_its_reason(opened: Opened) -
         "dirt": 0.0, "rate": 0.0, "times": [], "times_least": 0.0, "rooms": [],
         "missed": [{"area": 12.0, "x": 1.0, "y": 1.0, "room": "bath", "reason": "a door is shut"}],
     }  # fmt: skip
-    assert opened.page.evaluate(FAIL, report) == "Nothing was cleaned: a door is shut."
+    helps = "Open it or clear the way, then clean there again."
+    assert opened.page.evaluate(FAIL, report) == f"Nothing was cleaned: a door is shut. {helps}"
     for other in ({"outcome": "stopped"}, {"covered": 6.0}, {"wanted": 0.0}):
         assert opened.page.evaluate(FAIL, {**report, **other}) == ""
+
+
+@PHONE
+def test_a_run_that_fell_short_is_told_until_the_next_one_begins(opened: Opened) -> None:
+    missed = [
+        {"area": area, "x": 1.0, "y": 1.0, "room": room, "reason": reason}
+        for area, room, reason in (
+            (12.0, "bath", "no way leads there: a door is shut"),
+            (9.0, "hall", "no way leads there: a door is shut"),
+            (1.0, "kitchen", "it was passed, but not all of it was met"),
+        )
+    ]
+    report = {
+        "outcome": "completed", "message": "not clean: 12.0 m² of bath (no way leads there: …)",
+        "covered": 28.5, "wanted": 57.4, "duration": 60.0, "dirt": 0.0, "rate": 0.0, "times": [],
+        "times_least": 0.0, "rooms": [], "missed": missed,
+    }  # fmt: skip
+
+    def told(**others: Any) -> str:
+        return str(opened.page.evaluate(FAIL, {**report, **others}))
+
+    assert told() == (
+        "Last run: 28.5 of 57.4 m² clean. Bath, Hall: no way leads there: a door is shut. "
+        "Open it or clear the way, then clean there again."
+    )
+    # What the robot finds not worth a word, and what was wished for, is none here.
+    assert told(message="") == told(outcome="stopped") == ""
+    assert told(outcome="fault", message="emergency stop: the button", missed=[]) == (
+        "Last run: ended early, 28.5 of 57.4 m² clean. Emergency stop: the button."
+    )
+    interrupted = told(
+        outcome="interrupted", missed=[],
+        message="the program that kept this run ended in the middle of it",
+    )  # fmt: skip
+    assert interrupted == (
+        "Last run: interrupted, 28.5 of 57.4 m² clean. The program that kept this run ended in "
+        "the middle of it. Clean again what is left."
+    )
+    opened.page.get_by_role("button", name="Clean all").click()
+    opened.wait_for_phase("cleaning")
+    assert opened.page.evaluate(FAIL, report) == ""

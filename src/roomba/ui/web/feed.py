@@ -110,6 +110,8 @@ class Feed:
         self._follow(view.pose[0], view.pose[1])
         told = told_of(self._household)
         state = {**state_of(view), **told, "looked": round(time.time(), 3)}
+        if view.last is None and self._keeper is not None:
+            state["last"] = self._keeper.interrupted
         if self._recorded is not None:
             state["replay"] = replay_of(self._recorded.timeline())
         self.state = Told(state)

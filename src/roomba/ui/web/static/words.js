@@ -5,6 +5,14 @@ const LATER = 7200; // s from which minutes do not matter
 const MOVES = 0.02; // m/s
 const FULL = 0.995; // of a battery
 const NOTHING = 0.01; // of the floor that was wanted
+const MOST_TOLD = 3; // rooms that a sentence lists
+const UNTOLD = ["stopped", "refused", "disconnected"]; // ends that were wished for, or are told elsewhere
+const EARLY = { interrupted: "interrupted", "not docked": "done, but not docked" }; // how a run ended, where it did not merely end early
+const HELPS = [ // what is to be done: by what stands in the reason
+  ["a door is shut", "Open it or clear the way, then clean there again."],
+  ["something stands there", "Take it away, then clean there again."],
+  ["the program that kept this run ended", "Clean again what is left."],
+];
 const TROUBLES = [ // of a robot on a line: how its message begins, and the headline
   ["the robot cannot be reached", "Cannot reach the robot"],
   ["the robot stands, as it does not tell what it senses", "The robot stands: a sensor is silent"],
@@ -89,11 +97,35 @@ export function lastRun(report) {
 }
 
 /** Return why a clean achieved nothing; empty when it was told to stop, or achieved something. */
-export function nothingDone({ outcome, covered, wanted, message, missed }) {
+function nothingDone({ outcome, covered, wanted, message, missed }) {
   if (outcome === "stopped" || !wanted || covered > NOTHING * wanted) return "";
   const reason = message || missed[0]?.reason;
   return reason ? sentence(`Nothing was cleaned: ${reason}`) : "";
 }
+
+/** Return how the last run fell short of what was asked for, why, and what helps; empty when it did not. */
+export function shortfall(report) {
+  if (!report || UNTOLD.includes(report.outcome)) return "";
+  const text = nothingDone(report) || (report.outcome === "completed" ? notAll(report) : endedEarly(report));
+  return [text, HELPS.find(([reason]) => text.toLowerCase().includes(reason))?.[1]].filter(Boolean).join(" ");
+}
+
+/** Return what of a run that came to its end the robot finds worth telling: where floor was left, and why. */
+function notAll({ covered, wanted, message, missed }) {
+  if (!message || !wanted) return "";
+  const [{ reason, room } = {}] = missed, rooms = [...new Set(missed.filter((miss) => miss.reason === reason && miss.room).map((miss) => miss.room))];
+  const more = rooms.length > MOST_TOLD ? ` and ${rooms.length - MOST_TOLD} more` : "";
+  const why = room ? `${rooms.slice(0, MOST_TOLD).map(title).join(", ")}${more}: ${reason}` : message;
+  return `Last run: ${areas(covered, wanted)}. ${sentence(why)}`;
+}
+
+function endedEarly({ outcome, covered, wanted, message }) {
+  const parts = [EARLY[outcome] ?? "ended early"];
+  if (wanted) parts.push(areas(covered, wanted));
+  return `Last run: ${parts.join(", ")}. ${sentence(message)}`;
+}
+
+function areas(covered, wanted) { return `${covered.toFixed(1)} of ${wanted.toFixed(1)} m² clean`; }
 
 /** What is said of ways to clean that need no more than their name. */
 export const MODES = { whole: "all floor", edges: "edges only", dirtiest: "dirtiest rooms first" };

@@ -1,13 +1,10 @@
 /** The state line: headline, explanation, figures, progress, and how the last run ended. */
 import { $, put, span } from "../dom.js";
 import { get, on } from "../store.js";
-import { duration, explanation, headline, lastRun, nothingDone, stands, title } from "../words.js";
+import { duration, explanation, headline, lastRun, shortfall, title } from "../words.js";
 
 const WORKS = ["cleaning", "undocking", "returning", "docking", "exploring"];
-const TOLD = 300_000; // ms for which it is told that a run achieved nothing
-
-let last; // how the last run ended, in words; nothing before the first state
-let failure = "", failedAt = 0; // why it achieved nothing, and when that was heard, ms
+const BETWEEN = ["docked", "idle", "returning", "docking"]; // what it does between two runs, when no floor is wanted
 
 /** Keep it up to date. */
 export function begin() {
@@ -16,9 +13,7 @@ export function begin() {
 
 function show() {
   const link = get("link"), state = get("state"), { body } = document;
-  if (state) follow(state.last);
-  const failed = stands(state) && performance.now() < failedAt + TOLD ? failure : "";
-  const told = explanation(link, state, get("reason"), get("age"), get("seenAt")) || failed;
+  const told = explanation(link, state, get("reason"), get("age"), get("seenAt")) || (isBetweenRuns(state) ? shortfall(state.last) : "");
   put($("headline"), headline(link, state));
   put($("explanation"), told);
   body.dataset.link = link;
@@ -39,14 +34,7 @@ function show() {
   if (state.last) showLast(state.last);
 }
 
-function follow(report) {
-  const text = report ? lastRun(report) : "";
-  if (last !== undefined && last !== text) {
-    failure = report ? nothingDone(report) : "";
-    failedAt = performance.now();
-  }
-  last = text;
-}
+function isBetweenRuns(state) { return Boolean(state) && !state.vacuum.wanted && BETWEEN.includes(state.vacuum.phase); }
 
 function batteryTime({ battery_seconds: seconds, charges }) {
   if (seconds === null || seconds === undefined) return "";
