@@ -16,6 +16,8 @@ MOST_CORNERS: Final = 200
 """Of a zone."""
 LONGEST_NAME: Final = 80
 """Characters of a room's or zone's name."""
+_JOINERS: Final = "\u200c\u200d"
+"""Invisible, but part of a word in Persian and of many emoji: between what they join or part."""
 _LISTED: Final = 20
 """Names that a message lists."""
 
@@ -88,10 +90,26 @@ class RoomDirt:
 
 def fault_of_name(name: str) -> str:
     """Return what is expected of a name in place of this one; empty if it is one."""
-    if 0 < len(name) <= LONGEST_NAME and name.strip() and name.isprintable():
+    if 0 < len(name) <= LONGEST_NAME and name.strip() and is_readable(name):
         return ""
     # Of an endless one, the beginning tells enough.
     return f"expected a name of 1 to {LONGEST_NAME} printable characters, got {name[:40]!r}"
+
+
+def is_readable(text: str) -> bool:
+    """Whether all of a text can be seen, but for joiners, each between two other characters."""
+    is_visible = [letter.isprintable() and letter != " " for letter in text]
+    return all(
+        0 < at < len(text) - 1 and is_visible[at - 1] and is_visible[at + 1]
+        if letter in _JOINERS
+        else letter.isprintable()
+        for at, letter in enumerate(text)
+    )
+
+
+def places_told(count: int) -> str:
+    """Return how many places, as a person says it."""
+    return f"{count} place" if count == 1 else f"{count} places"
 
 
 def another_name(name: str, taken: Collection[str]) -> str:

@@ -259,7 +259,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/ui/web/routes/api": ("unit/ui/web/test_app.py", "routes of the application"),
     "roomba/ui/web/feed": ("unit/ui/web/test_app.py", "what viewers of the application get"),
     "roomba/ui/prompt": ("unit/ui/test_menu.py", "asked by the menu"),
-    "roomba/vocabulary": ("contract/test_codes.py", VALUES),
     "roomba/world/camera/": ("unit/world/camera/test_camera.py", WORLD),
     "roomba/world/catalogue/": ("unit/world/catalogue/test_furniture.py", WORLD),
     "roomba/world/engine/": ("unit/world/test_simulator.py", WORLD),

@@ -16,6 +16,7 @@ from typing import Final
 
 from roomba.files.atomic import make_private
 from roomba.storage.map_folder import MapStoreError, StoredMap, read_map, write_map
+from roomba.vocabulary import is_readable
 
 __all__ = ["MapStore", "MapStoreError", "StoredMap"]
 
@@ -180,7 +181,7 @@ def _check_name(name: str) -> None:
     is_good = (
         0 < len(name) <= LONGEST_NAME
         and name == name.strip()
-        and name.isprintable()
+        and is_readable(name)
         and not _FORBIDDEN & set(name)
     )
     if not is_good:

@@ -19,6 +19,7 @@ from roomba.history.report.picture import floor_svg
 from roomba.history.report.style import STYLE
 from roomba.history.run import REQUEST, RunFigures, RunRecording
 from roomba.history.totals import totals_by_week
+from roomba.vocabulary import places_told
 
 _RATE_WINDOW: Final = 20.0
 """s over which the rate of dirt is the mean."""
@@ -129,7 +130,7 @@ def _floor(run: RunFigures, recording: RunRecording | None) -> str:
     if recording is None:
         return _section("Floor", "<p>The recording of this run is no longer kept.</p>")
     share = words.share(run.fraction)
-    title = f"Floor of {run.source.home}: {share} clean, {len(run.missed)} places missed"
+    title = f"Floor of {run.source.home}: {share} clean, {places_told(len(run.missed))} missed"
     keys = (("c1", "swept once"), ("c2", "twice"), ("c3", "more often"), ("cm", "missed"))
     legend = "".join(f'<span><i class="{key}"></i>{text}</span>' for key, text in keys)
     svg = floor_svg(recording, run.missed, title)

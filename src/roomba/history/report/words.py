@@ -7,6 +7,7 @@ import time
 from typing import Final
 
 from roomba.history.run import RunFigures
+from roomba.vocabulary import places_told
 
 _SMALLEST: Final = 0.01
 """m2 that are told in numbers."""
@@ -76,7 +77,7 @@ def figure_rows(run: RunFigures) -> list[tuple[str, str]]:
         ("Outcome", outcome_of(run)),
         ("Clean", f"{number(run.covered, 2, 'm²')} of {number(run.wanted, 2, 'm²')}"),
         ("Share", share(run.fraction)),
-        ("Missed", f"{len(run.missed)} places"),
+        ("Missed", places_told(len(run.missed))),
         ("Time", duration(run.duration)),
         ("Rate", rate_of(run)),
         ("Way", number(run.distance, 1, "m")),

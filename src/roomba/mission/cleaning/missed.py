@@ -118,7 +118,8 @@ def what_is_not_clean(wanted: float, covered: float, missed: Sequence[Missed]) -
         f"{area:.1f} m²{f' of {room}' if room else ''} ({reason.value})"
         for (room, reason), area in sorted(areas.items(), key=lambda item: -item[1])
     ]
-    more = f" and {len(told) - _MOST_TOLD} more places" if len(told) > _MOST_TOLD else ""
+    count = len(told) - _MOST_TOLD
+    more = f" and {count} more {'place' if count == 1 else 'places'}" if count > 0 else ""
     return f"not clean: {', '.join(told[:_MOST_TOLD])}{more}"
 
 

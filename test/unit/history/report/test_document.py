@@ -103,7 +103,7 @@ def test_the_floor_is_drawn_where_it_is(kept: KeptRun, recording: RunRecording) 
     assert (texts["number"], texts["size"]) == ("1", "1.00 m²")
     title = svg.find(f"{space}title")
     assert title is not None
-    assert title.text == "Floor of box: 91.7 % clean, 1 places missed"
+    assert title.text == "Floor of box: 91.7 % clean, 1 place missed"
     assert len(svg.findall(f"{space}image")) == 2
 
 

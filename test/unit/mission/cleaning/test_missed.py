@@ -122,6 +122,7 @@ def test_what_was_left_out_is_told_by_room_and_reason_the_largest_first() -> Non
     )
     many = tuple(Missed(1.0, 0.0, 0.0, f"Room {n}", MissReason.SHUT) for n in range(7))
     assert what_is_not_clean(20.0, 13.0, many).endswith(" and 3 more places")
+    assert what_is_not_clean(20.0, 13.0, many[:5]).endswith(" and 1 more place")
 
 
 def test_a_little_that_was_left_out_needs_no_words() -> None:

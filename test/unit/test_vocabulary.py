@@ -1,0 +1,38 @@
+"""What a name may be made of."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roomba.vocabulary import fault_of_name, places_told
+
+JOINERS = ("\u200c", "\u200d")
+LETTERS = st.characters(categories=("L", "M", "N", "P", "S"))
+WORDS = st.text(LETTERS, min_size=1, max_size=30)
+
+
+@pytest.mark.parametrize("name", ["Küche", "می‌خواهم", "👩‍👩‍👧‍👦", "👩‍👧 and 👨‍👦", "a b"])
+def test_names_that_people_write_are_names(name: str) -> None:
+    assert fault_of_name(name) == ""
+
+
+@given(WORDS, st.sampled_from(JOINERS), WORDS)
+def test_a_joiner_stands_between_two_characters(one: str, joiner: str, other: str) -> None:
+    assert fault_of_name(f"{one}{joiner}{other}") == ""
+    for wrong in (joiner, f"{joiner}{one}", f"{one}{joiner}", f"{one}{2 * joiner}{other}"):
+        assert "printable" in fault_of_name(wrong)
+    for wrong in (f"{one}{joiner} {other}", f"{one} {joiner}{other}"):
+        assert "printable" in fault_of_name(wrong)
+
+
+@given(WORDS, st.characters(categories=("C", "Z"), exclude_characters=" \u200c\u200d"), WORDS)
+def test_what_is_invisible_or_turns_the_text_is_in_no_name(
+    one: str, letter: str, other: str
+) -> None:
+    assert "printable" in fault_of_name(f"{one}{letter}{other}")
+
+
+def test_one_place_is_no_places() -> None:
+    assert [places_told(count) for count in (0, 1, 2)] == ["0 places", "1 place", "2 places"]
