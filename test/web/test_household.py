@@ -84,6 +84,10 @@ def test_a_plan_is_made_changed_and_removed(opened: Opened, household: LiveHouse
         form.get_by_label(day).uncheck()
     form.get_by_role("button", name="Save").click()
     assert form.get_by_role("alert").inner_text() == "Choose at least one day."
+    form.get_by_label("Name").fill(" ")
+    form.get_by_role("button", name="Save").click()
+    assert form.get_by_role("alert").inner_text() == "Give it a name."
+    form.get_by_label("Name").fill("Mornings")
     form.get_by_label("Or days by a rule").fill("FREQ=MONTHLY;BYDAY=1SA")
     for day in ("Mon", "Thu"):
         form.get_by_label(day).check()
@@ -124,6 +128,9 @@ def test_a_plan_is_made_changed_and_removed(opened: Opened, household: LiveHouse
     wait_until(lambda: household.plans().household.is_person_home, DEADLINE, "a person")
     assert len(household.plans().household.quiet) == 1
     page.get_by_role("button", name="Time zone …").click()
+    page.locator("#ask-text").fill("Nowhere")
+    page.locator("#ask").get_by_role("button", name="OK").click()
+    page.locator("#ask-fault").get_by_text("zone").wait_for()
     page.locator("#ask-text").fill("Asia/Tokyo")
     page.locator("#ask").get_by_role("button", name="OK").click()
     page.get_by_text("Times are those of Asia/Tokyo").wait_for()

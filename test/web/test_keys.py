@@ -16,6 +16,15 @@ LOOK_AT = """async ([x, y]) => {
     Object.assign(view, { x, y, isFitted: true });
     return Boolean(grid("map"));
 }"""
+PAUSE_LATE = """async () => {
+    const { get, set } = await import("/store.js"), state = get("state");
+    const { pauseOrResume } = await import("/panels/actions.js");
+    set("state", { ...state, vacuum: { ...state.vacuum, phase: "cleaning" } });
+    await pauseOrResume();
+    return document.getElementById("refusal").hidden;
+}"""
+"""Presses “Pause” before the page hears that the robot is paused."""
+PRESS_TWICE = "button => { button.click(); button.click(); }"
 FOCUSED = "() => document.activeElement.textContent || document.activeElement.id"
 
 
@@ -85,6 +94,15 @@ def test_a_double_click_on_pause_pauses_once(opened: Opened) -> None:
 
 
 @DESKTOP
+def test_a_robot_that_is_paused_already_is_as_it_was_wished(opened: Opened) -> None:
+    clean_all(opened)
+    opened.robot.pause()
+    opened.wait_for_phase("paused")
+    assert opened.page.evaluate(PAUSE_LATE)
+    assert opened.phase() == "paused"
+
+
+@DESKTOP
 def test_a_room_is_split_by_keys_and_the_hint_tells_how(opened: Opened) -> None:
     page = opened.page
     page.keyboard.press("1")
@@ -116,9 +134,6 @@ def test_in_a_dialog_it_can_be_stopped(opened: Opened) -> None:
     assert page.locator("#ask").is_visible()
     page.locator("#ask").get_by_role("button", name="Cancel").click()
     assert page.locator("#ask").is_hidden()
-
-
-PRESS_TWICE = "button => { button.click(); button.click(); }"
 
 
 def test_no_action_is_asked_for_twice(opened: Opened) -> None:

@@ -153,8 +153,16 @@ def test_a_room_gets_another_name_and_a_cut_that_is_none_is_refused(opened: Open
     opened.show("rooms")
     page.get_by_role("button", name="kitchen").click()
     page.get_by_role("button", name="Rename").click()
-    page.get_by_role("textbox", name="Name").fill("Cook's den")
+    name, fault = page.get_by_role("textbox", name="Name"), page.locator("#ask-fault")
+    for wrong, why in (("hallway", "hallway"), ("a\u202eb", "printable")):
+        name.fill(wrong)
+        page.get_by_role("button", name="OK").click()
+        fault.get_by_text(why).wait_for()
+        assert name.input_value() == wrong
+    assert page.is_hidden("#refusal")
+    name.fill("Cook's den")
     page.get_by_role("button", name="OK").click()
+    page.wait_for_selector("#ask:not([open])", state="attached")
     page.get_by_role("button", name="Cook's den").wait_for()
     assert "Cook's den" in [room.name for room in opened.robot.home().rooms]
     for chosen in page.locator("#rooms [aria-pressed=true]").all():

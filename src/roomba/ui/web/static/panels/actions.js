@@ -1,6 +1,6 @@
 /** The buttons: clean, pause, dock, stop, explore; and how is cleaned. */
 import { $, offer, put } from "../dom.js";
-import { wish } from "../link.js";
+import { askFor, refuse, wish } from "../link.js";
 import { get, isConnected, mayMove, on, set } from "../store.js";
 import { CARPETS, EDGES, MODES } from "../words.js";
 import { askYes } from "./ask.js";
@@ -33,7 +33,9 @@ function onceOnly(event) {
 
 /** Pause, or go on, when the button offers it. */
 export async function pauseOrResume() {
-  if (!$("pause").disabled) await wish(isPaused() ? "resume" : "pause");
+  if ($("pause").disabled) return;
+  const reason = isPaused() ? await askFor("resume") : await askFor("pause");
+  if (reason && !/^cannot pause now: the robot is paused/.test(reason)) refuse(reason); // then it is as it was wished
 }
 
 function isPaused() { return ["paused", "error"].includes(get("state")?.vacuum.phase); }

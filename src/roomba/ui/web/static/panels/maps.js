@@ -1,6 +1,6 @@
 /** The robot's saved maps, and what it offers to change of the one that it goes by. */
 import { $, put } from "../dom.js";
-import { ask, note, wish } from "../link.js";
+import { ask, askFor, note, wish } from "../link.js";
 import { get, on } from "../store.js";
 import { askName, askYes } from "./ask.js";
 import { open } from "./sheet.js";
@@ -55,6 +55,5 @@ function button(text, label, act) {
 }
 
 async function save() {
-  const name = await askName("Save the map as", "");
-  if (name && await wish("maps/save", { name })) await showMaps();
+  if (await askName("Save the map as", "", (name) => askFor("maps/save", { name }))) await showMaps();
 }

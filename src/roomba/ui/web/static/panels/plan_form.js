@@ -31,9 +31,10 @@ export function askPlan(title, given, presets, isPlan, isNew, fault) {
   };
   $("plan-mode").onchange = showRooms;
   dialog.querySelector("form").onsubmit = (event) => {
-    if (event.submitter?.value !== "yes" || !isPlan || $("plan-rule").value.trim() || checked("plan-days").length) return;
+    const fault = event.submitter?.value === "yes" ? missing(isPlan) : "";
+    if (!fault) return;
     event.preventDefault();
-    showFault("Choose at least one day.");
+    showFault(fault);
   };
   showOrder(given.order);
   dialog.returnValue = "";
@@ -42,6 +43,12 @@ export function askPlan(title, given, presets, isPlan, isNew, fault) {
   return new Promise((resolve) => {
     dialog.onclose = () => resolve(dialog.returnValue === "yes" ? entered(given, isPlan) : null);
   });
+}
+
+/** Return what is still to be entered; empty when nothing is. */
+function missing(isPlan) {
+  if (!$("plan-name").value.trim()) return "Give it a name.";
+  return isPlan && !$("plan-rule").value.trim() && !checked("plan-days").length ? "Choose at least one day." : "";
 }
 
 function showFault(fault) {

@@ -1,8 +1,8 @@
 /** Plans: what comes next, what waits and why; plans, presets, quiet hours, people. */
 import { $, button, put, span } from "../dom.js";
-import { ask, note, wish } from "../link.js";
+import { ask, askFor, note, wish } from "../link.js";
 import { get, mayMove, on } from "../store.js";
-import { title } from "../words.js";
+import { sentence, title } from "../words.js";
 import { mayEnd } from "./actions.js";
 import { askName, askYes } from "./ask.js";
 import { askPlan, daysInWords } from "./plan_form.js";
@@ -124,25 +124,25 @@ async function edit(heading, given, isPlan) {
   if (!await known()) return;
   const path = isPlan ? "plans" : "presets", isNew = given.name === "";
   // What is refused comes back into the form, with what was entered.
-  let entered = await askPlan(heading, given, told.presets, isPlan, isNew, "");
-  while (entered && !await wish(path, entered, "PUT"))
-    entered = await askPlan(heading, entered, told.presets, isPlan, isNew, $("refusal").textContent);
+  let entered = await askPlan(heading, given, told.presets, isPlan, isNew, ""), fault = "";
+  while (entered && (fault = await askFor(path, entered, "PUT")))
+    entered = await askPlan(heading, entered, told.presets, isPlan, isNew, sentence(fault));
   await showAll(get("state")?.plans?.version ?? 0);
 }
 
 async function changeZone() {
-  const zone = await known() && await askName("Time zone, such as Europe/Berlin", told.zone);
-  if (zone) await change("household/zone", { zone });
+  if (await known()) await askName("Time zone, such as Europe/Berlin", told.zone, (zone) => change("household/zone", { zone }, askFor));
 }
 
 function quiet(hours) { return change("household/quiet", { quiet: hours }); }
 
-/** Change something, and show what is so then, also where it was refused. */
-async function change(path, body) {
+/** Change something, and show what is so then, also where it was refused; returns what asking returned. */
+async function change(path, body, asking = wish) {
   changes += 1;
-  await wish(path, body, "PUT");
+  const answer = await asking(path, body, "PUT");
   changes += 1;
   await showAll(get("state")?.plans?.version ?? 0);
+  return answer;
 }
 
 function orderInWords(order) {

@@ -1,6 +1,6 @@
 /** The rooms: choose them in order, each its own way; rename, join, split. */
 import { $, offer, span } from "../dom.js";
-import { note, wish } from "../link.js";
+import { askFor, note, wish } from "../link.js";
 import { get, on, set } from "../store.js";
 import { title } from "../words.js";
 import { how, numbers } from "./actions.js";
@@ -40,8 +40,9 @@ export function toggleNumber(number) {
 
 async function rename() {
   const [name] = get("chosen");
-  const given = await askName(`Another name for ${name}`, name);
-  if (!given || given === name || !await wish("rooms/rename", { name, new_name: given })) return;
+  const take = async (given) => (given === name ? "" : askFor("rooms/rename", { name, new_name: given }));
+  const given = await askName(`Another name for ${name}`, name, take);
+  if (!given || given === name) return;
   set("chosen", []);
   note(`${name} is ${given} now.`, () => wish("rooms/rename", { name: given, new_name: name }));
 }
