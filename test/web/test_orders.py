@@ -44,6 +44,19 @@ def test_it_beeps_and_edges_alone_are_cleaned(opened: Opened) -> None:
     assert opened.robot.ask(asked_for) is CleanMode.EDGES
 
 
+def test_how_is_cleaned_is_remembered_for_the_home(opened: Opened) -> None:
+    page = opened.page
+    opened.show("rooms")
+    page.locator("#passes").select_option("2")
+    page.locator("#fan").select_option("quiet")
+    page.reload()
+    opened.wait_for_phase("docked")
+    wait_until(lambda: page.locator("#passes").input_value() == "2", DEADLINE, "two passes")
+    assert page.locator("#fan").input_value() == "quiet"
+    # Of another home something else was chosen, or nothing.
+    assert page.evaluate("() => Object.keys(localStorage)") == ["how is cleaned in flat"]
+
+
 @pytest.mark.parametrize("speed", [20.0])
 def test_it_goes_where_the_floor_was_tapped_and_back_to_be_charged(opened: Opened) -> None:
     page = opened.page

@@ -8,6 +8,9 @@ import * as queue from "./queue.js";
 
 const STANDS = ["docked", "idle"];
 const STEP = 0.1; // m/s between two top speeds that can be chosen
+const USUAL = { passes: 1, fan: "standard", carpets: "boost", edges: "any" };
+
+let recalled = ""; // of which home it was
 
 /** Connect the buttons. */
 export function begin() {
@@ -20,7 +23,9 @@ export function begin() {
   $("locate").onclick = () => wish("locate");
   $("top-speed").onchange = () => wish("speed", { speed: Number($("top-speed").value) });
   document.addEventListener("click", onceOnly, true);
+  for (const name of Object.keys(USUAL)) $(name).onchange = keep;
   on("limits", showLimits);
+  on("home", recall);
   on("state chosen home mayChange link limits", show);
 }
 
@@ -55,8 +60,8 @@ export async function mayEnd() {
 /** What of a clean is the same for all ways to begin one; before the limits came, what is usual. */
 export function how() {
   return {
-    passes: Number($("passes").value) || 1, fan: $("fan").value || "standard",
-    carpets: $("carpets").value || "boost", edges: $("edges").value || "any",
+    passes: Number($("passes").value) || USUAL.passes, fan: $("fan").value || USUAL.fan,
+    carpets: $("carpets").value || USUAL.carpets, edges: $("edges").value || USUAL.edges,
   };
 }
 
@@ -72,15 +77,36 @@ function showLimits() {
   const limits = get("limits");
   if (!limits) return;
   document.querySelector(".how").hidden = false;
-  offer($("passes"), numbers(limits.most_passes), $("passes").value || 1);
-  offer($("fan"), limits.fans.map((fan) => [fan, fan]), $("fan").value || "standard");
-  offer($("carpets"), limits.carpets.map((way) => [way, CARPETS[way] ?? way]), $("carpets").value || "boost");
-  offer($("edges"), limits.edges.map((order) => [order, EDGES[order] ?? order]), $("edges").value || "any");
+  offer($("passes"), numbers(limits.most_passes), $("passes").value || USUAL.passes);
+  offer($("fan"), limits.fans.map((fan) => [fan, fan]), $("fan").value || USUAL.fan);
+  offer($("carpets"), limits.carpets.map((way) => [way, CARPETS[way] ?? way]), $("carpets").value || USUAL.carpets);
+  offer($("edges"), limits.edges.map((order) => [order, EDGES[order] ?? order]), $("edges").value || USUAL.edges);
   offer($("mode"), limits.modes.filter((mode) => mode in MODES).map((mode) => [mode, MODES[mode]]));
   const speeds = [];
   for (let speed = limits.min_speed; speed < limits.max_speed + 0.01; speed += STEP) speeds.push([speed.toFixed(1), speed.toFixed(1)]);
   offer($("top-speed"), speeds, limits.max_speed.toFixed(1));
+  recalled = "";
+  recall();
 }
+
+/** Keep in this browser how is cleaned in this home. */
+function keep() {
+  try {
+    localStorage.setItem(place(), JSON.stringify(how()));
+  } catch { /* a browser that keeps nothing: it is chosen anew each time */ }
+}
+
+/** Choose once what was kept for this home, as far as it can still be chosen. */
+function recall() {
+  if (!get("home") || !get("limits") || recalled === place()) return;
+  recalled = place();
+  try {
+    for (const [name, value] of Object.entries(JSON.parse(localStorage.getItem(recalled)) ?? {}))
+      if (name in USUAL && [...$(name).options].some((option) => option.value === String(value))) $(name).value = String(value);
+  } catch { /* nothing that can be read is kept */ }
+}
+
+function place() { return `how is cleaned in ${get("home")?.name}`; }
 
 /** Return the numbers from 1 to the most, as a select offers them. */
 export function numbers(most) { return Array.from({ length: most }, (_, index) => [index + 1, String(index + 1)]); }
