@@ -44,7 +44,7 @@ def test_a_long_name_leaves_room_for_all_else(opened: Opened) -> None:
     page.locator("#offer").get_by_role("button", name="Go here").click()
     wait_until(lambda: LONG[1:] in page.inner_text("#headline"), DEADLINE, "its name")
     assert box(page.locator("#emergency"))[2] <= width
-    assert is_apart(page.locator("#headline"), page.locator(".figures"))
+    assert is_apart(page.locator(".what h1"), page.locator(".figures"))
     page.keyboard.press("1")
     opened.show("rooms")
     page.get_by_role("button", name="Rename").click()

@@ -35,6 +35,11 @@ def test_the_headline_says_what_it_does(opened: Opened) -> None:
     assert headline(state("cleaning", 0.3)) == "Cleaning · Hall"
     assert headline(state("cleaning", 0.3, queue=["hall", "bath"])) == "Cleaning · Hall"
     assert headline(state("cleaning", 0.3, queue=["bath"])) == "On its way to Bath"
+    # What changes each second is told beside it: screen readers would tell it as often.
+    told = state("cleaning", 0.3, seconds_to_go=50)
+    assert headline(told) == "Cleaning · Hall"
+    assert opened.page.evaluate(SAY, ["toGo", "live", told]) == " · 50 s to go"
+    assert opened.page.evaluate(SAY, ["toGo", "gone", told]) == ""
 
 
 @PHONE

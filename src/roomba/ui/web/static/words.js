@@ -25,17 +25,16 @@ export function headline(link, state) {
   if (link === "gone") return "The robot does not answer";
   if (!state || link === "reconnecting") return "Connecting again …";
   if (state.replay) return `Recorded: ${headline(link, { ...state, replay: null })}`;
-  const trouble = TROUBLES.find(([begin]) => [state.vacuum.message, state.doubt].some((told) => told?.startsWith(begin)));
-  if (trouble) return trouble[1];
+  const trouble = troubleOf(state);
+  if (trouble) return trouble;
   const { vacuum } = state, room = (vacuum.room ? ` · ${title(vacuum.room)}` : "") + (vacuum.is_on_carpet ? " · on carpet" : "");
-  const togo = vacuum.seconds_to_go > 0 && vacuum.state === "cleaning" ? ` · ${duration(vacuum.seconds_to_go)} to go` : "";
   if (state.truth?.lifted) return "Lifted off the floor";
   switch (vacuum.phase) {
     case "docked": return vacuum.charges && vacuum.battery < FULL ? "On its station, charging" : "On its station, ready";
     case "charging": return "Charging, then it goes on";
     case "idle": return moves(state) ? `On its way${room}` : `Standing${room}`;
     case "undocking": return "Leaving its station";
-    case "cleaning": return `${isElsewhere(vacuum) ? `On its way to ${title(vacuum.queue[0])}` : `Cleaning${room}`}${togo}`;
+    case "cleaning": return `${isElsewhere(vacuum) ? `On its way to ${title(vacuum.queue[0])}` : `Cleaning${room}`}`;
     case "exploring": return "Looking at what it does not know yet";
     case "returning": return "On its way home";
     case "docking": return "Docking";
@@ -48,6 +47,17 @@ export function headline(link, state) {
   }
 }
 
+function troubleOf(state) {
+  return TROUBLES.find(([begin]) => [state.vacuum.message, state.doubt].some((told) => told?.startsWith(begin)))?.[1];
+}
+
+/** Return how long it still cleans; empty when it does not. This changes all the time, and is not read out. */
+export function toGo(link, state) {
+  if (!state || !["live", "stale"].includes(link) || troubleOf(state)) return "";
+  const { seconds_to_go: seconds, phase } = state.vacuum;
+  return seconds > 0 && phase === "cleaning" ? ` · ${duration(seconds)} to go` : "";
+}
+
 function moves(state) { return state.speed > MOVES; }
 
 /** Whether the robot stands, and waits for what it is told. */
@@ -57,10 +67,10 @@ export function stands(state) { return Boolean(state) && ["docked", "idle", "pau
 function isElsewhere({ queue, room }) { return queue?.length > 0 && queue[0] !== room; }
 
 /** Return why it does not do what was asked, and what helps; empty when all is well. */
-export function explanation(link, state, reason, age, heardAt) {
+export function explanation(link, state, reason, heardAt) {
   const seen = heardAt ? ` Last seen at ${new Date(heardAt).toLocaleTimeString()}.` : "";
   if (link === "gone") return `${sentence(reason.replaceAll("`", ""))}${seen}`;
-  if (link === "stale") return `No news for ${Math.round(age / 1000)} s; what is shown is old.`;
+  if (link === "stale") return "No news: what is shown is old.";
   if (link === "reconnecting") return `The page comes back by itself as soon as the robot's program answers.${seen}`;
   if (!state) return "";
   if (state.held) return `The drive is held: ${state.held}. “Release” lets it go.`;
@@ -68,6 +78,9 @@ export function explanation(link, state, reason, age, heardAt) {
   if (/^bin full/.test(state.vacuum.message)) return "Empty the dust bin, then press “Bin emptied”.";
   return sentence(state.vacuum.message || state.doubt);
 }
+
+/** Return how old is what is shown; this changes all the time, and is not read out. */
+export function oldness(link, age) { return link === "stale" ? `It was heard ${Math.round(age / 1000)} s ago.` : ""; }
 
 /** Return a text as a sentence. */
 export function sentence(text) {

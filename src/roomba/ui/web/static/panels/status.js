@@ -1,7 +1,7 @@
 /** The state line: headline, explanation, figures, progress, and how the last run ended. */
 import { $, put, span } from "../dom.js";
 import { get, on } from "../store.js";
-import { duration, explanation, headline, lastRun, shortfall, title } from "../words.js";
+import { duration, explanation, headline, lastRun, oldness, shortfall, title, toGo } from "../words.js";
 
 const WORKS = ["cleaning", "undocking", "returning", "docking", "exploring"];
 const BETWEEN = ["docked", "idle", "returning", "docking"]; // what it does between two runs, when no floor is wanted
@@ -13,9 +13,11 @@ export function begin() {
 
 function show() {
   const link = get("link"), state = get("state"), { body } = document;
-  const told = explanation(link, state, get("reason"), get("age"), get("seenAt")) || (isBetweenRuns(state) ? shortfall(state.last) : "");
+  const told = explanation(link, state, get("reason"), get("seenAt")) || (isBetweenRuns(state) ? shortfall(state.last) : "");
   put($("headline"), headline(link, state));
+  put($("to-go"), toGo(link, state));
   put($("explanation"), told);
+  put($("old"), oldness(link, get("age")));
   body.dataset.link = link;
   body.dataset.attention = told ? "yes" : "no";
   body.dataset.held = state?.held ? "yes" : "no";
