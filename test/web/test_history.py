@@ -10,7 +10,7 @@ import pytest
 from fixtures.pages.windows import Windows
 from fixtures.waiting import wait_until
 from unit.history.made import made_figures, made_recording
-from web.conftest import Opened, page_at, serving
+from web.conftest import SIZES, Opened, page_at, serving
 from web.test_page import DEADLINE, check_it_can_be_read
 
 from roomba.commands.play.living import live_client
@@ -99,6 +99,31 @@ def test_a_run_that_was_interrupted_before_the_start_is_the_last_one(
         assert told.startswith("Last run: interrupted")
         assert told.endswith("Clean again what is left.")
     robot.end()
+
+
+@pytest.mark.parametrize("size", [SIZES["phone"]])
+def test_the_way_back_closes_what_is_open_and_comes_back_to_it(opened: Opened) -> None:
+    page = opened.page
+    opened.show("more")
+    page.get_by_role("button", name="History").click()
+    page.get_by_role("link", name="Replay run 2").click()
+    page.wait_for_selector("#timeline:not([hidden])")
+    page.go_back()
+    page.locator("#history").wait_for()
+    page.go_back()
+    page.locator("#history").wait_for(state="hidden")
+    opened.wait_for_phase("docked")
+    opened.show("more")
+    page.get_by_role("button", name="Keys").click()
+    page.go_back()
+    page.wait_for_selector("#keys:not([open])", state="attached")
+    assert page.locator("[data-tab=more]").get_attribute("aria-expanded") == "true"
+    page.go_back()
+    page.locator("[data-tab=more][aria-expanded=false]").wait_for()
+    page.locator("[data-tab=more]").click()
+    page.locator("[data-tab=more]").click()
+    page.go_back()  # nothing is open: the page is left
+    page.wait_for_url("about:blank")
 
 
 def test_reports_open_and_two_are_compared(opened: Opened) -> None:

@@ -8,7 +8,7 @@ from playwright.sync_api import Page, Request
 from web.conftest import SIZES, Opened
 from web.test_page import DEADLINE
 
-from roomba.client.view import CleanOrder
+from roomba.client.view import CleanOrder, ZoneView
 
 DESKTOP = pytest.mark.parametrize("size", [SIZES["desktop"]])
 LOOK_AT = """async ([x, y]) => {
@@ -91,6 +91,23 @@ def test_a_double_click_on_pause_pauses_once(opened: Opened) -> None:
     opened.wait_for_phase("paused")
     assert asked == ["pause"]
     assert page.is_hidden("#refusal")
+
+
+@DESKTOP
+def test_escape_lets_go_of_a_zone_before_it_stops_a_robot_that_stands(opened: Opened) -> None:
+    page, asked = opened.page, wishes_of(opened.page)
+    opened.robot.put_zone(ZoneView("Zone 1", "no-go", ((1, 1), (2, 1), (2, 2), (1, 2))))
+    pick = page.get_by_role("button", name="Move Zone 1", exact=True)
+    pick.click()
+    page.keyboard.press("Escape")
+    assert pick.get_attribute("aria-pressed") == "false"
+    assert asked == []
+    # What moves is stopped at once.
+    pick.click()
+    clean_all(opened)
+    page.keyboard.press("Escape")
+    opened.wait_for_phase("emergency stop")
+    assert pick.get_attribute("aria-pressed") == "false"
 
 
 @DESKTOP

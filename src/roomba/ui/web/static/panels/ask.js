@@ -1,6 +1,7 @@
 /** Asks the viewer for a name, or for a yes. */
 import { $, put } from "../dom.js";
 import { sentence } from "../words.js";
+import { showDialog } from "./opened.js";
 
 /**
  * Ask for a name until it is taken: `take(name)` returns why it is refused, empty when it is not. Returns the name, or
@@ -28,7 +29,7 @@ function ask(title, text, take) {
   };
   showFault("");
   dialog.returnValue = "";
-  dialog.showModal();
+  showDialog(dialog);
   return new Promise((resolve) => {
     dialog.onclose = () => { isAnswered = true; resolve(dialog.returnValue === "yes" ? $("ask-text").value : null); };
   });

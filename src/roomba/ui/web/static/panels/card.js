@@ -2,6 +2,7 @@
 import { $, button } from "../dom.js";
 import { toScreen } from "../map/view.js";
 import { get, on } from "../store.js";
+import { closed, opened } from "./opened.js";
 
 const MARGIN = 8, BESIDE = 20; // pixels
 
@@ -22,6 +23,7 @@ export function open(words, acts, at, otherwise = null) {
   $("offer-title").textContent = words;
   $("offer-acts").replaceChildren(...acts.map(([text, act]) => button(text, () => { dismiss = null; close(); act(); })));
   place.hidden = false;
+  opened("card", close);
   const { clientWidth: width, clientHeight: height } = place.parentElement, { offsetWidth, offsetHeight } = place, [px, py] = toScreen(...at);
   const above = py - BESIDE - offsetHeight, below = py + BESIDE;
   place.style.left = `${between(px - offsetWidth / 2, MARGIN, width - offsetWidth - MARGIN)}px`;
@@ -40,6 +42,7 @@ function between(value, least, most) { return Math.max(least, Math.min(value, mo
 export function close() {
   if ($("offer").contains(document.activeElement)) $("floor").focus();
   $("offer").hidden = true;
+  closed("card");
   dismiss?.();
   dismiss = null;
 }

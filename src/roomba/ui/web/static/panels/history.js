@@ -4,6 +4,7 @@ import { $ } from "../dom.js";
 import { BASE, ask } from "../link.js";
 import { get, on } from "../store.js";
 import { duration, title } from "../words.js";
+import { closed, opened, remember, wasShown } from "./opened.js";
 
 let runs = [], compared = [];
 
@@ -16,7 +17,10 @@ export function begin() {
     const [one, other] = [...compared].sort((a, b) => a - b);
     window.open(`${BASE}api/v1/history/compare.html?one=${one}&other=${other}`, "_blank", "noopener");
   };
-  on("hasHistory", () => { $("history-open").hidden = !get("hasHistory"); });
+  on("hasHistory", () => {
+    $("history-open").hidden = !get("hasHistory");
+    if (get("hasHistory") && $("history").hidden && wasShown("history")) open();
+  });
 }
 
 async function open() {
@@ -29,12 +33,16 @@ async function open() {
   $("history-weeks").replaceChildren(...told.weeks.map(week));
   $("history").hidden = false;
   for (const part of document.querySelectorAll("main > :not(#history)")) part.inert = true;
+  opened("history", close);
+  remember("history", true);
   $("history-title").focus();
   show();
 }
 
 function close() {
   $("history").hidden = true;
+  closed("history");
+  remember("history", false);
   for (const part of document.querySelectorAll("main > *")) part.inert = false;
   $("history-open").focus();
 }

@@ -1,12 +1,13 @@
 /** The keyboard. */
 import { $ } from "../dom.js";
 import { pan, toFloor, view, zoom } from "../map/view.js";
-import { get, mayAsk, set } from "../store.js";
+import { get, mayAsk } from "../store.js";
 import { stands } from "../words.js";
 import { pauseOrResume } from "./actions.js";
 import * as card from "./card.js";
 import { hold, isOpen, release } from "./drive.js";
 import { offerAt } from "./offer.js";
+import { closeNewest, showDialog } from "./opened.js";
 import * as replay from "./replay.js";
 import { toggleNumber } from "./rooms.js";
 import { emergency } from "./stop.js";
@@ -17,7 +18,7 @@ const STEP = 60; // pixels
 
 /** Listen to keys. */
 export function begin() {
-  $("help").onclick = () => $("keys").showModal();
+  $("help").onclick = () => showDialog($("keys"));
   document.addEventListener("keydown", down);
   document.addEventListener("keyup", (event) => { if (event.key in ARROWS) release(event.key); });
 }
@@ -25,10 +26,11 @@ export function begin() {
 function down(event) {
   if (event.key === "Escape") {
     if (document.querySelector("dialog[open]")) return; // it closes that
-    const isFirst = (card.isOpen() || get("drawing")) && stands(get("state")); // while nothing moves it closes these first
-    card.close();
-    set("drawing", null);
-    if (!isFirst && !replay.isShown()) emergency();
+    const mayMove = get("link") !== "live" || !stands(get("state"));
+    if (mayMove && !replay.isShown()) { // what moves is stopped before all else
+      while (closeNewest("sheet", "history"));
+      emergency();
+    } else if (!closeNewest("sheet") && !replay.isShown()) emergency();
     return;
   }
   if (!$("history").hidden) return;
@@ -49,7 +51,7 @@ function down(event) {
   }
   else if (event.key === "+" || event.key === "=") zoom(1.4);
   else if (event.key === "-") zoom(1 / 1.4);
-  else if (event.key === "?") $("keys").showModal();
+  else if (event.key === "?") showDialog($("keys"));
   else if (/^[1-9]$/.test(event.key) && mayAsk()) toggleNumber(Number(event.key));
 }
 

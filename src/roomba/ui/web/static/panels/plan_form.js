@@ -3,6 +3,7 @@ import { $, offer } from "../dom.js";
 import { get } from "../store.js";
 import { CARPETS, EDGES } from "../words.js";
 import { numbers } from "./actions.js";
+import { showDialog } from "./opened.js";
 
 const DAYS = { MO: "Mon", TU: "Tue", WE: "Wed", TH: "Thu", FR: "Fri", SA: "Sat", SU: "Sun" };
 const WHAT = [["whole", "all floor"], ["rooms", "rooms"], ["edges", "edges only"], ["dirtiest", "dirtiest rooms first"]];
@@ -38,7 +39,7 @@ export function askPlan(title, given, presets, isPlan, isNew, fault) {
   };
   showOrder(given.order);
   dialog.returnValue = "";
-  dialog.showModal();
+  showDialog(dialog);
   showFault(fault);
   return new Promise((resolve) => {
     dialog.onclose = () => resolve(dialog.returnValue === "yes" ? entered(given, isPlan) : null);

@@ -1,4 +1,5 @@
 /** On a phone, the sheet above the buttons: a tab opens its part, again or a swipe down closes it. */
+import { closed, opened } from "./opened.js";
 
 const SWIPE = 30; // pixels
 
@@ -22,5 +23,6 @@ export function begin() {
 /** Open a part, or close the sheet. */
 export function open(name) {
   if (name) panel.dataset.open = name; else delete panel.dataset.open;
+  if (name && tabs[0].offsetParent) opened("sheet", () => open(null)); else closed("sheet");
   for (const tab of tabs) tab.setAttribute("aria-expanded", String(tab.dataset.tab === name));
 }

@@ -7,6 +7,7 @@ import { get, on, set } from "../store.js";
 import { title, ZONES } from "../words.js";
 import { beginClean } from "./actions.js";
 import * as card from "./card.js";
+import { closed, opened } from "./opened.js";
 import { undo } from "./rooms.js";
 import * as sheet from "./sheet.js";
 
@@ -23,6 +24,7 @@ export function begin() {
   $("hint-cancel").onclick = () => set("drawing", null);
   on("home zone", showZones);
   on("drawing", showDrawing);
+  for (const name of ["drawing", "zone"]) on(name, () => (get(name) ? opened(name, () => set(name, null)) : closed(name)));
 }
 
 function draw(drawing, event) {
