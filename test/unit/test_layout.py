@@ -257,7 +257,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/ui/state_words": ("unit/commands/status/test_command.py", "told by the command"),
     "roomba/ui/top/link": ("unit/ui/top/test_app.py", "what the view follows"),
     "roomba/ui/web/routes/api": ("unit/ui/web/test_app.py", "routes of the application"),
-    "roomba/ui/web/feed": ("unit/ui/web/test_app.py", "what viewers of the application get"),
     "roomba/ui/prompt": ("unit/ui/test_menu.py", "asked by the menu"),
     "roomba/world/camera/": ("unit/world/camera/test_camera.py", WORLD),
     "roomba/world/catalogue/": ("unit/world/catalogue/test_furniture.py", WORLD),

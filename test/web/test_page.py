@@ -56,6 +56,17 @@ CONTROLS = """() => [...document.querySelectorAll("button, select, summary, canv
     })"""
 
 
+DRAW_WAY = """async (points) => {
+    const { set } = await import("/store.js"), { drawTrail } = await import("/map/moving.js");
+    const drawn = [], paper = { beginPath() {}, stroke() {} };
+    paper.moveTo = () => drawn.push("to");
+    paper.lineTo = () => drawn.push("along");
+    set("trail", points);
+    drawTrail(paper);
+    return drawn.filter((how) => how === "along").length;
+}"""
+
+
 def colours(opened: Opened) -> int:
     """Return how many different colours the map has."""
     return int(opened.page.evaluate(COUNT_COLOURS))
@@ -70,6 +81,15 @@ def test_the_map_is_drawn_and_the_state_is_said(opened: Opened) -> None:
     shown = page.locator("#rooms .name").all_text_contents()
     assert shown == names
     assert colours(opened) > 20
+
+
+def test_where_the_robot_was_carried_or_not_seen_no_way_is_drawn(opened: Opened) -> None:
+    def lines(*points: list[float]) -> int:
+        return int(opened.page.evaluate(DRAW_WAY, points))
+
+    assert lines([0, 0], [0.1, 0], [0.1, 0.5], [0.2, 0.5]) == 3
+    assert lines([0, 0], [0.1, 0], [0.1, 0.5, True], [0.2, 0.5]) == 2
+    assert lines([0, 0], [0.1, 0], [0.1, 1.5], [0.2, 1.5]) == 2
 
 
 @pytest.mark.parametrize("speed", [20.0])

@@ -31,6 +31,13 @@ _STEP: Final = 0.03
 """m between two places of the trail."""
 _MOST_TRAIL: Final = 20000
 """Places of the trail that are kept."""
+_FASTEST: Final = 1.0
+"""m/s that no robot drives."""
+_CORRECTED: Final = 0.15
+"""m by which a place may be corrected from one look to the next."""
+
+Place = tuple[float, float] | tuple[float, float, bool]
+"""x and y, m; True where the way begins anew: the robot did not drive there from the one before."""
 
 
 class Feed:
@@ -54,10 +61,14 @@ class Feed:
         self.home: Told | None = None
         self.home_version = 0
         self.layers = {name: TiledLayer(name.value) for name in LayerName}
-        self.trail: list[tuple[float, float]] = []
+        self.trail: list[Place] = []
         self.trail_began = 0
         self._trails: dict[int, Told] = {}
         self._jumps = 0
+        self._seen: tuple[float, float, float] | None = (
+            None  # when and where it was at the last look
+        )
+        self._is_carried = False  # since the last place of the trail
 
     async def run(self) -> None:
         """Look at the robot for ever."""
@@ -73,6 +84,7 @@ class Feed:
         except (RobotUnavailableError, RoombaError) as reason:
             # What was seen last stays on the page, greyed, with the reason.
             self.state = Told({**self.state.value, "link": "gone", "reason": str(reason)})
+            self._seen = None
             self.metrics.look(None, self.events.note_gone(str(reason)))
         else:
             self._show(view, home)
@@ -107,7 +119,7 @@ class Feed:
         """Let viewers have what was seen."""
         if self._recorded is not None:
             self._follow_jumps(self._recorded)
-        self._follow(view.pose[0], view.pose[1])
+        self._follow(view.time, view.pose[0], view.pose[1])
         told = told_of(self._household)
         state = {**state_of(view), **told, "looked": round(time.time(), 3)}
         if view.last is None and self._keeper is not None:
@@ -138,17 +150,30 @@ class Feed:
         if jumps == self._jumps:
             return
         self._jumps = jumps
+        self._seen = None
         places = recorded.way()
         self._trails.clear()
         self.trail_began += len(self.trail) + 1
         self.trail = [(round(x, 3), round(y, 3)) for x, y in places[-_MOST_TRAIL:]]
 
-    def _follow(self, x: float, y: float) -> None:
-        if self.trail and math.dist(self.trail[-1], (x, y)) < _STEP:
+    def _follow(self, now: float, x: float, y: float) -> None:
+        self._is_carried |= not self._may_have_driven(now, x, y)
+        self._seen = now, x, y
+        if self.trail and math.dist(self.trail[-1][:2], (x, y)) < _STEP:
             return
         self._trails.clear()
-        self.trail.append((round(x, 3), round(y, 3)))
+        place = round(x, 3), round(y, 3)
+        self.trail.append((*place, True) if self._is_carried else place)
+        self._is_carried = False
         surplus = len(self.trail) - _MOST_TRAIL
         if surplus > 0:
             del self.trail[:surplus]
             self.trail_began += surplus
+
+    def _may_have_driven(self, now: float, x: float, y: float) -> bool:
+        """Whether the robot can have come here by its wheels since it was seen last."""
+        if self._seen is None:  # of what it did meanwhile nothing is known
+            return not self.trail or math.dist(self.trail[-1][:2], (x, y)) <= _CORRECTED
+        then, *before = self._seen
+        reach = _FASTEST * max(now - then, 0.0) + _CORRECTED
+        return math.dist(before, (x, y)) <= reach

@@ -4,7 +4,7 @@ import { palette } from "./palette.js";
 import { dashed, trace } from "./trace.js";
 import { toScreen, view } from "./view.js";
 
-const CARRIED = 1; // m between two places; who drives is nearer
+const UNSEEN = 1; // m between two places, of which the way is not known
 const SOON = 4; // m of the way to go that are drawn strongly
 const PIECES = 12; // of the way, each fainter than the newer one
 
@@ -22,12 +22,12 @@ export function drawTrail(context) {
   }
 }
 
-/** Begin a path along some of the places; one that was carried is not drawn as driven. */
+/** Begin a path along some of the places, [x, y, whether it was carried there]: what was not driven, or not seen, is left out. */
 function traceWay(context, points, begins, ends) {
   context.beginPath();
   for (let index = begins; index < ends; index++) {
-    const [x, y] = points[index], before = points[index - 1], [px, py] = toScreen(x, y);
-    if (index > begins && Math.hypot(x - before[0], y - before[1]) < CARRIED) context.lineTo(px, py); else context.moveTo(px, py);
+    const [x, y, isCarried] = points[index], before = points[index - 1], [px, py] = toScreen(x, y);
+    if (index > begins && !isCarried && Math.hypot(x - before[0], y - before[1]) < UNSEEN) context.lineTo(px, py); else context.moveTo(px, py);
   }
 }
 
