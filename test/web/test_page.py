@@ -174,7 +174,8 @@ def test_a_room_gets_another_name_and_a_cut_that_is_none_is_refused(opened: Open
     page.get_by_role("button", name="kitchen").click()
     page.get_by_role("button", name="Rename").click()
     name, fault = page.get_by_role("textbox", name="Name"), page.locator("#ask-fault")
-    for wrong, why in (("hallway", "hallway"), ("a\u202eb", "printable")):
+    taken, unseen = "There is a room “hallway” already.", "all of which can be seen"
+    for wrong, why in (("hallway", taken), ("a\u202eb", unseen)):
         name.fill(wrong)
         page.get_by_role("button", name="OK").click()
         fault.get_by_text(why).wait_for()

@@ -19,6 +19,14 @@ const TROUBLES = [ // of a robot on a line: how its message begins, and the head
   ["the robot does not obey", "The robot does not obey"],
 ];
 
+const PLAIN = [ // refusals that are made for programs, and how a person says them
+  [/^expected a name of 1 to (\d+) printable characters, got .*/, "a name has 1 to $1 characters, all of which can be seen"],
+  [/^expected different names, got ['"](.*)['"] twice.*/, "there is a room “$1” already"],
+];
+
+/** Return why something is refused as a person says it. */
+export function plain(reason) { return PLAIN.reduce((text, [pattern, words]) => text.replace(pattern, words), reason); }
+
 /** Return the headline for a state. */
 export function headline(link, state) {
   if (link === "connecting") return "Connecting …";
