@@ -253,17 +253,7 @@ class _RunUnderWay:
 
 def _end_of(run: RunFigures) -> dict[str, Any]:
     """Return how a run ended as the plain values of a report; no robot tells its outcome."""
-    report = CleanReport(
-        ErrandOutcome.FAULT,
-        run.message,
-        run.covered,
-        run.wanted,
-        run.dirt,
-        run.distance,
-        run.duration,
-        run.energy,
-    )
-    return {**report_of(report), "outcome": run.outcome}
+    return {**report_of(run.report), "outcome": run.outcome}
 
 
 def _cells(layer: Layers) -> dict[str, CellLayer]:

@@ -15,7 +15,6 @@ from roomba.client.observed import TimelineView
 from roomba.client.plain import home_from
 from roomba.client.protocol import (
     CleanReport,
-    ErrandOutcome,
     RequestRefusedError,
     VacuumSnapshot,
 )
@@ -165,19 +164,7 @@ class RecordedRobot:
         """Return how it ended, once it has."""
         if at < self._recording.duration - _END:
             return None
-        figures = self._figures
-        return CleanReport(
-            ErrandOutcome(figures.outcome),
-            figures.message,
-            figures.covered,
-            figures.wanted,
-            figures.dirt,
-            figures.distance,
-            figures.duration,
-            figures.energy,
-            figures.missed,
-            figures.times,
-        )
+        return self._figures.report
 
     def _refuse(self, *_: Any) -> None:
         home = self._figures.source.home

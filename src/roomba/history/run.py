@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.client.protocol import MissedFloor
+from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor
 from roomba.shares import share_of
 from roomba.time_spent import NOT_COUNTED, TimeSpent, square_metres_a_minute
 
@@ -77,6 +77,23 @@ class RunFigures:
     def rate(self) -> float | None:
         """m2 that became clean in a minute; None where that is not known."""
         return square_metres_a_minute(self.covered, self.duration)
+
+    @property
+    def report(self) -> CleanReport:
+        """How it ended as a robot tells it; of a run that was interrupted none could: FAULT."""
+        outcomes = {outcome.value: outcome for outcome in ErrandOutcome}
+        return CleanReport(
+            outcomes.get(self.outcome, ErrandOutcome.FAULT),
+            self.message,
+            self.covered,
+            self.wanted,
+            self.dirt,
+            self.distance,
+            self.duration,
+            self.energy,
+            self.missed,
+            self.times,
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)

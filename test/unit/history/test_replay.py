@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from fixtures.waiting import wait_until
 
 from roomba.client.observed import ObservedRobot, Timeline
-from roomba.client.protocol import RequestRefusedError
+from roomba.client.protocol import ErrandOutcome, RequestRefusedError
 from roomba.client.view import CleanOrder, GridLayer, LayerName
 from roomba.history.replay import RecordedRobot
 from roomba.history.run import TRACE, RunFigures, RunRecording
 from roomba.history.run_file import RunFileError
+from roomba.history.unfinished import INTERRUPTED, WHY
 
 
 @pytest.fixture
@@ -45,6 +47,16 @@ def test_it_is_where_it_was_at_the_time(robot: RecordedRobot) -> None:
     assert last is not None
     assert last.outcome.value == "completed"
     assert last.missed[0].room == "hall"
+
+
+def test_a_run_that_was_interrupted_is_shown_to_its_end(
+    figures: RunFigures, recording: RunRecording
+) -> None:
+    robot = RecordedRobot(replace(figures, outcome=INTERRUPTED, message=WHY), recording)
+    robot.seek(1e9)
+    last = robot.robot().last
+    assert last is not None
+    assert (last.outcome, last.message) == (ErrandOutcome.FAULT, WHY)
 
 
 def test_coverage_grows_and_shrinks_with_the_time(robot: RecordedRobot) -> None:
