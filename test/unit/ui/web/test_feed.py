@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import cast
 
@@ -13,11 +14,14 @@ from roomba.client.protocol import RobotUnavailableError
 from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
 from roomba.ui.web.feed import Feed, Place
 
+Looks = Sequence[tuple[float, tuple[float, float] | None]]
+"""s and m."""
+
 
 class Seen:
     """A robot at times and places, s and m; it is not there at a time without a place."""
 
-    def __init__(self, looks: list[tuple[float, tuple[float, float] | None]]) -> None:
+    def __init__(self, looks: Looks) -> None:
         self._looks = iter(looks)
 
     def robot(self) -> RobotView:
@@ -33,7 +37,7 @@ class Seen:
         return None
 
 
-def way_of(looks: list[tuple[float, tuple[float, float] | None]]) -> list[Place]:
+def way_of(looks: Looks) -> list[Place]:
     feed = Feed(cast(ObservedRobot, Seen(looks)))
 
     async def look() -> None:
