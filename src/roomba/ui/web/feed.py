@@ -65,10 +65,10 @@ class Feed:
         self.trail_began = 0
         self._trails: dict[int, Told] = {}
         self._jumps = 0
-        self._seen: tuple[float, float, float] | None = (
-            None  # when and where it was at the last look
-        )
-        self._is_carried = False  # since the last place of the trail
+        self._seen: tuple[float, float, float] | None = None
+        """When, s, and where it was at the last look, x and y, m."""
+        self._is_carried = False
+        """Whether it was, since the last place of the trail."""
 
     async def run(self) -> None:
         """Look at the robot for ever."""
