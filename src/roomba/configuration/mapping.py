@@ -222,6 +222,15 @@ class RelocationConfig(Frozen):
     """Two scans agree that were found so near to where they lie to each other."""
 
 
+class OpenWaysConfig(Frozen):
+    """Floor that beams without an echo show to be free: m."""
+
+    farthest: Length = 1.0
+    """From the lidar: so near it sees black things as well."""
+    margin: Length = 0.1
+    """So much nearer than what the beams beside them met."""
+
+
 class MappingConfig(Frozen):
     """Keyframes, submaps and their links: m, rad; the drawing: shares 0..1."""
 
@@ -253,6 +262,7 @@ class MappingConfig(Frozen):
     """Points farther from a place are no help in looking for it: their bearing is less sure."""
     oblique: Annotated[float, Field(gt=0.0, lt=45.0)] = 4.0
     """Degrees; walls that are turned by more from the map's axes are so by design."""
+    open_ways: OpenWaysConfig = OpenWaysConfig()
     following: FollowingConfig = FollowingConfig()
     windows: WindowsConfig = WindowsConfig()
     backing: BackingConfig = BackingConfig()

@@ -101,6 +101,8 @@ def _arrays_of(kept: KeptMap) -> dict[str, NDArray[Any]]:
         "keyframe_poses": np.array([frame.pose for frame in frames]) if frames else no_poses,
         "keyframe_points": np.array([len(frame.points) for frame in frames], np.int64),
         "points": np.concatenate([no_points, *(frame.points for frame in frames)]),
+        "keyframe_open": np.array([len(frame.open) for frame in frames], np.int64),
+        "open": np.concatenate([no_points[:, :2], *(frame.open for frame in frames)]),
         "link_ends": np.array([(link.parent, link.child) for link in links], np.int64).reshape(
             -1, 2
         ),
@@ -194,22 +196,31 @@ def _kept_of(fields: _Fields) -> KeptMap:
 
 
 def _submaps_of(fields: _Fields) -> tuple[KeptSubmap, ...]:
-    ways = fields.floats("submap_ways", -1)
-    sizes = fields.counts("submap_keyframes", len(ways))
+    driven = fields.floats("submap_ways", -1)
+    sizes = fields.counts("submap_keyframes", len(driven))
     lengths = fields.counts("keyframe_points", -1)
-    if not len(ways) or not len(lengths):
+    if not len(driven) or not len(lengths):
         raise ValueError("expected one submap with one keyframe, or more, got none")
     points = fields.floats("points", int(lengths.sum()), POINT, kind=np.float32)
     poses = fields.floats("keyframe_poses", len(lengths), 3)
     if sizes.sum() != len(lengths):
         raise ValueError(f"expected {sizes.sum()} keyframes, got {len(lengths)}")
     parts = np.split(points, np.cumsum(lengths)[:-1])
-    frames = [Keyframe(part, pose) for part, pose in zip(parts, poses, strict=True)]
+    ways = _open_ways_of(fields, len(lengths))
+    frames = [Keyframe(*each) for each in zip(parts, poses, ways, strict=True)]
     ends = np.cumsum(sizes).tolist()
     return tuple(
         KeptSubmap(way, tuple(frames[end - size : end]))
-        for way, size, end in zip(ways.tolist(), sizes.tolist(), ends, strict=True)
+        for way, size, end in zip(driven.tolist(), sizes.tolist(), ends, strict=True)
     )
+
+
+def _open_ways_of(fields: _Fields, keyframes: int) -> list[NDArray[np.float32]]:
+    if not fields.has("keyframe_open"):
+        return [np.zeros((0, 2), np.float32)] * keyframes
+    lengths = fields.counts("keyframe_open", keyframes)
+    ways = fields.floats("open", int(lengths.sum()), 2, kind=np.float32)
+    return np.split(ways, np.cumsum(lengths)[:-1])
 
 
 def _links_of(fields: _Fields, submaps: int) -> tuple[Link, ...]:

@@ -161,7 +161,7 @@ def test_stopped_it_stands_and_what_it_mapped_stays() -> None:
 
 
 @pytest.mark.parametrize("lidar", [EXACT_LIDAR, "lds_02", "rplidar_a1"])
-@pytest.mark.parametrize(("place", "seed"), [((1.4, 1.9), 1), ((1.4, 1.9), 3), ((1.8, 1.7), 1)])
+@pytest.mark.parametrize(("place", "seed"), [((1.4, 1.9), 1), ((1.4, 1.9), 2), ((1.8, 1.7), 1)])
 def test_things_that_stand_about_are_mapped_like_walls(
     place: tuple[float, float], seed: int, lidar: str
 ) -> None:

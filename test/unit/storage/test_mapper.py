@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from roomba.geometry import Pose
 from roomba.perception.slam.mapper_state import MapperState
 from roomba.perception.slam.submaps.pose_graph import Link
-from roomba.perception.slam.submaps.submap import KeptSubmap
+from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe
 from roomba.storage.mapper import (
     KeptMap,
     MapperFileError,
@@ -45,8 +45,7 @@ def are_same(one: KeptMap, other: KeptMap) -> bool:
         and mine.poses.tobytes() == its.poses.tobytes()
         and [(s.way, len(s.keyframes)) for s in mine.submaps]
         == [(s.way, len(s.keyframes)) for s in its.submaps]
-        and [(f.points.tobytes(), f.points.dtype, f.points.shape, f.pose.tobytes()) for f in frames]
-        == [(f.points.tobytes(), f.points.dtype, f.points.shape, f.pose.tobytes()) for f in others]
+        and list(map(bits, frames)) == list(map(bits, others))
         and [
             (k.parent, k.child, k.may_be_wrong, k.relative.tobytes(), k.information.tobytes())
             for k in mine.links
@@ -56,6 +55,11 @@ def are_same(one: KeptMap, other: KeptMap) -> bool:
             for k in its.links
         ]
     )
+
+
+def bits(frame: Keyframe) -> list[tuple[bytes, np.dtype[Any], tuple[int, ...]]]:
+    parts = (frame.points, frame.open, frame.pose)
+    return [(each.tobytes(), each.dtype, each.shape) for each in parts]
 
 
 @pytest.mark.parametrize("station", [None, STATION])
@@ -185,6 +189,8 @@ def rewritten(path: Path, **changes: NDArray[Any] | None) -> None:
         ({"points": np.zeros((11, 4), np.float32)}, "points: expected float32"),
         ({"submap_keyframes": np.array([1, 1, 1])}, "expected 3 keyframes, got 4"),
         ({"keyframe_points": np.array([20, -8, 0, 0])}, "expected 0 or more, got -8"),
+        ({"open": np.zeros((1, 2), np.float32)}, "open: expected float32"),
+        ({"keyframe_open": np.array([1, 1])}, "keyframe_open: expected"),
         ({"link_ends": np.array([[0, 1], [0, 3]])}, "expected links between 3 submaps"),
         ({"lidar_beams": np.array(0)}, "expected a lidar with beams"),
         ({"lidar_numbers": np.array([0.0, 0.1, 3.0, 1.0])}, "reaches from near to far"),
@@ -212,3 +218,14 @@ def test_what_does_not_fit_together_is_refused(
     rewritten(path, **changes)
     with pytest.raises(MapperFileError, match=message):
         load_mapper(path, pytest.fail)
+
+
+def test_a_file_of_an_older_program_has_no_open_ways(tmp_path: Path) -> None:
+    path = tmp_path / "robot.npz"
+    save_mapper(kept_map(), path)
+    rewritten(path, keyframe_open=None, open=None)
+    read = load_mapper(path, pytest.fail)
+    assert read is not None
+    frames = [frame for submap in read.state.submaps for frame in submap.keyframes]
+    assert {frame.open.shape for frame in frames} == {(0, 2)}
+    assert sum(len(frame.points) for frame in frames) == 12

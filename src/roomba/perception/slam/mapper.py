@@ -137,12 +137,12 @@ class Mapper:
             if has_leapt:
                 self._begin_piece(seen)
         follower.compare_turns(stamp)
-        points = follower.points
+        is_swept = self._lidar is not None and self._lidar.time_increment
+        still = follower.following.still if is_swept else ranges
         if self._is_keyframe():
-            self._keep(points)
+            self._keep(follower.points, still)
         self.at_scan = self._place()
         if self._lidar is not None:
-            still = follower.following.still if self._lidar.time_increment else ranges
             self.placed = PlacedScan(self.at_scan, still, ranges, self._lidar)
 
     @property
@@ -325,13 +325,13 @@ class Mapper:
             return self._follower.shows_enough
         return self._follower.is_sure and self._follower.is_apart
 
-    def _keep(self, points: Floats) -> None:
+    def _keep(self, points: Floats, ranges: NDArray[np.float32]) -> None:
         """Keep a scan as a keyframe, of another submap if the newest is whole."""
         follower = self._follower
         if self._map.is_newest_whole(follower.here):
             self._map.begin(follower.here, follower.way, self.range_noise)
             follower.restart()
-        self._map.keep(points, follower.here)
+        self._map.keep(points, ranges, follower.here)
         follower.keep()
 
     def _take_over(self, state: MapperState, here: Pose) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.beams import LidarBeams
+from roomba.perception.slam.drawing.open_ways import open_ways
 from roomba.perception.slam.drawing.submap_drawing import SubmapDrawing
 from roomba.perception.slam.finishing.finish import finish
 from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
@@ -69,12 +70,19 @@ class SubmapMap:
         reach = min(lidar.farthest, self._config.farthest) + self._config.spare
         self.graph.use_reach(reach)
         self.drawn.use(lidar)
+        self._lidar = lidar
         self.surfels = SurfelGrid(reach)
         self._fill_surfels(sorted({*self.beside, self._newest}))
 
-    def keep(self, points: Floats, here: Floats) -> None:
-        """Keep a scan, points [n, 4], robot's frame, taken at ``here`` [3], newest one's frame."""
-        frame = Keyframe(points.astype(np.float32), here)
+    def keep(self, points: Floats, ranges: NDArray[np.float32], here: Floats) -> None:
+        """Keep a scan, taken at ``here`` [3], newest submap's frame.
+
+        ``points`` [n, 4], robot's frame, are what it shows; ``ranges`` float32 [beams], m, as if
+        all were measured at once.
+        """
+        config = self._config.open_ways
+        ways = open_ways(ranges, self._lidar, config.farthest, config.margin)
+        frame = Keyframe(points.astype(np.float32), here, ways)
         self.graph.newest.keyframes.append(frame)
         self.surfels.add(points, frame.pose)
         self.drawn.add(frame)

@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.compilation import allocating_entry, inlined_entry, inner_part, part
+from roomba.compilation import allocating_entry, entry, inlined_entry, inner_part, part
 from roomba.grid import FREE, OCCUPIED, UNKNOWN
 from roomba.perception.slam.scan_matching.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
 
@@ -34,6 +34,7 @@ _SURER: Final = 1.5
 """Times the share of beams that ended: so much more of them ended in that one."""
 _ROW_STEPS, _COLUMN_STEPS = (0, 1, 0, -1), (1, 0, -1, 0)
 _NOWHERE: Final = np.zeros((0, 0, 2), np.float32)
+_NO_COUNTS: Final = np.zeros((0, 0), np.uint16)
 MARGIN: Final = 1
 """Cells of the unknown around what is known."""
 _MOST: Final = 60000
@@ -44,7 +45,8 @@ class CountArrays(NamedTuple):
     """The grid as kernels know it: counts, uint16 [rows, columns]; ``place`` is the lower left
     corner x, y and the cell size, m; ``bounds`` int64 [4] the first and last row and column with
     counts; ``offsets``, float32 [rows, columns, 2], sums of where the cell's beams met a surface, x
-    and y from its middle, cells: none unless :func:`occupancy` is called.
+    and y from its middle, cells: none unless :func:`occupancy` is called. ``opens``, uint16 [rows,
+    columns], are beams without an echo on ways that are open: as ``offsets``.
     """
 
     hits: Counts
@@ -52,6 +54,7 @@ class CountArrays(NamedTuple):
     place: Floats
     bounds: NDArray[np.int64]
     offsets: NDArray[np.float32] = _NOWHERE
+    opens: Counts = _NO_COUNTS
 
 
 @allocating_entry
@@ -97,6 +100,38 @@ def draw(
         _hit(cells.offsets, hits, shape, row, column, u, v, times)
         _bound(cells, row, column)
     _bound(cells, math.floor(from_v), math.floor(from_u))
+
+
+@entry
+def draw_open(
+    cells: CountArrays, ends: NDArray[np.float32], lidar: Floats, pose: Floats, times: int
+) -> None:
+    """Count the ways from the lidar to ``ends``, float32 [n, 2], robot's frame, as open.
+
+    The rest as of :func:`draw`. No cell becomes a wall by that, or stops to be one.
+    """
+    per_metre = 1.0 / cells.place[2]
+    rows, columns = cells.hits.shape
+    shape, opens = (rows, columns), cells.opens.ravel()
+    cosine, sine = math.cos(pose[2]), math.sin(pose[2])
+    from_u, from_v = _cell_of(cells.place, pose, cosine, sine, lidar[0], lidar[1], per_metre)
+    for index in range(ends.shape[0]):
+        u, v = _cell_of(cells.place, pose, cosine, sine, ends[index, X], ends[index, Y], per_metre)
+        length = math.hypot(u - from_u, v - from_v)
+        if length > 0.0:
+            along_u, along_v = (u - from_u) / length, (v - from_v) / length
+            _pass(opens, shape, from_u, from_v, along_u, along_v, length, times)
+            _bound(cells, math.floor(v), math.floor(u))
+
+
+@inner_part
+def _cell_of(
+    place: Floats, pose: Floats, cosine: float, sine: float, x: float, y: float, per_metre: float
+) -> tuple[float, float]:
+    """Return the column and row, with fractions, of a point of the robot's frame."""
+    map_x = pose[0] + cosine * x - sine * y
+    map_y = pose[1] + sine * x + cosine * y
+    return (map_x - place[0]) * per_metre, (map_y - place[1]) * per_metre
 
 
 @inner_part
@@ -219,7 +254,8 @@ def occupancy(cells: CountArrays, share: float, least: int, values: NDArray[np.i
     """Fill ``values`` from the counts, with a margin of unknown cells around all in the bounds.
 
     Occupied where ``least`` beams or more, and ``share`` of all, ended, unless that is the edge of
-    what stands in the cell beside it; free where beams went through; else unknown.
+    what stands in the cell beside it; free where beams went through, or a way is open; else
+    unknown.
     """
     rows, columns = values.shape[0] - 2 * MARGIN, values.shape[1] - 2 * MARGIN
     first_row, first_column = cells.bounds[0], cells.bounds[2]
@@ -231,6 +267,10 @@ def occupancy(cells: CountArrays, share: float, least: int, values: NDArray[np.i
         # Most cells: without a branch several are done at once.
         for column in range(columns):
             line[column] = FREE if passes[column] > 0 else UNKNOWN
+        if cells.opens.shape[0] > 0:
+            opens = cells.opens[first_row + row, first_column : first_column + columns]
+            for column in range(columns):
+                line[column] = FREE if opens[column] > 0 else line[column]
         for column in range(columns):
             ended = int(hits[column])
             if ended == 0:

@@ -15,6 +15,7 @@ from roomba.perception.slam.drawing.drawing_kernels import (
     MARGIN,
     Counts,
     draw,
+    draw_open,
     occupancy,
 )
 from roomba.perception.slam.drawing.seen_surfaces import only_seen
@@ -26,6 +27,7 @@ _STEP: Final = 5.0
 _SHARE: Final = 0.25
 """m; it grows by so much at a time, and by this share of its size if that is more: copying a large
 one takes long."""
+_NO_WAYS: Final = np.zeros((0, 2), np.float32)
 _NONE: Final = 2**40
 """The first row and column with counts, as long as there are none."""
 
@@ -42,22 +44,37 @@ class OccupancyCounts:
         self._row = self._column = 0
         nothing = np.zeros((0, 0), np.uint16)
         offsets = np.zeros((0, 0, 2), np.float32)
-        self._lay(nothing, nothing, offsets, np.array([_NONE, -1, _NONE, -1]))
+        self._lay(nothing, nothing, nothing, offsets, np.array([_NONE, -1, _NONE, -1]))
 
-    def draw(self, points: NDArray[np.float32], lidar: Floats, pose: Floats) -> None:
+    def draw(
+        self,
+        points: NDArray[np.float32],
+        lidar: Floats,
+        pose: Floats,
+        open_ways: NDArray[np.float32] = _NO_WAYS,
+    ) -> None:
         """Add a scan, float32 [n, 4], robot's frame, seen from ``pose`` [3], map frame.
 
-        ``lidar`` is x, y in the robot's frame.
+        ``lidar`` is x, y in the robot's frame; ``open_ways`` where ways from it end on which no
+        beam met anything, float32 [m, 2].
         """
-        ends = np.vstack((points[:, :2], lidar))
+        ends = np.vstack((points[:, :2], open_ways, lidar))
         reach = float(np.hypot(ends[:, 0], ends[:, 1]).max())
         # A wall is drawn into the cell behind its surface.
         self._cover(pose, reach + MARGIN * self._resolution)
         draw(self._arrays, points, lidar, pose, INTO_EDGE, 1)
+        draw_open(self._arrays, open_ways, lidar, pose, 1)
 
-    def erase(self, points: NDArray[np.float32], lidar: Floats, pose: Floats) -> None:
+    def erase(
+        self,
+        points: NDArray[np.float32],
+        lidar: Floats,
+        pose: Floats,
+        open_ways: NDArray[np.float32] = _NO_WAYS,
+    ) -> None:
         """Take a scan away that was drawn."""
         draw(self._arrays, points, lidar, pose, INTO_EDGE, -1)
+        draw_open(self._arrays, open_ways, lidar, pose, -1)
 
     def occupancy(self, share: float, least: int, least_floor: float = 0.0) -> OccupancyMap:
         """Return the map of what was drawn; see :func:`.drawing_kernels.occupancy`.
@@ -82,13 +99,18 @@ class OccupancyCounts:
         return only_seen(OccupancyMap(frame, values), least_floor)
 
     def _lay(
-        self, hits: Counts, passes: Counts, offsets: Offsets, bounds: NDArray[np.int64]
+        self,
+        hits: Counts,
+        passes: Counts,
+        opens: Counts,
+        offsets: Offsets,
+        bounds: NDArray[np.int64],
     ) -> None:
         """Take other counts, as its first row and column are now."""
         size = self._resolution
         corner = self._phase[0] + self._column * size, self._phase[1] + self._row * size
         place = np.array([*corner, size])
-        self._arrays = drawing_kernels.CountArrays(hits, passes, place, bounds, offsets)
+        self._arrays = drawing_kernels.CountArrays(hits, passes, place, bounds, offsets, opens)
 
     def _cover(self, pose: Floats, reach: float) -> None:
         """Make room for all within ``reach``, m, of a pose."""
@@ -96,7 +118,7 @@ class OccupancyCounts:
         x, y = float(pose[0]) - phase_x, float(pose[1]) - phase_y
         column, last_column = math.floor((x - reach) / size), math.floor((x + reach) / size)
         row, last_row = math.floor((y - reach) / size), math.floor((y + reach) / size)
-        hits, passes, _, bounds, offsets = self._arrays
+        hits, passes, _, bounds, offsets, opens = self._arrays
         rows, columns = hits.shape
         if rows == 0:
             self._row, self._column = row, column
@@ -112,4 +134,5 @@ class OccupancyCounts:
             if bounds[0] != _NONE:
                 bounds += (below, below, left, left)
             offsets = np.pad(offsets, (*around, (0, 0)))
-            self._lay(np.pad(hits, around), np.pad(passes, around), offsets, bounds)
+            wider = [np.pad(each, around) for each in (hits, passes, opens)]
+            self._lay(wider[0], wider[1], wider[2], offsets, bounds)

@@ -67,7 +67,7 @@ class SubmapDrawing:
         self._drawn = self._graph.poses.copy()
 
     def _draw(self, frame: Keyframe, pose: Floats) -> None:
-        self._counts.draw(frame.points, self._mount, pose)
+        self._counts.draw(frame.points, self._mount, pose, frame.open)
 
     def _moved(self) -> list[int]:
         """Return the numbers of the submaps that lie elsewhere than they are drawn."""
@@ -85,6 +85,6 @@ class SubmapDrawing:
             submap, pose = self._graph.submaps[number], self._graph.poses[number]
             before, after = submap.poses(self._drawn[number]), submap.poses(pose)
             for frame, there, here in zip(submap.keyframes, before, after, strict=True):
-                self._counts.erase(frame.points, self._mount, there)
+                self._counts.erase(frame.points, self._mount, there, frame.open)
                 self._draw(frame, here)
             self._drawn[number] = pose

@@ -15,10 +15,15 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Keyframe:
-    """A scan that is kept: float32 [n, 4], robot's frame, and its pose [3] in its submap."""
+    """A scan that is kept: float32 [n, 4], robot's frame, and its pose [3] in its submap.
+
+    ``open`` is where ways end that its beams without an echo show to be open, float32 [m, 2],
+    robot's frame: see :mod:`roomba.perception.slam.drawing.open_ways`.
+    """
 
     points: NDArray[np.float32]
     pose: Floats
+    open: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 2), np.float32))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -232,7 +232,7 @@ class SubmapGraph:
         self.poses[number] = origin[0]
         relative = relative_to(np.repeat(origin, len(poses), axis=0), poses)
         submap.keyframes = [
-            Keyframe(frame.points, pose)
+            replace(frame, pose=pose)
             for frame, pose in zip(submap.keyframes, relative, strict=True)
         ]
         submap.close(CLOUD)

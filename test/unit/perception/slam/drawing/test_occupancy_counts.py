@@ -126,6 +126,22 @@ def test_a_beam_that_grazes_a_corner_stays_in_its_cell() -> None:
     assert (made.values == OCCUPIED).sum() == 1
 
 
+def test_an_open_way_is_free_where_nothing_else_is_known() -> None:
+    """It takes no wall away, and makes none; what it shows goes with its scan."""
+    counts = OccupancyCounts(0.05)
+    counts.draw(AHEAD, CENTRE, np.zeros(3))
+    wall, behind = (0.52, 0.0), (0.82, 0.0)
+    ways = np.array([[1.0, 0.0], [0.0, 1.0]], np.float32)
+    assert value_at(counts.occupancy(0.3, 1), *behind) != FREE
+    counts.draw(np.zeros((0, 4), np.float32), CENTRE, np.zeros(3), ways)
+    made = counts.occupancy(0.3, 1)
+    assert value_at(made, *wall) == OCCUPIED
+    assert value_at(made, *behind) == value_at(made, 0.0, 0.97) == FREE
+    counts.erase(np.zeros((0, 4), np.float32), CENTRE, np.zeros(3), ways)
+    made = counts.occupancy(0.3, 1)
+    assert value_at(made, *behind) == value_at(made, 0.0, 0.97) == UNKNOWN
+
+
 def test_an_empty_sheet_is_no_map() -> None:
     with pytest.raises(ValueError, match="at least one scan"):
         OccupancyCounts(0.05).occupancy(0.3, 2)
