@@ -170,6 +170,21 @@ def test_no_action_is_asked_for_twice(opened: Opened) -> None:
     wait_until(lambda: asked[3:] == ["emergency_stop"] * 2, DEADLINE, lambda: f"two, not {asked}")
 
 
+def test_a_double_click_on_the_emergency_stop_releases_nothing(opened: Opened) -> None:
+    page, asked = opened.page, wishes_of(opened.page)
+    page.locator("#clean").click()
+    opened.wait_for_phase("cleaning")
+    stop = page.get_by_role("button", name="Stop now")
+    stop.click()
+    opened.wait_for_phase("emergency stop")
+    # The second click of two comes when the button reads "Release" already.
+    page.get_by_role("button", name="Release").evaluate(
+        "button => button.dispatchEvent(new MouseEvent('click', { bubbles: true, detail: 2 }))"
+    )
+    wait_until(lambda: len(asked) == 3, DEADLINE, lambda: f"three wishes, not {asked}")
+    assert asked == ["clean", "emergency_stop", "emergency_stop"]
+
+
 def test_the_next_wish_takes_an_old_refusal_away(opened: Opened) -> None:
     page = opened.page
     page.evaluate("async () => (await import('/link.js')).wish('resume')")

@@ -53,8 +53,14 @@ def test_how_is_cleaned_is_remembered_for_the_home(opened: Opened) -> None:
     opened.wait_for_phase("docked")
     wait_until(lambda: page.locator("#passes").input_value() == "2", DEADLINE, "two passes")
     assert page.locator("#fan").input_value() == "quiet"
-    # Of another home something else was chosen, or nothing.
     assert page.evaluate("() => Object.keys(localStorage)") == ["how is cleaned in flat"]
+    # In another home it is as usual.
+    page.evaluate(
+        "async () => { const { get, set } = await import('/store.js');"
+        " set('home', { ...get('home'), name: 'studio' }); }"
+    )
+    assert page.locator("#passes").input_value() == "1"
+    assert page.locator("#fan").input_value() == "standard"
 
 
 @pytest.mark.parametrize("speed", [20.0])

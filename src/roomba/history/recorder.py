@@ -31,6 +31,8 @@ from roomba.history.run import (
 )
 from roomba.history.unfinished import INTERRUPTED, RunSoFar, UnfinishedFile, interrupted_runs
 
+_LOOKED_THROUGH: Final = 100
+"""Runs of a home among which the newest one of this program is looked for."""
 BEGINS: Final = ("undocking", "cleaning", "exploring")
 """Phases in which a run has begun."""
 _SWEEPS: Final = ("undocking", "cleaning", "returning", "docking")
@@ -157,7 +159,7 @@ class HistoryKeeper:
 
     def _newest_interrupted(self) -> dict[str, Any] | None:
         source = self._recorder.source
-        runs = (run.figures for run in self.history.runs(limit=10, home=source.home))
+        runs = (run.figures for run in self.history.runs(limit=_LOOKED_THROUGH, home=source.home))
         newest = next((run for run in runs if run.source.program == source.program), None)
         return None if newest is None or newest.outcome != INTERRUPTED else _end_of(newest)
 

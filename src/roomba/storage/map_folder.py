@@ -91,14 +91,13 @@ def write_map(stored: StoredMap, folder: Path) -> None:
     try:
         write_floor(stored, folder)
         save_zones(stored.zones, stored.occupancy, folder / ZONES_NAME)
-        for name in (LOW_THINGS_NAME, CARPETS_NAME, ROOMS_NAME):
-            remove_kept(folder / name)
         if stored.low_things.all:
             save_low_things(stored.low_things, stored.occupancy, folder / LOW_THINGS_NAME)
         if stored.carpets.all:
             save_carpets(stored.carpets, stored.occupancy, folder / CARPETS_NAME)
         if stored.rooms is not None:
             save_rooms(stored.rooms, stored.occupancy, folder / ROOMS_NAME)
+        _remove_others(stored, folder)
     except (ValueError, RoomsError) as error:
         raise MapStoreError(f"expected a map that files can hold: {error}") from error
     if not read_map(folder).is_same(stored):
@@ -106,6 +105,18 @@ def write_map(stored: StoredMap, folder: Path) -> None:
             "expected a map that comes back from its files as it was, got another; its rooms are "
             "to be free cells of it, its zones nearer to it than 100 km"
         )
+
+
+def _remove_others(stored: StoredMap, folder: Path) -> None:
+    """Remove files of an earlier map, of kinds that a map does not have."""
+    has = {
+        LOW_THINGS_NAME: bool(stored.low_things.all),
+        CARPETS_NAME: bool(stored.carpets.all),
+        ROOMS_NAME: stored.rooms is not None,
+    }
+    for name, is_there in has.items():
+        if not is_there:
+            remove_kept(folder / name)
 
 
 def read_map(folder: Path) -> StoredMap:

@@ -27,7 +27,7 @@ from roomba.recordings.times.stamps import StampCounts
 _SHOWN: Final = 64
 """Readings between two updates of the progress."""
 
-_MOSTLY: Final = 0.5
+_LEAST_KNOWN: Final = 0.5
 """Share of the time in which the place is known on the map of a drive, however hard that is."""
 
 
@@ -142,7 +142,7 @@ def _remarks(options: LocalizeOptions, occupancy: OccupancyMap) -> list[str]:
 def _doubts(tally: Tally) -> list[str]:
     """Return what is told of a map on which the place was found, and seldom known."""
     known = tally.shares[Knowledge.KNOWN.value]
-    if tally.found is None or known >= _MOSTLY or not tally.loss_count:
+    if tally.found is None or known >= _LEAST_KNOWN or not tally.loss_count:
         return []
     return [
         f"the place was known {100.0 * known:.0f} % of the time, and lost on the way: is this the "

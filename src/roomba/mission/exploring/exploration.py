@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,13 +47,6 @@ class ExploreResult:
         return self.outcome is CleanOutcome.COMPLETED
 
 
-class _Look(NamedTuple):
-    """The middle of a frontier that was left after a look at it, and from how far that was, m."""
-
-    middle: Point
-    distance: float
-
-
 class Exploration:
     """Chooses where to go; ``unseen`` are the frontiers that it gave up, m, map frame."""
 
@@ -73,7 +66,8 @@ class Exploration:
         )
         self.goal: Frontier | None = None
         self.unseen: list[Point] = []
-        self._looked_at: list[_Look] = []
+        self._seen_from: dict[Point, float] = {}
+        """From how far it looked at those last, m; 0 where it shall not look again."""
         self._vanished: list[Point] = []
         self._sought: tuple[Point, float] | None = None
         self.is_as_near_as_it_gets = False
@@ -84,14 +78,24 @@ class Exploration:
 
     def values(self) -> list[list[float]]:
         """Return what must be remembered to go on, as plain values."""
-        return [[x, y] for x, y in self.unseen]
+        return [[x, y, self._seen_from[x, y]] for x, y in self.unseen]
 
     @staticmethod
     def of(values: list[list[float]], config: ExploringConfig) -> Exploration:
-        """Return an exploration that goes on; raises ValueError or TypeError for other values."""
+        """Return an exploration that goes on; raises ValueError or TypeError for other values.
+
+        Those of older programs do not tell from how far it looked.
+        """
         exploration = Exploration(config)
-        exploration.unseen = [(float(x), float(y)) for x, y in values]
+        for x, y, *told in values:
+            (seen_from,) = told or (0.0,)
+            exploration._give_up((float(x), float(y)), float(seen_from))
         return exploration
+
+    def _give_up(self, middle: Point, seen_from: float = 0.0) -> None:
+        """Go there no more, but to a place that is nearer than that it was ``seen_from``, m."""
+        self.unseen.append(middle)
+        self._seen_from[middle] = min(seen_from, self._seen_from.get(middle, math.inf))
 
     def next_path(
         self,
@@ -143,8 +147,8 @@ class Exploration:
         The map went on there meanwhile, or showed where the robot fits: what is black, or met at a
         flat angle, is seen from near alone.
         """
-        looked = {look.middle for look in self._looked_at}
-        left_out = [point for point in self.unseen if point not in looked]
+        nearest = self._config.look_nearer
+        left_out = [point for point in self.unseen if self._seen_from[point] <= nearest]
         for _ in range(_MOST_TRIES):
             found = frontiers(context.known, fits, roomy, at, left_out, self._choice)
             large = [each for each in found if each.length >= self._config.small_frontier]
@@ -158,9 +162,9 @@ class Exploration:
         """Whether the viewpoint is clearly nearer than those that this place was seen from."""
         distance = math.dist(frontier.viewpoint, frontier.middle) + self._config.look_nearer
         return all(
-            distance < look.distance
-            for look in self._looked_at
-            if math.dist(look.middle, frontier.middle) <= self._config.same_frontier
+            distance < seen_from
+            for middle, seen_from in self._seen_from.items()
+            if math.dist(middle, frontier.middle) <= self._config.same_frontier
         )
 
     def _way_to_one_of(
@@ -174,7 +178,7 @@ class Exploration:
             try:
                 points = plan(frontier.viewpoint)
             except NoPathError:
-                self.unseen.append(frontier.middle)
+                self._give_up(frontier.middle)
                 continue
             self.goal = frontier
             return points
@@ -224,7 +228,7 @@ class Exploration:
         """No way leads to the frontier it was on its way to: give that up."""
         self.times_stuck += is_stuck
         if self.goal is not None:
-            self.unseen.append(self.goal.middle)
+            self._give_up(self.goal.middle)
         self.goal, self.is_as_near_as_it_gets = None, False
 
     def _leave_behind(self, here: Pose, context: PlanningContext) -> None:
@@ -244,12 +248,10 @@ class Exploration:
                 p for p in self._vanished if math.dist(p, goal.middle) <= self._config.same_frontier
             ]
             if len(near) > self._config.most_returns:
-                self.unseen.append(goal.middle)
+                self._give_up(goal.middle)
             return
         if is_there:
-            self.unseen.append(goal.middle)
-            distance = math.dist(goal.viewpoint, goal.middle)
-            self._looked_at.append(_Look(goal.middle, distance))
+            self._give_up(goal.middle, math.dist(goal.viewpoint, goal.middle))
 
     def _is_left(self, occupancy: OccupancyMap, middle: Point) -> bool:
         """Whether something of a frontier is left on a map."""

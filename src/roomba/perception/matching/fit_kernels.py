@@ -50,7 +50,7 @@ _GRAZED: Final = 0.35
 """Cells of a coarse map; a ray meets a wall only so deep in it: walls are thinner than cells."""
 _LEAST_STEP: Final = 0.02
 """m; a ray that grazes a surface goes on by at least this."""
-_WITHIN: Final = 0.1
+_NEAREST_SURFACE: Final = 0.1
 """m; nothing is so near to a lidar, whatever the map shows: the robot itself is there."""
 _SHARE: Final = 0.1
 """Weight of one beam: neighbours, and scans from nearby places, are not independent."""
@@ -88,7 +88,7 @@ def judge(
         if length > slack:
             lanes[_ALONG, rays] = cosine * ends[index, 2] - sine * ends[index, 3]
             lanes[_ACROSS, rays] = sine * ends[index, 2] + cosine * ends[index, 3]
-            lanes[_MOST, rays], lanes[_WAY, rays] = length - slack, _WITHIN
+            lanes[_MOST, rays], lanes[_WAY, rays] = length - slack, _NEAREST_SURFACE
             lanes[_NUMBER, rays] = looked_at
             rays += 1
         looked_at += 1

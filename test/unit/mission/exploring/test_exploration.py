@@ -146,6 +146,22 @@ def test_what_was_looked_at_from_afar_is_looked_at_from_nearer_when_it_can() -> 
     assert len(exploration.unseen) > len(given_up)
 
 
+def test_what_it_cannot_come_nearer_to_is_given_up_for_good() -> None:
+    """It was looked at from afar; on the way to a nearer place no way leads on."""
+    across = [(DOORWAY[0] - 0.6, y, 0.06) for y in np.arange(0.0, 2.5, 0.1).tolist()]
+    exploration, here = Exploration(CONFIG), HERE
+    while exploration.next_path(here, HALL_SITE, across) is not None:
+        here = at_goal(exploration)
+    again = Exploration.of(json.loads(json.dumps(exploration.values())), CONFIG)
+    for looks in (exploration, again):
+        tries = 0
+        while looks.next_path(here, HALL_SITE, []) is not None:
+            looks.cut_off()
+            tries += 1
+            assert tries < 20
+        assert tries > 0
+
+
 def test_what_a_newer_map_shows_is_not_told_as_unseen() -> None:
     exploration = begun()
     assert exploration.goal is not None
@@ -234,7 +250,9 @@ def test_it_comes_back_from_plain_values() -> None:
     assert (paths[0] is None) == (paths[1] is None)
 
 
-@pytest.mark.parametrize("junk", [[[1.0]], [["a", 2.0]], 5, [[1.0, 2.0, 3.0]], [None]])
+@pytest.mark.parametrize(
+    "junk", [[[1.0]], [["a", 2.0]], 5, [[1.0, 2.0, 3.0, 4.0]], [[1.0, 2.0, "a"]], [None]]
+)
 def test_junk_is_refused(junk: Any) -> None:
     with pytest.raises((ValueError, TypeError)):
         Exploration.of(junk, CONFIG)

@@ -20,7 +20,7 @@ class WholeOdometry:
     """Recorded odometry, and in its ``gaps`` the steps that a map shows which is made meanwhile.
 
     ``frame`` is where the frame of the recorded odometry lies in that of this one. They are the
-    same until the first gap ends. It ``is_guessed`` while there is a gap.
+    same until the first gap.
     """
 
     def __init__(
@@ -28,7 +28,7 @@ class WholeOdometry:
     ) -> None:
         """Without gaps no map is made."""
         self.frame = Pose()
-        self.is_guessed = False
+        self._is_guessed = False
         self._pose = self._recorded = Pose()
         self._gaps = GapsInOrder(gaps)
         self._replay = MapReplay(config, mapping, Pose(), gaps) if gaps else None
@@ -44,16 +44,16 @@ class WholeOdometry:
         if isinstance(value, Odometry):
             if has_gap:
                 return None
-            if self.is_guessed:
+            if self._is_guessed:
                 self._go_on(before, replay.mapper)
                 self.frame = self._pose.compose(value.pose.inverse())
-            self.is_guessed, self._recorded = False, value.pose
+            self._is_guessed, self._recorded = False, value.pose
             self._pose = self.frame.compose(value.pose)
             return self._pose
         if isinstance(value, LidarScan) and has_gap:
             self._go_on(before, replay.mapper)
             self.frame = self._pose.compose(self._recorded.inverse())
-            self.is_guessed = True
+            self._is_guessed = True
             return self._pose
         return None
 

@@ -11,7 +11,7 @@ from fixtures.robots.located import CONFIG
 from roomba.commands.map.drive.whole_odometry import whole_odometry_of
 from roomba.geometry import Pose, wrap_angle
 from roomba.recordings.drive import LoggedDrive
-from roomba.recordings.readings import Odometry
+from roomba.recordings.readings import LidarScan, Odometry
 
 SECONDS = 40.0
 BEGIN = pose_at(0.0).inverse()
@@ -34,7 +34,7 @@ class Heard:
                 pose = odometry.hear(reading)
                 if pose is not None:
                     self.poses[passed], self.frames[passed] = pose, odometry.frame
-                    self.guessed += [passed] * odometry.is_guessed
+                    self.guessed += [passed] * isinstance(reading.value, LidarScan)
 
     def off(self, begin: float = 0.0) -> float:
         """Return the largest error of what was moved since a time, s: m, or rad."""

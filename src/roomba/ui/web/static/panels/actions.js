@@ -10,7 +10,7 @@ const STANDS = ["docked", "idle"];
 const STEP = 0.1; // m/s between two top speeds that can be chosen
 const USUAL = { passes: 1, fan: "standard", carpets: "boost", edges: "any" };
 
-let recalled = ""; // of which home it was
+let recalled = ""; // the key of what was recalled
 
 /** Connect the buttons. */
 export function begin() {
@@ -51,10 +51,12 @@ function adds() { return get("chosen").length > 0 && queue.rooms().length > 0; }
 /** Begin a clean; what is under way is given up for it only after a yes. Returns whether the robot obeys. */
 export async function beginClean(order) { return await mayEnd() && wish("clean", { ...order, ...how() }); }
 
-/** Return whether what is under way, if anything is, may be given up. */
+/** Return whether the robot may begin something: what is shown is not old, and what is under way, if anything is, is given up for it. */
 export async function mayEnd() {
   const vacuum = get("state")?.vacuum, isBusy = vacuum?.wanted > 0 || vacuum?.phase === "exploring";
-  return !isBusy || askYes("It has not finished what it does now. End that, and begin this?");
+  const isWished = !isBusy || await askYes("It has not finished what it does now. End that, and begin this?");
+  if (isWished && !mayMove()) refuse("what is shown is old; begin it when the robot is seen again");
+  return isWished && mayMove();
 }
 
 /** What of a clean is the same for all ways to begin one; before the limits came, what is usual. */
@@ -92,21 +94,28 @@ function showLimits() {
 /** Keep in this browser how is cleaned in this home. */
 function keep() {
   try {
-    localStorage.setItem(place(), JSON.stringify(how()));
+    localStorage.setItem(storageKey(), JSON.stringify(how()));
   } catch { /* a browser that keeps nothing: it is chosen anew each time */ }
 }
 
-/** Choose once what was kept for this home, as far as it can still be chosen. */
+/** Choose once what was kept for this home, as far as it can still be chosen, and else what is usual. */
 function recall() {
-  if (!get("home") || !get("limits") || recalled === place()) return;
-  recalled = place();
-  try {
-    for (const [name, value] of Object.entries(JSON.parse(localStorage.getItem(recalled)) ?? {}))
-      if (name in USUAL && [...$(name).options].some((option) => option.value === String(value))) $(name).value = String(value);
-  } catch { /* nothing that can be read is kept */ }
+  if (!get("home") || !get("limits") || recalled === storageKey()) return;
+  recalled = storageKey();
+  const values = { ...USUAL, ...kept() };
+  for (const name of Object.keys(USUAL))
+    if ([...$(name).options].some((option) => option.value === String(values[name]))) $(name).value = String(values[name]);
 }
 
-function place() { return `how is cleaned in ${get("home")?.name}`; }
+function kept() {
+  try {
+    return JSON.parse(localStorage.getItem(storageKey())) ?? {};
+  } catch {
+    return {}; // nothing that can be read is kept
+  }
+}
+
+function storageKey() { return `how is cleaned in ${get("home")?.name}`; }
 
 /** Return the numbers from 1 to the most, as a select offers them. */
 export function numbers(most) { return Array.from({ length: most }, (_, index) => [index + 1, String(index + 1)]); }

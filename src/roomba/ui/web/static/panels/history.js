@@ -17,9 +17,12 @@ export function begin() {
     const [one, other] = [...compared].sort((a, b) => a - b);
     window.open(`${BASE}api/v1/history/compare.html?one=${one}&other=${other}`, "_blank", "noopener");
   };
+  let isBack = wasShown("history"); // the browser came back to it from elsewhere
   on("hasHistory", () => {
     $("history-open").hidden = !get("hasHistory");
-    if (get("hasHistory") && $("history").hidden && wasShown("history")) open();
+    if (!get("hasHistory") || !isBack) return;
+    isBack = false;
+    open();
   });
 }
 

@@ -26,8 +26,8 @@ export function begin() {
 function down(event) {
   if (event.key === "Escape") {
     if (document.querySelector("dialog[open]")) return; // it closes that
-    const mayMove = get("link") !== "live" || !stands(get("state"));
-    if (mayMove && !replay.isShown()) { // what moves is stopped before all else
+    const couldBeMoving = get("link") !== "live" || !stands(get("state"));
+    if (couldBeMoving && !replay.isShown()) { // what moves is stopped before all else
       while (closeNewest("sheet", "history"));
       emergency();
     } else if (!closeNewest("sheet") && !replay.isShown()) emergency();
