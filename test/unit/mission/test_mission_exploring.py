@@ -169,7 +169,7 @@ def test_before_it_ends_it_tries_all(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def give_one_up(exploration: Exploration, *asked: object) -> None:
         if len(exploration.unseen) < 3:
-            exploration.unseen.append((0.0, 0.0))
+            exploration.give_up((0.0, 0.0))
 
     monkeypatch.setattr(Exploration, "next_path", give_one_up)
     rig.tick(4)

@@ -24,7 +24,7 @@ def taken_up(values: Values, senses: Senses, known: OccupancyMap = HALL) -> Rig:
 def test_it_is_taken_up_from_a_checkpoint() -> None:
     rig = exploring()
     assert rig.mission.exploration is not None
-    rig.mission.exploration.unseen.append((1.5, 0.5))
+    rig.mission.exploration.give_up((1.5, 0.5))
     rig.tick(100, pose=Pose(1.3, 1.2, 0.0))
     values = rig.mission.checkpoint(rig.senses)
     assert values is not None

@@ -89,10 +89,10 @@ class Exploration:
         exploration = Exploration(config)
         for x, y, *told in values:
             (seen_from,) = told or (0.0,)
-            exploration._give_up((float(x), float(y)), float(seen_from))
+            exploration.give_up((float(x), float(y)), float(seen_from))
         return exploration
 
-    def _give_up(self, middle: Point, seen_from: float = 0.0) -> None:
+    def give_up(self, middle: Point, seen_from: float = 0.0) -> None:
         """Go there no more, but to a place that is nearer than that it was ``seen_from``, m."""
         self.unseen.append(middle)
         self._seen_from[middle] = min(seen_from, self._seen_from.get(middle, math.inf))
@@ -178,7 +178,7 @@ class Exploration:
             try:
                 points = plan(frontier.viewpoint)
             except NoPathError:
-                self._give_up(frontier.middle)
+                self.give_up(frontier.middle)
                 continue
             self.goal = frontier
             return points
@@ -228,7 +228,7 @@ class Exploration:
         """No way leads to the frontier it was on its way to: give that up."""
         self.times_stuck += is_stuck
         if self.goal is not None:
-            self._give_up(self.goal.middle)
+            self.give_up(self.goal.middle)
         self.goal, self.is_as_near_as_it_gets = None, False
 
     def _leave_behind(self, here: Pose, context: PlanningContext) -> None:
@@ -248,10 +248,10 @@ class Exploration:
                 p for p in self._vanished if math.dist(p, goal.middle) <= self._config.same_frontier
             ]
             if len(near) > self._config.most_returns:
-                self._give_up(goal.middle)
+                self.give_up(goal.middle)
             return
         if is_there:
-            self._give_up(goal.middle, math.dist(goal.viewpoint, goal.middle))
+            self.give_up(goal.middle, math.dist(goal.viewpoint, goal.middle))
 
     def _is_left(self, occupancy: OccupancyMap, middle: Point) -> bool:
         """Whether something of a frontier is left on a map."""

@@ -166,7 +166,8 @@ def test_what_a_newer_map_shows_is_not_told_as_unseen() -> None:
     exploration = begun()
     assert exploration.goal is not None
     edge = exploration.goal.middle
-    exploration.unseen = [edge, (HERE.x, HERE.y)]
+    for point in (edge, (HERE.x, HERE.y)):
+        exploration.give_up(point)
     assert exploration.still_unseen(HALL) == (edge,)
     assert exploration.still_unseen(TWO_ROOMS.map) == ()
 
