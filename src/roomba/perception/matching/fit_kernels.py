@@ -51,7 +51,7 @@ _GRAZED: Final = 0.35
 _LEAST_STEP: Final = 0.02
 """m; a ray that grazes a surface goes on by at least this."""
 _NEAREST_SURFACE: Final = 0.1
-"""m; nothing is so near to a lidar, whatever the map shows: the robot itself is there."""
+"""m; surfaces of the map nearer to the lidar do not count: the robot stands in that place."""
 _SHARE: Final = 0.1
 """Weight of one beam: neighbours, and scans from nearby places, are not independent."""
 

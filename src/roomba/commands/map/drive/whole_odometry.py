@@ -39,23 +39,23 @@ class WholeOdometry:
         if replay is None:
             return value.pose if isinstance(value, Odometry) else None
         has_gap = self._gaps.has(reading.stamp)
-        before = _Place(replay.mapper)
+        is_told = isinstance(value, Odometry) and not has_gap
+        is_guessed = isinstance(value, LidarScan) and has_gap
+        # The step from a guessed pose to the next one, guessed or told, is the map's.
+        goes_on = is_guessed or (is_told and self._is_guessed)
+        before = _Place(replay.mapper) if goes_on else None
         replay.hear(reading.stamp, value)
+        if not (is_told or is_guessed):
+            return None
         if isinstance(value, Odometry):
-            if has_gap:
-                return None
-            if self._is_guessed:
-                self._go_on(before, replay.mapper)
-                self.frame = self._pose.compose(value.pose.inverse())
-            self._is_guessed, self._recorded = False, value.pose
-            self._pose = self.frame.compose(value.pose)
-            return self._pose
-        if isinstance(value, LidarScan) and has_gap:
+            self._recorded = value.pose
+        if before is None:
+            self._pose = self.frame.compose(self._recorded)
+        else:
             self._go_on(before, replay.mapper)
             self.frame = self._pose.compose(self._recorded.inverse())
-            self._is_guessed = True
-            return self._pose
-        return None
+        self._is_guessed = is_guessed
+        return self._pose
 
     def _go_on(self, before: _Place, mapper: Mapper) -> None:
         """Move on by what the robot moved since it was at a place of the map."""
