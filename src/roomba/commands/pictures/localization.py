@@ -13,7 +13,7 @@ from roomba.configuration.sensors import EXACT_LIDAR
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.perception.localization.dead_reckoning import DeadReckoning
-from roomba.perception.localization.relocation import Relocation, Verdict
+from roomba.perception.localization.search.relocation import Relocation, Verdict
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.plots.style import (

@@ -15,7 +15,7 @@ from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import FloorsConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.perception.localization.relocation import Expectation, Relocation, Verdict
+from roomba.perception.localization.search.relocation import Expectation, Relocation, Verdict
 from roomba.perception.matching.scan_view import Fit, ScanView
 from roomba.perception.matching.surface_field import SurfaceField
 

@@ -8,8 +8,8 @@ from typing import Final, NamedTuple
 from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose
 from roomba.perception.localization.doubt import Doubt
-from roomba.perception.localization.expecting import where_found_near, where_told
-from roomba.perception.localization.relocation import Expectation
+from roomba.perception.localization.search.expecting import where_found_near, where_told
+from roomba.perception.localization.search.relocation import Expectation
 from roomba.perception.matching.scan_view import Fit, ScanView
 from roomba.perception.matching.surface_field import SurfaceField
 

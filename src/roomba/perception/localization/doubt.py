@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose
-from roomba.perception.localization.expecting import where_known
 from roomba.perception.localization.recent_sight import RecentSight
-from roomba.perception.localization.relocation import Expectation, Relocation, Verdict
+from roomba.perception.localization.search.expecting import where_known
+from roomba.perception.localization.search.relocation import Expectation, Relocation, Verdict
 from roomba.perception.matching.scan_view import ScanView
 from roomba.perception.matching.surface_field import SurfaceField
 

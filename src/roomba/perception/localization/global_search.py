@@ -11,10 +11,15 @@ from typing import NamedTuple
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose
-from roomba.perception.localization.expecting import searched_for
 from roomba.perception.localization.learned_walls import LearnedWalls
-from roomba.perception.localization.relocation import Expectation, Hypothesis, Relocation, Verdict
+from roomba.perception.localization.search.expecting import searched_for
 from roomba.perception.localization.search.particle_search import ParticleSearch
+from roomba.perception.localization.search.relocation import (
+    Expectation,
+    Hypothesis,
+    Relocation,
+    Verdict,
+)
 from roomba.perception.matching.scan_view import Fit, ScanView
 
 

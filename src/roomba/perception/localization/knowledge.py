@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.perception.localization.estimate import Knowledge
-from roomba.perception.localization.relocation import Verdict
+from roomba.perception.localization.search.relocation import Verdict
 
 _HELP: Final = (
     "carry it to its station, or tell where it is (in RViz: 2D Pose Estimate), "

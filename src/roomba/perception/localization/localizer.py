@@ -16,26 +16,20 @@ from numpy.typing import NDArray
 from roomba.clock import ClockJumps
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
-from roomba.geometry import Pose, wrap_angle
+from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.perception.calibration.kernels import apply_lidar
-from roomba.perception.calibration.latency import learn_latency, no_latency
-from roomba.perception.calibration.lidar import lidar_correction
-from roomba.perception.localization.belief.belief import numbers_of, unknown_belief
-from roomba.perception.localization.belief.correct_kernels import calibrate, deviation, is_calm
+from roomba.perception.localization.belief.correct_kernels import is_calm
 from roomba.perception.localization.belief.reckon_kernels import SET_BACK
 from roomba.perception.localization.confirmation import Confirmation
-from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.perception.localization.doubt import Doubt
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.localization.global_search import FoundPlace, GlobalSearch
 from roomba.perception.localization.knowledge import Circumstances, Searched, knowledge_in
-from roomba.perception.localization.learned_walls import LearnedWalls
+from roomba.perception.localization.place_follower import PlaceFollower
 from roomba.perception.localization.recent_sight_kernels import Sights
-from roomba.perception.localization.relocation import Expectation
 from roomba.perception.localization.search.near_search import better_near
+from roomba.perception.localization.search.relocation import Expectation
 from roomba.perception.localization.tracker import Tracker
-from roomba.perception.matching.pose_kernels import pose_then
 from roomba.perception.matching.scan_view import (
     Fit,
     LidarModel,
@@ -77,19 +71,16 @@ class Localizer:
         stands for so many of the lidar's, its ``stride``.
         """
         self._map = occupancy
-        self.field = SurfaceField.of(occupancy) if occupancy else SurfaceField.unknown()
         self.view: ScanView | None = None
         self.placed: PlacedScan | None = None
         self._config, self._body_radius = config, body_radius
-        self.belief = unknown_belief()
-        self._row, self.numbers = self.belief[0], numbers_of(config, gyro, stride)
-        self._walls = LearnedWalls(self.field, self.belief)
+        self._followed = PlaceFollower(occupancy, config, gyro, stride)
+        self.belief, self.numbers = self._followed.belief, self._followed.numbers
+        self._row, self._reckoning = self._followed.row, self._followed.reckoning
+        self.path = self._reckoning.path
         self._doubt = Doubt(config, body_radius)
         self._confirmation = Confirmation(config, self._doubt)
-        self._latency, self._heading = no_latency(), math.nan
         self._search: GlobalSearch | None = None
-        self._reckoning = DeadReckoning(config, gyro, self.belief)
-        self.path = self._reckoning.path
         self._is_lifted = self._is_blind = False
         self._now = -math.inf
         self._stamps, self._times = (ClockJumps(tolerance=SET_BACK) for _ in range(2))
@@ -127,20 +118,21 @@ class Localizer:
         self._row["seen"] = stamp
         tells_places_apart = len(view) >= self._config.least_beams
         if self._search is None:
-            heading = self._follow(view, taken, reckoned, tells_places_apart)
+            self._follow(view, taken, reckoned, tells_places_apart)
             self._doubt.note(taken, reckoned, view)
-            self._compare_turns(stamp, heading)
         elif tells_places_apart:
-            newest, believed = self._reckoning.pose, self._tracker.pose
+            newest, believed = self._reckoning.pose, self.pose
             found = self._search.see(self._now, view, reckoned, newest, believed)
             if found is not None:
                 self._go_on_at(found)
-        self.placed = PlacedScan(self._pose_then(reckoned), still, plain_ranges(ranges), lidar)
+        self.placed = PlacedScan(
+            self._followed.pose_then(reckoned), still, plain_ranges(ranges), lidar
+        )
 
     @property
     def latency(self) -> float:
         """How late scans are against odometry, s, as learned so far."""
-        return float(self._latency[0]["seconds"])
+        return self._followed.latency
 
     @property
     def is_calm(self) -> bool:
@@ -162,7 +154,7 @@ class Localizer:
     def resumed(self, now: float) -> None:
         """Go on after kernels that brought the belief up to ``now``, s, from when it was calm."""
         self._stamps.last = float(self._row["stamp"])
-        self._heading = math.nan
+        self._followed.forget_heading()
         self._times.last = max(self._times.last or now, now)
         self._now = max(self._now, now)
 
@@ -183,20 +175,16 @@ class Localizer:
         if len(view) >= self._config.least_beams and self._tracker.is_doubtful:
             self._reconsider(stamp, view, reckoned)
         self._doubt.note(stamp, reckoned, view)
-        self.placed = PlacedScan(self._pose_then(reckoned), still, plain_ranges(ranges), lidar)
+        self.placed = PlacedScan(
+            self._followed.pose_then(reckoned), still, plain_ranges(ranges), lidar
+        )
 
     def go_by_lidar(self) -> None:
         """Take the lidar for where it is, if that is known better by now; call it between scans.
 
         What was seen stays where it is on the map: it is the robot's body that is elsewhere.
         """
-        if not self._row["calibration"]["is_lidar_due"]:
-            return
-        before = lidar_correction(self.belief)
-        apply_lidar(self._row["calibration"])
-        by = before.compose(lidar_correction(self.belief).inverse())
-        self._tracker.pose = self._tracker.pose.compose(by)
-        self._heading = math.nan
+        self._followed.go_by_lidar()
 
     def pass_time(self, now: float) -> None:
         """Tell the time when no sensor does: silence counts, too."""
@@ -213,8 +201,8 @@ class Localizer:
         self._use_field_of(occupancy)
         estimate = self.estimate
         if self._search is not None:
-            self._search.use(self._walls)
-            self._tracker = self._tracker_at(estimate.pose, _ANYWHERE.copy())
+            self._search.use(self._followed.walls)
+            self._followed.begin_at(estimate.pose, _ANYWHERE)
         else:
             self.told(estimate.pose, (estimate.position_deviation, estimate.heading_deviation))
 
@@ -229,21 +217,20 @@ class Localizer:
             return
         self._use_field_of(occupancy)
         if at is None:
-            tracker = self._tracker
-            self._tracker = self._tracker_at(tracker.pose, tracker.covariance)
+            self._followed.begin_at(self.pose, self._tracker.covariance)
         else:
             self.told(*at)
             self._confirmation.need_less()
 
     def _use_field_of(self, occupancy: OccupancyMap) -> None:
-        self._map, self.field = occupancy, SurfaceField.of(occupancy)
-        self._walls = LearnedWalls(self.field, self.belief)
+        self._map = occupancy
+        self._followed.use(occupancy)
         self._doubt.drop()
 
     def told(self, pose: Pose, deviation: tuple[float, float]) -> None:
         """Expect the robot at a reported pose, with deviations in m and rad; scans confirm it."""
         spread = np.diag([deviation[0] ** 2, deviation[0] ** 2, deviation[1] ** 2])
-        self._tracker = self._tracker_at(pose, spread)
+        self._followed.begin_at(pose, spread)
         self._search = None
         self._doubt.drop()
         self._confirmation.told(self._now, pose, deviation)
@@ -256,6 +243,11 @@ class Localizer:
     def pose(self) -> Pose:
         """Where the robot is taken to be, map frame."""
         return self._tracker.pose
+
+    @property
+    def field(self) -> SurfaceField:
+        """The surfaces of the map."""
+        return self._followed.field
 
     @property
     def estimate(self) -> Estimate:
@@ -285,13 +277,13 @@ class Localizer:
     @property
     def map_to_odometry(self) -> Pose:
         """Where the frame of the wheels' odometry lies in the map."""
-        return self._tracker.pose.compose(self._reckoning.odometry.inverse())
+        return self.pose.compose(self._reckoning.odometry.inverse())
 
     @property
     def hypotheses(self) -> list[Pose]:
         """Where the robot may be, likeliest first: while it is searched for there may be many."""
         places = self._search.hypotheses(self._reckoning.pose) if self._search is not None else []
-        return places or [self._tracker.pose]
+        return places or [self.pose]
 
     def _follow_clock(self, time: float, clock: ClockJumps) -> None:
         """Take the time that a clock shows.
@@ -316,7 +308,7 @@ class Localizer:
         if search is not None:
             searched = Searched(search.why, self._now - search.since, search.verdict)
         now = Circumstances(
-            deviation=deviation(self._row["covariance"]),
+            deviation=self._followed.position_deviation,
             has_map=self._map is not None,
             is_lifted=self._is_lifted,
             is_late=self._is_late,
@@ -332,31 +324,22 @@ class Localizer:
     def _is_late(self) -> bool:
         return not self._now - float(self._row["seen"]) <= self._config.scan_timeout
 
+    @property
+    def _tracker(self) -> Tracker:
+        return self._followed.tracker
+
     def _follow(
         self, view: ScanView, stamp: float, reckoned: Pose, tells_places_apart: bool
-    ) -> float:
-        """Correct the pose by a scan that was taken at ``reckoned``, perhaps a little ago.
-
-        Return how the robot was turned then, rad, map frame; nan if the scan does not tell.
-        """
-        tracker, is_late = self._tracker, not self._reckoning.is_newest(stamp)
-        if is_late:
-            tracker.pose = self._pose_then(reckoned)
-        unsure = deviation(self._row["covariance"])
+    ) -> None:
+        """Correct the pose by a scan that was taken at ``reckoned``, and heed what it says."""
+        followed = self._followed
+        unsure = followed.position_deviation
         if self._confirmation.awaited is None and unsure > self._config.astray_deviation:
-            spread = (unsure, math.sqrt(tracker.covariance[2, 2]))
-            self._confirmation.await_at(tracker.pose, spread)
-        tracker.see(view)
-        fit = tracker.judge(view) if tells_places_apart else None
-        tells_turn = fit is not None and not tracker.is_doubtful
-        heading = tracker.pose.theta if tells_turn else math.nan
-        self._walls.learn()
-        if is_late:
-            tracker.pose = self._pose_since(reckoned)
-        calibrate(self.belief)
+            there = followed.pose_then(reckoned)
+            self._confirmation.await_at(there, (unsure, followed.heading_deviation))
+        fit = followed.correct(view, stamp, reckoned, tells_places_apart=tells_places_apart)
         if fit is not None:
             self._heed(fit, stamp, view, reckoned)
-        return heading
 
     def _heed(self, fit: Fit, stamp: float, view: ScanView, reckoned: Pose) -> None:
         """Look for the robot if a scan says that it is elsewhere."""
@@ -367,32 +350,13 @@ class Localizer:
         elif self._tracker.is_doubtful:
             self._reconsider(stamp, view, reckoned)
 
-    def _compare_turns(self, stamp: float, heading: float) -> None:
-        """Learn how late scans are from the turn since the scan before, if both fit the map."""
-        learn_latency(self._latency, wrap_angle(heading - self._heading), stamp, self.path)
-        self._heading = heading
-
-    def _pose_then(self, reckoned: Pose) -> Pose:
-        """Return where the robot was on the map when dead reckoning had it at ``reckoned``.
-
-        As compiled code has it, to the last bit.
-        """
-        here, then = self._tracker.pose.as_array(), reckoned.as_array()
-        return Pose(*pose_then(here, self._row["reckoned"], then))
-
-    def _pose_since(self, reckoned: Pose) -> Pose:
-        """Return where the robot is that was at the tracker's pose at ``reckoned``."""
-        here, then = self._tracker.pose.as_array(), reckoned.as_array()
-        return Pose(*pose_then(here, then, self._row["reckoned"]))
-
     def _reconsider(self, stamp: float, view: ScanView, reckoned: Pose) -> None:
         """Forget the pose, unless what is in sight says that the home changed, and not the pose."""
         # Where all is as it was seen a moment ago, it is the home that changed.
         is_still = self._doubt.sight.is_still(stamp, reckoned, view)
         if not is_still and self._is_found_near(view, reckoned):
             return
-        pose = self._tracker.pose
-        expected = self._doubt.expected(self._now, stamp, view, reckoned, pose, self.field)
+        expected = self._doubt.expected(self._now, stamp, view, reckoned, self.pose, self.field)
         if expected is not None:
             # What the place looks like may have changed as well.
             self._search_for("the scan does not fit the map here any more", expected)
@@ -400,7 +364,7 @@ class Localizer:
     def _is_found_near(self, view: ScanView, reckoned: Pose) -> bool:
         """Go on at a place near by that a scan fits as well as usual, if there is one."""
         since = reckoned.inverse().compose(self._reckoning.pose)
-        here = self._tracker.pose.compose(since.inverse())
+        here = self.pose.compose(since.inverse())
         usual = float(self._row["usual_agree"]), float(self._row["usual_through"])
         found = better_near(view, self.field, here, usual, self._config)
         if found is None:
@@ -417,15 +381,11 @@ class Localizer:
         self._confirmation.drop()
         self._doubt.drop()
         self._search = GlobalSearch(
-            why, self._now, expectation, self._walls, self._config, self._body_radius
+            why, self._now, expectation, self._followed.walls, self._config, self._body_radius
         )
 
     def _go_on_at(self, found: FoundPlace) -> None:
         """Follow the robot from where it was found."""
         self._search = None
-        self._tracker = self._tracker_at(found.pose, _FOUND_SPREAD.copy())
+        self._followed.begin_at(found.pose, _FOUND_SPREAD)
         self._tracker.trust(found.fit)
-
-    def _tracker_at(self, pose: Pose, covariance: NDArray[np.float64]) -> Tracker:
-        self._heading = math.nan
-        return Tracker(self.field, self._config, pose, covariance, self.belief, self.numbers)

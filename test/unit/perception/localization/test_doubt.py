@@ -10,7 +10,7 @@ from fixtures.robots.located import CONFIG, LIDAR, TWO_ROOMS, Eye
 from roomba.geometry import Pose
 from roomba.perception.localization import doubt
 from roomba.perception.localization.doubt import Doubt
-from roomba.perception.localization.relocation import Expectation, Relocation, Verdict
+from roomba.perception.localization.search.relocation import Expectation, Relocation, Verdict
 from roomba.perception.matching.surface_field import SurfaceField
 
 FIELD = SurfaceField.of(TWO_ROOMS.map)

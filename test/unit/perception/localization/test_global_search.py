@@ -9,10 +9,10 @@ from fixtures.robots.located import CONFIG, LIDAR, SQUARE, TWO_ROOMS, Eye
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.belief.belief import unknown_belief
-from roomba.perception.localization.expecting import where_known
 from roomba.perception.localization.global_search import FoundPlace, GlobalSearch
 from roomba.perception.localization.learned_walls import LearnedWalls
-from roomba.perception.localization.relocation import Verdict
+from roomba.perception.localization.search.expecting import where_known
+from roomba.perception.localization.search.relocation import Verdict
 from roomba.perception.matching.scan_view import ScanView
 from roomba.perception.matching.surface_field import SurfaceField
 

@@ -9,7 +9,7 @@ from fixtures.robots.located import CONFIG
 
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.localization.knowledge import Circumstances, Searched, knowledge_in
-from roomba.perception.localization.relocation import Verdict
+from roomba.perception.localization.search.relocation import Verdict
 
 CONFIGURED = CONFIG.localization
 WELL = Circumstances(

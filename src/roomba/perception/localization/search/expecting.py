@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose
-from roomba.perception.localization.relocation import Expectation
+from roomba.perception.localization.search.relocation import Expectation
 
 
 def where_told(

@@ -18,7 +18,7 @@ from fixtures.robots.located import (
 )
 
 from roomba.geometry import Pose, wrap_angle
-from roomba.perception.localization.relocation import KEPT, Expectation, Relocation, Verdict
+from roomba.perception.localization.search.relocation import KEPT, Expectation, Relocation, Verdict
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.world.home.home import Home
 

@@ -6,7 +6,7 @@ import pytest
 from fixtures.robots.located import CONFIG
 
 from roomba.geometry import Pose
-from roomba.perception.localization.expecting import (
+from roomba.perception.localization.search.expecting import (
     searched_for,
     where_found_near,
     where_known,
