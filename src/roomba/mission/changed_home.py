@@ -35,7 +35,7 @@ class ChangedHome:
         if job.cleaning is not None:
             was_done = job.cleaning.ledger.stage is None
             job.cleaning.use_context(context, job.dirt)
-            job.look_no_more()
+            job.look_no_more(context.known)
             if was_done and job.cleaning.ledger.stage is not None:
                 self._transitions.clean_on()
 

@@ -169,7 +169,7 @@ class Mission:
             values, lambda request: self._job.cleaning_of(request, context, senses), exploring
         )
         take_up(found, self._job, senses)
-        self._job.look_no_more()
+        self._job.look_no_more(context.known)
         self._ticks.last = senses
         is_docked = self._monitor.was_docked = senses.battery.is_docked
         transitions = self._transitions

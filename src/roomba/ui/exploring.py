@@ -15,7 +15,7 @@ STEP = 5.0
 """m2; so much more must be known before it is said again."""
 
 _ENDS = {
-    ErrandOutcome.COMPLETED: "The map is whole, and the robot is back on its station",
+    ErrandOutcome.COMPLETED: "All that can be seen is mapped, and the robot is back on its station",
     ErrandOutcome.STOPPED: "The exploration was stopped",
     ErrandOutcome.REFUSED: "The robot refuses",
     ErrandOutcome.BATTERY: "The battery did not last",

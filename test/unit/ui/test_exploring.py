@@ -58,7 +58,7 @@ def test_an_exploration_is_told_during_and_after() -> None:
     told = [line for line in lines if line.startswith("The robot knows")]
     assert told[0] == "The robot knows 0.00 m²."
     assert 5 <= len(told) <= 8
-    end = lines.index("The map is whole, and the robot is back on its station.")
+    end = lines.index("All that can be seen is mapped, and the robot is back on its station.")
     assert lines[end + 1 : end + 4] == [
         "Known: 40.00 m²",
         "Distance travelled: 5.00 m",

@@ -18,6 +18,7 @@ from roomba.configuration.mission import ExploringConfig
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.exploring.open_edges import open_edges, what_is_not_seen
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.frontiers.frontiers import Frontier, FrontierChoice, frontiers, is_frontier
 from roomba.planning.path.costmap import Point, RoundObstacle
@@ -187,6 +188,10 @@ class Exploration:
     def still_unseen(self, occupancy: OccupancyMap) -> tuple[Point, ...]:
         """Return the frontiers that it gave up and that are some on this map, which is newer."""
         return tuple(point for point in self.unseen if self._is_left(occupancy, point))
+
+    def what_is_not_seen(self, occupancy: OccupancyMap) -> str:
+        """Return where this newer map still ends, and why; empty where it ends nowhere."""
+        return what_is_not_seen(open_edges(occupancy, self._seen_from, self._config))
 
     def wants_another(self, occupancy: OccupancyMap) -> bool:
         """Whether nothing is left of the frontier that it is on its way to, as the map is now."""

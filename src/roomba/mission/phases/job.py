@@ -6,6 +6,7 @@ import math
 
 from roomba.clock import LONGEST_TICK
 from roomba.configuration.mission import MissionConfig
+from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.missed import what_is_not_clean
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult
@@ -43,6 +44,8 @@ class Job:
         self._is_told = False
         self._cleaned: CleanResult | None = None
         self._explored: ExploreResult | None = None
+        self._not_seen = ""
+        """Where the map was still open when there was nothing left to look for, and why."""
 
     def cleaning_of(
         self, request: CleanRequest, context: PlanningContext, senses: Senses
@@ -62,15 +65,17 @@ class Job:
         self._begin(senses)
 
     def _begin(self, senses: Senses) -> None:
-        self.outcome, self._is_told = None, False
+        self.outcome, self._is_told, self._not_seen = None, False, ""
         self.ledger.begin(senses)
         self.times.begin()
         self._started = senses.now
 
-    def look_no_more(self) -> None:
-        """On the whole map a clean has nothing left to look for."""
-        if self.cleaning is not None and not self.cleaning.explores:
-            self.exploration = None
+    def look_no_more(self, known: OccupancyMap) -> None:
+        """On the whole map, as it is ``known``, a clean has nothing left to look for."""
+        if self.exploration is None or self.cleaning is None or self.cleaning.explores:
+            return
+        self._not_seen = self.exploration.what_is_not_seen(known)
+        self.exploration = None
 
     def take_up(self) -> None:
         """Go on after its result was told: it will have another one."""
@@ -155,6 +160,8 @@ class Job:
                 self.cleaning, outcome, message, context, obstacles, senses
             )
         elif self.exploration is not None:
+            if outcome is CleanOutcome.COMPLETED:
+                message = message or self.exploration.what_is_not_seen(context.known)
             self._explored = ExploreResult(
                 outcome,
                 message,
@@ -179,7 +186,8 @@ class Job:
         )
         wanted, covered = cleaning.ledger.coverage.wanted_area, cleaning.ledger.clean_area
         if outcome is CleanOutcome.COMPLETED:
-            message = message or what_is_not_clean(wanted, covered, missed)
+            reasons = (message or what_is_not_clean(wanted, covered, missed), self._not_seen)
+            message = "; ".join(filter(None, reasons))
         return CleanResult(
             outcome,
             message,

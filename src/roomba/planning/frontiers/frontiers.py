@@ -73,11 +73,8 @@ def frontiers(
     ways = np.empty(frame.shape)
     ways_from(fits, *frame.cell_of(*here), ways)
     costs = ways + np.where(roomy, 0.0, choice.tight_cost / frame.resolution)
-    frontier = np.empty(frame.shape, np.bool_)
-    least = max(1, round(choice.least_unknown / frame.resolution**2))
-    frontier_cells(occupancy.values, least, frontier)
     labels = np.empty(frame.shape, np.int32)
-    count = clusters(frontier, labels)
+    count = _numbered_frontiers(occupancy, choice.least_unknown, labels)
     cells, ends = _by_number(labels, count)
     middles = _middles_of(cells, frame)
     apart = _from_middle(cells, ends)
@@ -112,6 +109,42 @@ def is_frontier(occupancy: OccupancyMap, point: Point, radius: float, least: int
     if values.size:
         frontier_cells(values, 1, frontier)
     return int(frontier.sum()) >= least
+
+
+def lengths_near(
+    occupancy: OccupancyMap, points: Sequence[Point], radius: float, least_unknown: float
+) -> NDArray[np.float64]:
+    """Return about how long the frontiers nearest to points are, m, float64 [n].
+
+    0 where none is nearer than ``radius`` m, and where it is that of a point before. Patches of the
+    unknown of less than ``least_unknown`` m2 have no frontier.
+    """
+    frame = occupancy.frame
+    labels = np.empty(frame.shape, np.int32)
+    count = _numbered_frontiers(occupancy, least_unknown, labels)
+    cells, ends = _by_number(labels, count)
+    lengths = np.diff(ends) * frame.resolution
+    numbers, middles = labels[tuple(cells.T)], _middles_of(cells, frame)
+    found, told = np.zeros(len(points)), set[int]()
+    for index, point in enumerate(points):
+        apart = np.hypot(*(middles - point).T)
+        if not len(apart) or apart.min() >= radius:
+            continue
+        number = int(numbers[np.argmin(apart)])
+        if number not in told:
+            told.add(number)
+            found[index] = lengths[number - 1]
+    return found
+
+
+def _numbered_frontiers(
+    occupancy: OccupancyMap, least_unknown: float, labels: NDArray[np.int32]
+) -> int:
+    """Number the frontiers into ``labels``, from 1 on; return how many there are."""
+    frontier = np.empty(labels.shape, np.bool_)
+    least = max(1, round(least_unknown / occupancy.frame.resolution**2))
+    frontier_cells(occupancy.values, least, frontier)
+    return clusters(frontier, labels)
 
 
 def _cost(frontier: Frontier, choice: FrontierChoice) -> float:

@@ -81,7 +81,9 @@ def test_each_option_does_what_it_says(start: Start) -> None:
 def test_it_makes_a_map_and_cleans_by_it(start: Start) -> None:
     menu = start("--speed", "100", "--map", "none")
     assert "there are no rooms yet" in choose(menu, "5", "2")
-    assert "The map is whole, and the robot is back on its station" in choose(menu, "10")
+    assert "All that can be seen is mapped, and the robot is back on its station" in choose(
+        menu, "10"
+    )
     assert "The clean is done" in choose(menu, "5", "1")
 
 

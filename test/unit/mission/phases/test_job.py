@@ -12,9 +12,11 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
+from roomba.grid import UNKNOWN, OccupancyMap
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
@@ -29,6 +31,18 @@ SITE = PlanningContext(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())
 AWAY = Senses(0.0, Pose(1.0, 0.6, 0.0))
 
 
+def half_known() -> PlanningContext:
+    """The home of which nothing is known beyond x = 1.5 m."""
+    values = HOME.map.values.copy()
+    values[:, HOME.map.frame.cell_of(1.5, 0.0)[1] :] = UNKNOWN
+    known = OccupancyMap(HOME.map.frame, values)
+    return PlanningContext(known, HOME.station, ROBOT, CONFIG, DockingConfig(), is_growing=True)
+
+
+HALF = half_known()
+EDGE = (1.5, 1.0)
+
+
 def obstacles() -> Obstacles:
     things = ThingLayer(SurfaceField.of(HOME.map))
     return Obstacles(things, ROBOT.walk, ROBOT.body, CONFIG.driving)
@@ -41,9 +55,16 @@ def cleaning_job() -> Job:
     return job
 
 
-def end(job: Job, outcome: CleanOutcome, message: str = "", *, can_go_on: bool = False) -> None:
+def end(
+    job: Job,
+    outcome: CleanOutcome,
+    message: str = "",
+    *,
+    can_go_on: bool = False,
+    site: PlanningContext = SITE,
+) -> None:
     senses = replace(AWAY, now=60.0)
-    job.end(outcome, message, SITE, obstacles(), senses, can_go_on=can_go_on)
+    job.end(outcome, message, site, obstacles(), senses, can_go_on=can_go_on)
 
 
 def test_with_nothing_cleaned_a_completed_clean_says_why() -> None:
@@ -143,3 +164,28 @@ def test_an_exploration_tells_what_is_known() -> None:
     assert result.known > 5.0
     assert job.take_result() is None
     assert job.exploration is None
+
+
+def test_an_exploration_that_left_the_map_open_tells_where() -> None:
+    job = Job(DirtMap(HOME.map), CONFIG, 100.0, AWAY)
+    job.begin_exploration(AWAY)
+    assert job.exploration is not None
+    job.exploration.give_up(EDGE, 0.6)
+    end(job, CleanOutcome.COMPLETED, site=HALF)
+    result = job.take_exploration()
+    assert result is not None
+    assert result.message.startswith("the map is open for ")
+    assert "the lidar met nothing" in result.message
+
+
+def test_a_clean_of_a_home_that_it_explored_tells_where_the_map_stayed_open() -> None:
+    job = cleaning_job()
+    job.exploration = Exploration(CONFIG.exploring)
+    job.exploration.give_up(EDGE)
+    job.look_no_more(HALF.known)
+    assert job.exploration is None
+    end(job, CleanOutcome.COMPLETED)
+    result = job.take_result()
+    assert result is not None
+    assert "the map is open for " in result.message
+    assert "no way leads" in result.message

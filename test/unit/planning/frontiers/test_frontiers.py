@@ -9,7 +9,13 @@ import pytest
 from numpy.typing import NDArray
 
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
-from roomba.planning.frontiers.frontiers import Frontier, FrontierChoice, frontiers, is_frontier
+from roomba.planning.frontiers.frontiers import (
+    Frontier,
+    FrontierChoice,
+    frontiers,
+    is_frontier,
+    lengths_near,
+)
 
 CELL = 0.05
 Point = tuple[float, float]
@@ -183,3 +189,12 @@ def test_whether_one_is_left_is_told() -> None:
     assert not is_frontier(room(gaps=()), frontier.middle, 0.25, LEAST)
     for far in ((-9.0, 1.0), (9.0, 1.0), (1.0, -9.0), (1.0, 9.0)):
         assert not is_frontier(made, far, 0.25, LEAST)
+
+
+def test_a_frontier_is_as_long_as_its_cells_and_counts_once() -> None:
+    made = room(gaps=((0.4, 0.8), (1.4, 2.6)))
+    long, short, same = (4.0, 2.0), (4.0, 0.6), (4.0, 1.5)
+    lengths = lengths_near(made, [long, short, same, (1.0, 1.0)], 0.25, 0.03)
+    assert lengths == pytest.approx([1.2, 0.4, 0.0, 0.0], abs=2.1 * CELL)
+    assert lengths_near(room(gaps=()), [long], 0.25, 0.03).tolist() == [0.0]
+    assert lengths_near(made, [], 0.25, 0.03).size == 0

@@ -1,0 +1,69 @@
+"""Where a map still ends after an exploration: how long its open edges are, and why they stayed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from enum import Enum
+from typing import Final, NamedTuple
+
+from roomba.configuration.mission import ExploringConfig
+from roomba.grid import OccupancyMap
+from roomba.planning.frontiers.frontiers import lengths_near
+from roomba.planning.path.costmap import Point
+
+_MOST_TOLD: Final = 3
+
+
+class EdgeReason(Enum):
+    """Why the map goes on no further."""
+
+    NO_WAY = "no way leads to where it could look there"
+    NO_ECHO = "it looked there and the lidar met nothing: too far away, black, or of glass"
+
+
+class OpenEdge(NamedTuple):
+    """A frontier that was given up: a place on it, m, map frame, and its length, m."""
+
+    place: Point
+    length: float
+    reason: EdgeReason
+
+
+def open_edges(
+    occupancy: OccupancyMap, seen_from: Mapping[Point, float], config: ExploringConfig
+) -> list[OpenEdge]:
+    """Return the longer frontiers of a map at places that were given up, the longest first.
+
+    ``seen_from`` tells of those places from how far the robot looked at them, m; 0: it did not. One
+    frontier is told once. Those shorter than ``config.open_edge`` are left out.
+    """
+    nearest_last = sorted(seen_from, key=lambda place: -seen_from[place])
+    lengths = lengths_near(
+        occupancy, nearest_last, config.frontier_radius, config.least_unknown
+    ).tolist()
+    edges = [
+        OpenEdge(place, length, _reason(seen_from[place]))
+        for place, length in zip(nearest_last, lengths, strict=True)
+        if length >= config.open_edge
+    ]
+    return sorted(edges, key=lambda edge: -edge.length)
+
+
+def what_is_not_seen(edges: Sequence[OpenEdge]) -> str:
+    """Return where the map still ends, and why; empty where it ends nowhere."""
+    if not edges:
+        return ""
+    told = [
+        f"for {length:.1f} m at ({x:.1f}, {y:.1f}) ({reason.value})"
+        for (x, y), length, reason in edges[:_MOST_TOLD]
+    ]
+    rest = edges[_MOST_TOLD:]
+    if rest:
+        length = math.fsum(edge.length for edge in rest)
+        told.append(f"for {length:.1f} m at {len(rest)} more")
+    return f"the map is open {', '.join(told)}"
+
+
+def _reason(seen_from: float) -> EdgeReason:
+    return EdgeReason.NO_ECHO if seen_from > 0.0 else EdgeReason.NO_WAY

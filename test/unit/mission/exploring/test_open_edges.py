@@ -1,0 +1,57 @@
+"""What an exploration tells of where its map still ends."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from roomba.configuration.mission import MissionConfig
+from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.mission.exploring.open_edges import EdgeReason, OpenEdge, open_edges, what_is_not_seen
+
+CONFIG = MissionConfig().exploring
+CELL = 0.05
+
+
+def room(*openings: tuple[float, float]) -> OccupancyMap:
+    """A room of 4 x 4 m from (0, 0) on; its wall x = 4 is open from y to y, m, to the unknown."""
+    values = np.full((120, 120), UNKNOWN, np.int8)
+    values[19:101, 19:101] = OCCUPIED
+    values[20:100, 20:100] = FREE
+    made = OccupancyMap(GridFrame(CELL, -1.0, -1.0, 120, 120), values)
+    for low, high in openings:
+        rows = slice(made.frame.cell_of(0.0, low)[0], made.frame.cell_of(0.0, high)[0])
+        values[rows, 100] = FREE
+    return made
+
+
+WIDE, DOOR = (4.0, 2.0), (4.0, 0.5)
+
+
+def test_open_edges_are_told_with_their_length_and_reason_the_longest_first() -> None:
+    edges = open_edges(room((0.1, 0.9), (1.0, 3.0)), {DOOR: 0.0, WIDE: 0.8}, CONFIG)
+    assert [edge.place for edge in edges] == [WIDE, DOOR]
+    assert [edge.length for edge in edges] == pytest.approx([2.0, 0.8], abs=2.1 * CELL)
+    assert [edge.reason for edge in edges] == [EdgeReason.NO_ECHO, EdgeReason.NO_WAY]
+
+
+def test_an_edge_that_was_given_up_in_several_places_is_one() -> None:
+    below = (4.0, 1.2)
+    (edge,) = open_edges(room((1.0, 3.0)), {below: 0.0, WIDE: 0.5}, CONFIG)
+    assert edge.place == WIDE
+    assert edge.reason is EdgeReason.NO_ECHO
+
+
+def test_what_is_closed_by_now_or_short_is_not_told() -> None:
+    assert open_edges(room(), {WIDE: 0.5}, CONFIG) == []
+    assert open_edges(room((1.8, 2.2)), {WIDE: 0.5}, CONFIG) == []
+    assert open_edges(room((1.0, 3.0)), {}, CONFIG) == []
+
+
+def test_it_is_told_in_a_sentence() -> None:
+    assert what_is_not_seen([]) == ""
+    edges = [OpenEdge((1.0, 2.0), 3.0 - 0.5 * index, EdgeReason.NO_WAY) for index in range(5)]
+    assert what_is_not_seen(edges[:1]) == (
+        "the map is open for 3.0 m at (1.0, 2.0) (no way leads to where it could look there)"
+    )
+    assert what_is_not_seen(edges).endswith(", for 2.5 m at 2 more")
