@@ -18,8 +18,8 @@ CLEARANCE = 0.03
 """m; wanted around the docked body."""
 PLATE_DEPTH = 0.03
 """m; the thinnest station that there is room for between nose and wall."""
-APPROACH = 1.0
-"""m; of straight way to the station that is wanted."""
+APPROACHES = (1.0, 0.7, 0.45)
+"""m; of straight way to the station, the best first; with the last it can just leave it."""
 
 Place = tuple[float, Mask]
 """A heading, rad, and the cells on which the robot may be docked so."""
@@ -33,7 +33,7 @@ def automatic_station(occupancy: OccupancyMap, solid: Mask, body_radius: float) 
     """Return a docked pose in the largest floor on which the body fits, m and rad in the map frame.
 
     Wanted is a straight wall before the nose and a metre of free way behind, best along the map's
-    axes; failing that a wall, failing that free way, failing that any place. Among equals the
+    axes; failing that less way, failing that no wall, failing that any place. Among equals the
     nearest to the map's zero is taken, since that is where mapping robots start, and they start
     from their station. Raises :class:`HomeError` if the body fits nowhere.
     """
@@ -58,14 +58,17 @@ def _choices(occupancy: OccupancyMap, floor: Mask, reach: float) -> Iterator[lis
     """Yield places to choose from, the best ones first; a wall is ``reach``, m, before the nose."""
     resolution, wall = occupancy.frame.resolution, occupancy.values == OCCUPIED
     axes, around = _headings(_ALONG_AXES), _headings(_ALL_AROUND)
-    walled = [(theta, floor & _wall_ahead(wall, theta, reach, resolution)) for theta in axes]
-    yield [(theta, cells & _way_behind(floor, theta, resolution)) for theta, cells in walled]
     # Walls aslant are steps, and some have a seam of unknown cells.
     thick = with_neighbours(wall)
-    free = [(theta, floor & _way_behind(floor, theta, resolution)) for theta in around]
-    yield [(theta, each & _wall_ahead(thick, theta, reach, resolution)) for theta, each in free]
+    walled = [(theta, floor & _wall_ahead(wall, theta, reach, resolution)) for theta in axes]
+    aslant = [(theta, floor & _wall_ahead(thick, theta, reach, resolution)) for theta in around]
+    anywhere = [(theta, floor) for theta in around]
+    for approach in APPROACHES:
+        for places in (walled, aslant):
+            yield _with_way_behind(places, floor, approach, resolution)
+    for approach in APPROACHES:
+        yield _with_way_behind(anywhere, floor, approach, resolution)
     yield walled
-    yield free
     yield [(0.0, floor)]
 
 
@@ -81,9 +84,18 @@ def _wall_ahead(wall: Mask, theta: float, reach: float, resolution: float) -> Ma
     return np.asarray(np.logical_and.reduce(places))
 
 
-def _way_behind(floor: Mask, theta: float, resolution: float) -> Mask:
-    """Return the cells that have floor behind them all the way that is wanted."""
-    back = range(1, math.ceil(APPROACH / resolution) + 1)
+def _with_way_behind(
+    places: list[Place], floor: Mask, approach: float, resolution: float
+) -> list[Place]:
+    """Return those of the places that have ``approach``, m, of floor behind them."""
+    return [
+        (theta, cells & _way_behind(floor, theta, approach, resolution)) for theta, cells in places
+    ]
+
+
+def _way_behind(floor: Mask, theta: float, approach: float, resolution: float) -> Mask:
+    """Return the cells that have ``approach``, m, of floor behind them."""
+    back = range(1, math.ceil(approach / resolution) + 1)
     return np.asarray(np.logical_and.reduce([_shifted(floor, _cells(theta, -n, 0)) for n in back]))
 
 

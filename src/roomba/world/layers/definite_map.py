@@ -15,10 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
-from roomba.raster.regions import dilated, numbered_regions
+from roomba.raster.regions import dilated, large_regions, numbered_regions
 
 SPECK: Final = 0.01
 """m²; no larger unknown spot with free floor all around it is floor as well."""
+SPOT: Final = 0.3
+"""m²; smaller unknown spots that are no specks are solid on the map as well: such a spot a robot
+takes for floor that no beam happened to pass (:mod:`roomba.perception.matching.surface_field`)."""
 FENCE: Final = 0.1
 """m; thickness of a wall where a map ends: what a lidar sees a little too far lies in it."""
 MARGIN: Final = 1.0
@@ -31,7 +34,7 @@ _AROUND: Final = np.ones((3, 3), np.bool_)
 
 def definite_map(map: OccupancyMap) -> OccupancyMap:
     """Return a map of free, occupied and unknown cells whose floor has an end on every side."""
-    return _decided(_without_specks(_fenced(_cropped(map))))
+    return _with_solid_spots(_decided(_without_specks(_fenced(_cropped(map)))))
 
 
 def _cropped(map: OccupancyMap) -> OccupancyMap:
@@ -62,6 +65,15 @@ def _decided(map: OccupancyMap) -> OccupancyMap:
     is_decided = (map.values <= FREE) | (map.values == OCCUPIED)
     decisions = np.where(map.likely_solid, np.int8(OCCUPIED), np.int8(UNKNOWN))
     return OccupancyMap(map.frame, np.where(is_decided, map.values, decisions))
+
+
+def _with_solid_spots(map: OccupancyMap) -> OccupancyMap:
+    """Return a map in which small spots that are not known are occupied."""
+    if not (map.values == FREE).any():
+        return map
+    unknown, resolution = map.values == UNKNOWN, map.frame.resolution
+    is_spot = unknown & ~large_regions(unknown, resolution, SPOT, by_corners=True)
+    return OccupancyMap(map.frame, np.where(is_spot, np.int8(OCCUPIED), map.values))
 
 
 def _fenced(map: OccupancyMap) -> OccupancyMap:

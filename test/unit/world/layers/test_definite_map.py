@@ -17,6 +17,7 @@ from roomba.commands.trials.runs import run_trial
 from roomba.commands.trials.trial import Trial
 from roomba.files.occupancy_map import save_map
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.perception.matching.surface_field import SurfaceField
 from roomba.world.layers.definite_map import FENCE, MARGIN, SPECK, definite_map
 from roomba.world.layers.layer import load_home
 
@@ -90,7 +91,7 @@ def test_shares_are_settled_by_the_half() -> None:
     values[20, 20:26] = [1, 20, 49, 50, 75, 99]
     settled = definite_map(map_of(values)).values
     # Three of them are a spot of 75 cm2 that a wall ends.
-    assert settled[20, 20:26].tolist() == [UNKNOWN] * 3 + [OCCUPIED] * 3
+    assert settled[20, 20:26].tolist() == [OCCUPIED] * 6
     values[20, 20:26] = values[20, 19]
     settled[20, 20:26] = values[20, 19]
     assert np.array_equal(settled, values)
@@ -107,6 +108,16 @@ def test_what_fills_less_than_half_of_a_cell_does_not_vanish(thing: list[list[in
     values[20 : 20 + rows, 20 : 20 + columns] = thing
     settled = definite_map(map_of(values)).values[20 : 20 + rows, 20 : 20 + columns]
     assert np.array_equal(settled == FREE, np.array(thing) == FREE)
+
+
+@pytest.mark.parametrize("side", [2, 6, 9, 11, 14])
+def test_the_lidar_expects_surfaces_where_the_world_is_solid(side: int) -> None:
+    """Whatever the size, in cells, of the spot that is not known; small ones were thought floor."""
+    values = room()
+    values[15 : 15 + side, 20 : 20 + side] = UNKNOWN
+    settled = definite_map(map_of(values))
+    field = SurfaceField.of(settled)
+    assert np.array_equal(field.values <= 0.0, settled.values != FREE)
 
 
 def test_a_map_of_which_nothing_is_known_has_no_floor() -> None:
@@ -164,6 +175,9 @@ def test_small_unknown_spots_are_floor_where_only_floor_is_beside_them(inside: V
         }
         if len(spot) * CELL**2 <= SPECK + 1e-9 and OCCUPIED not in beside:
             wanted[tuple(np.transpose(spot))] = FREE
+    if (wanted == FREE).any():
+        # The others are small as well.
+        wanted[wanted == UNKNOWN] = OCCUPIED
     assert np.array_equal(definite_map(map_of(values)).values, wanted)
 
 

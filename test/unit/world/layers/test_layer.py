@@ -213,6 +213,18 @@ def test_automatic_station_without_walls_has_a_free_way(tmp_path: Path) -> None:
     assert 0.16 < staged.y < 2.84
 
 
+def test_automatic_station_in_a_small_room_has_the_longest_way_that_there_is(
+    tmp_path: Path,
+) -> None:
+    """Nearer to the map's zero it would have a wall right behind it."""
+    values = np.full((16, 28), OCCUPIED, np.int8)
+    values[2:13, 2:-2] = FREE  # 0.55 m wide and 1.2 m long
+    home = loaded(tmp_path, None, OccupancyMap(GridFrame(0.05, -0.6, -0.4, 16, 28), values))
+    staged = home.station.compose(Pose(-0.45, 0.0, 0.0))
+    room = distance_to_cells(home.frame, home.solid, staged.x, staged.y)
+    assert room >= BodyConfig().radius
+
+
 def test_automatic_station_is_in_a_corridor_that_is_hardly_wider_than_the_body(
     tmp_path: Path,
 ) -> None:
@@ -231,5 +243,5 @@ def test_home_in_which_the_body_fits_nowhere_is_refused(tmp_path: Path) -> None:
 
 def test_unknown_floor_is_solid_but_no_wall(tmp_path: Path) -> None:
     occupancy = room_map()
-    occupancy.values[30:40, 40:50] = UNKNOWN
+    occupancy.values[30:42, 40:52] = UNKNOWN
     assert value_at(loaded(tmp_path, STATION, occupancy), 2.1, 1.6) == (UNKNOWN, True, False)
