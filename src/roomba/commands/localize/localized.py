@@ -12,6 +12,7 @@ from typing import Final
 from roomba.commands.localize.files import OUTPUT_TOPICS, RowBag, RowFile, RowTable, RowTrajectory
 from roomba.commands.localize.options import LocalizeOptions
 from roomba.commands.localize.replay import Replay, Row
+from roomba.commands.localize.scan_spacing import with_patience
 from roomba.commands.localize.tally import Tally
 from roomba.commands.map.drive.looking import look_at_drive
 from roomba.commands.map.drive.whole_odometry import whole_odometry_of
@@ -68,7 +69,7 @@ def localized_drive(
     """
     with LoggedDrive(options.logs, options.wanted) as drive:
         look_at_drive(drive)
-        config = load_robot_config(CONFIGURATION / "robot.yaml")
+        config = with_patience(load_robot_config(CONFIGURATION / "robot.yaml"), drive)
         odometry = whole_odometry_of(drive, config)
         replay, tally = Replay(occupancy, config, odometry, options.start), Tally()
         _replay(drive, replay, tally, options, show)

@@ -94,7 +94,7 @@ def lines_of(summary: LocalizationSummary) -> list[tuple[str, str]]:
     ]
     if summary.position_deviation is not None and summary.heading_deviation is not None:
         deviation = f"{summary.position_deviation:.3f} m, {summary.heading_deviation:.4f} rad"
-        lines.append(("deviation", f"median {deviation}, while the place was known"))
+        lines.append(("deviation", f"median {deviation}, while the place was known or rough"))
     lines += [("lost", _text_of(loss)) for loss in summary.losses[:_SHOWN_LOSSES]]
     if summary.loss_count > _SHOWN_LOSSES:
         lines.append(("lost", f"and {summary.loss_count - _SHOWN_LOSSES} times more"))

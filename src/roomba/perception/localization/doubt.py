@@ -48,6 +48,10 @@ class Doubt:
         self.sight = RecentSight(config.recent_sight)
         self._comparison: Relocation | None = None
         self._compared = -math.inf
+        self._began: Pose | None = None
+        self.lasts = False
+        """Whether the robot drove on for so long that dead reckoning alone does not tell its place
+        well any more."""
 
     def note(self, stamp: float, reckoned: Pose, view: ScanView) -> None:
         """Remember a scan that was taken at a time, s."""
@@ -56,6 +60,11 @@ class Doubt:
     def drop(self) -> None:
         """End a comparison that is under way: the map is another one, or the pose not known."""
         self._comparison = None
+        self.end()
+
+    def end(self) -> None:
+        """Doubt no more: scans fit again."""
+        self._began, self.lasts = None, False
 
     def expected(
         self,
@@ -70,6 +79,9 @@ class Doubt:
 
         Comparing takes some scans: meanwhile it is kept. ``now`` and ``stamp`` are in s.
         """
+        self._began = self._began or reckoned
+        way = self._began.distance_to(reckoned.x, reckoned.y)
+        self.lasts = self.lasts or way > self._config.searching.doubted_way
         is_still = self.sight.is_still(stamp, reckoned, view)
         here = where_known(pose, self._config, is_still=is_still)
         if is_still:

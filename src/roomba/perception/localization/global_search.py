@@ -74,8 +74,9 @@ class GlobalSearch:
         if self._relocation is None:
             here = believed.compose(since.inverse())
             self._relocation = self._begun(now, view, reckoned, here)
-        return self._followed(view, reckoned, since) or self._compared(
-            self._relocation, now, view, reckoned, newest
+        relocation = self._relocation
+        return self._followed(relocation, view, reckoned, since) or self._compared(
+            relocation, now, view, reckoned, newest
         )
 
     def needs_views(self, now: float) -> bool:
@@ -101,8 +102,14 @@ class GlobalSearch:
             self._walls.field, self._config, self._body_radius, view, reckoned, expectation
         )
 
-    def _followed(self, view: ScanView, reckoned: Pose, since: Pose) -> FoundPlace | None:
-        """Follow all places that may be, once it drove without finding one."""
+    def _followed(
+        self, relocation: Relocation, view: ScanView, reckoned: Pose, since: Pose
+    ) -> FoundPlace | None:
+        """Follow all places that may be, once it drove without finding one.
+
+        Of places that look the same all the way, particles are left at one by chance: as long as
+        the relocation cannot tell them apart none is believed.
+        """
         start = self._from = self._from or reckoned
         if self._particles is None:
             if start.distance_to(reckoned.x, reckoned.y) < self._config.searching.follow_after:
@@ -114,6 +121,8 @@ class GlobalSearch:
             return None
         scan = self._particles.reckoned.inverse().compose(reckoned)
         there = self._walls.find(view, pose.compose(scan), self._config.beam_deviation)
+        if relocation.is_tied(there, reckoned):
+            return None
         fit = view.fit(self._walls.field, there.as_array())
         return FoundPlace(there.compose(since), fit)
 

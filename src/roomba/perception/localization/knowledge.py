@@ -35,6 +35,8 @@ class Circumstances(NamedTuple):
     is_blind: bool
     """Nothing is in sight."""
     was_just_told: bool
+    is_doubted: bool
+    """For a while scans have not fitted the map here."""
     is_awaited: bool
     """A pose that was told was not compared with a scan yet."""
     is_compared: bool
@@ -50,7 +52,7 @@ def knowledge_in(now: Circumstances, config: LocalizationConfig) -> tuple[Knowle
         return _searching(now, now.searched, config)
     if now.deviation > config.lost_deviation and not now.was_just_told:
         return Knowledge.LOST, f"{_why_unsure(now)}, for too long; {_HELP}"
-    is_sure = now.deviation <= config.known_deviation and not now.is_compared
+    is_sure = now.deviation <= config.known_deviation and not (now.is_compared or now.is_doubted)
     if now.is_late or now.is_blind or not is_sure:
         return Knowledge.ROUGH, f"{_why_unsure(now)}; going by wheels and gyro"
     return Knowledge.KNOWN, ""
@@ -78,4 +80,6 @@ def _why_unsure(now: Circumstances) -> str:
         return "the pose was told, and no scan has confirmed it yet"
     if now.is_compared:
         return "what is in sight fits the place in part, and it is being compared with all others"
+    if now.is_doubted:
+        return "what is in sight does not fit the map here: the home changed, or people are about"
     return "what is in sight does not tell the place: a bare corridor, or next to nothing"

@@ -314,6 +314,7 @@ class Localizer:
             is_late=self._is_late,
             is_blind=self._is_blind,
             was_just_told=self._now - told_at <= self._config.scan_timeout,
+            is_doubted=self._doubt.lasts,
             is_awaited=self._confirmation.awaited is not None,
             is_compared=self._confirmation.compared is not None,
             searched=searched,
@@ -349,6 +350,8 @@ class Localizer:
                 self._search_for(refuted.why, refuted.expectation)
         elif self._tracker.is_doubtful:
             self._reconsider(stamp, view, reckoned)
+        else:
+            self._doubt.end()
 
     def _reconsider(self, stamp: float, view: ScanView, reckoned: Pose) -> None:
         """Forget the pose, unless what is in sight says that the home changed, and not the pose."""

@@ -116,6 +116,15 @@ def at_start() -> list[object]:
     return ["--start", START.x, START.y, START.theta]
 
 
+def test_a_drive_with_a_scan_a_second_is_known(localize: Localize, tmp_path: Path) -> None:
+    scans = [item for item in drive(SECONDS) if item.topic == "/scan"][::5]
+    odometry = [item for item in drive(SECONDS) if item.topic != "/scan"]
+    items = sorted([*scans, *odometry], key=lambda item: item.arrival)
+    done = localize(write_bag(tmp_path / "rare.bag", items), *at_start())
+    assert done.figures["shares"]["known"] > 0.95
+    assert done.off() < 0.05
+
+
 def test_a_drive_is_followed_from_a_given_start(localize: Localize, tmp_path: Path) -> None:
     bag = write_bag(tmp_path / "made.bag", said(drive(SECONDS), "/pose"))
     plot, output, way = tmp_path / "a.png", tmp_path / "out.bag", tmp_path / "way.txt"

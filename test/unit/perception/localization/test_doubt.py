@@ -117,3 +117,17 @@ def test_without_another_place_it_compares_again_after_a_second(
     assert Slow.begun == 1
     rig.answers(0.5, now=13.5)
     assert Slow.begun == 2
+
+
+def test_driven_on_in_doubt_the_place_is_known_roughly_until_scans_fit_again() -> None:
+    rig = Rig(HERE, HERE)
+    view = LIDAR.view(rig.eye.scan(HERE))
+    way = CONFIG.localization.searching.doubted_way
+    for driven, lasts in ((0.0, False), (0.9 * way, False), (1.1 * way, True), (0.0, True)):
+        reckoned = RECKONED.compose(Pose(driven, 0.0, 0.0))
+        rig.doubt.expected(12.0, 12.0, view, reckoned, HERE, FIELD)
+        assert rig.doubt.lasts == lasts
+    rig.doubt.end()
+    assert not rig.doubt.lasts
+    rig.doubt.expected(13.0, 13.0, view, RECKONED.compose(Pose(5.0, 0.0, 0.0)), HERE, FIELD)
+    assert not rig.doubt.lasts

@@ -19,6 +19,7 @@ WELL = Circumstances(
     is_late=False,
     is_blind=False,
     was_just_told=False,
+    is_doubted=False,
     is_awaited=False,
     is_compared=False,
     searched=None,
@@ -36,6 +37,7 @@ def test_where_all_is_well_it_is_known_and_nothing_is_said() -> None:
     ("changed", "knowledge", "said"),
     [
         ({"is_lifted": True}, Knowledge.SEARCHING, "set the robot down"),
+        ({"is_doubted": True}, Knowledge.ROUGH, "does not fit the map here"),
         ({"is_late": True}, Knowledge.ROUGH, "sends no scans; going by wheels and gyro"),
         ({"is_blind": True}, Knowledge.ROUGH, "sees next to nothing"),
         ({"is_compared": True}, Knowledge.ROUGH, "being compared with all others"),

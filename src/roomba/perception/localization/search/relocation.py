@@ -24,6 +24,10 @@ KEPT: Final = 60
 _ALIKE: Final = 0.2
 _ALIKE_TURN: Final = 0.2
 """m and rad; places nearer to each other than both are the same."""
+_TYPICAL: Final = 25.0
+"""Natural logarithm; evidence down to which differences count in full. Where even the likeliest
+place explains less of what is seen, the map is not quite this home's as it is now, and its errors
+favour one place or another."""
 _FINE_CELL: Final = 0.05
 """m; size of cells up to which the map itself is as exact as evidence takes it to be."""
 
@@ -140,6 +144,20 @@ class Relocation:
         self.views += 1
         self._sort()
 
+    def is_tied(self, pose: Pose, reckoned: Pose) -> bool:
+        """Whether all that was seen fits another of the places about as well as this one.
+
+        ``pose`` is where the robot would be, map frame, when dead reckoning is at ``reckoned``.
+        """
+        frame = pose.compose(reckoned.inverse())
+        this = next((each for each in self.hypotheses if self._are_alike(each.frame, frame)), None)
+        return this is not None and any(
+            other is not this
+            and other.is_possible(self._config.fit)
+            and this.evidence - other.evidence <= self._clear_lead
+            for other in self.hypotheses
+        )
+
     def _compare(self, starts: NDArray[np.float64]) -> None:
         """Match and judge the places that the search found."""
         back, expected = self._reckoned.inverse(), self._expectation
@@ -169,16 +187,18 @@ class Relocation:
     def _sort(self) -> None:
         """Put the best first; leave out what is the same place, or has no hope."""
         kept: list[Hypothesis] = []
-        hopeless = self._config.searching.hopeless
+        best = max((each.evidence for each in self.hypotheses), default=0.0)
+        hopeless = best - self._config.searching.hopeless * _unlike(best)
         for hypothesis in sorted(self.hypotheses, key=lambda each: -each.evidence):
-            if kept and hypothesis.evidence < kept[0].evidence - hopeless:
+            if hypothesis.evidence < hopeless:
                 break
-            if not any(self._are_alike(hypothesis, other) for other in kept):
+            if not any(self._are_alike(hypothesis.frame, other.frame) for other in kept):
                 kept.append(hypothesis)
         self.hypotheses = kept[:KEPT]
 
-    def _are_alike(self, one: Hypothesis, other: Hypothesis) -> bool:
-        first, second = one.frame.compose(self._reckoned), other.frame.compose(self._reckoned)
+    def _are_alike(self, one: Pose, other: Pose) -> bool:
+        """Whether two frames of dead reckoning put the robot at the same place."""
+        first, second = one.compose(self._reckoned), other.compose(self._reckoned)
         near = first.distance_to(second.x, second.y) < _ALIKE
         return near and abs(wrap_angle(first.theta - second.theta)) < _ALIKE_TURN
 
@@ -191,7 +211,16 @@ class Relocation:
         if len(self.hypotheses) == 1:
             only = self.hypotheses[0]
             return only.is_expected or only.is_convincing(self._config.fit)
-        lead = self.hypotheses[0].evidence - self.hypotheses[1].evidence
+        return self.hypotheses[0].evidence - self.hypotheses[1].evidence > self._clear_lead
+
+    @property
+    def _clear_lead(self) -> float:
+        """Evidence by which one place must lead another to be told from it."""
         # Walls of a coarse map are farther off, and all evidence errs with them.
         coarse = max(1.0, self._field.frame.resolution / _FINE_CELL)
-        return lead > self._config.needed_evidence * coarse
+        return self._config.needed_evidence * coarse * _unlike(self.hypotheses[0].evidence)
+
+
+def _unlike(evidence: float) -> float:
+    """Return by how much differences of evidence count less where the best place has this much."""
+    return max(1.0, -evidence / _TYPICAL)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,7 +19,14 @@ from fixtures.robots.located import (
 )
 
 from roomba.geometry import Pose, wrap_angle
-from roomba.perception.localization.search.relocation import KEPT, Expectation, Relocation, Verdict
+from roomba.grid import OccupancyMap
+from roomba.perception.localization.search.relocation import (
+    KEPT,
+    Expectation,
+    Hypothesis,
+    Relocation,
+    Verdict,
+)
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.world.home.home import Home
 
@@ -202,3 +210,37 @@ def test_hypotheses_follow_when_dead_reckoning_drifts() -> None:
         relocation.see(LIDAR.view(eye.scan(there)), reckoned)
         assert is_at(best(relocation, reckoned), there)
     assert relocation.views == 9
+
+
+def twin_rooms() -> Home:
+    """Two rooms that are the same to the last cell."""
+    values = np.hstack((FURNISHED.map.values, FURNISHED.map.values))
+    frame = replace(FURNISHED.map.frame, columns=values.shape[1])
+    return replace(FURNISHED, map=OccupancyMap(frame, np.ascontiguousarray(values)))
+
+
+def test_a_place_is_tied_with_another_one_that_all_fits_as_well() -> None:
+    pose, twins = Pose(1.5, 1.0, 0.3), twin_rooms()
+    width = FURNISHED.map.frame.columns * FURNISHED.map.frame.resolution
+    other = replace(pose, x=pose.x + width)
+    relocation = begin(twins, Eye(FURNISHED).scan(pose))
+    assert relocation.verdict is Verdict.AMBIGUOUS
+    assert relocation.is_tied(pose, RECKONED)
+    assert relocation.is_tied(other, RECKONED)
+    assert not relocation.is_tied(Pose(4.0, 2.5, 0.0), RECKONED)
+    assert not begin(FURNISHED, Eye(FURNISHED).scan(pose)).is_tied(pose, RECKONED)
+
+
+@pytest.mark.parametrize(("spread", "is_clear"), [(0.01, True), (0.15, False)])
+def test_where_the_map_fits_badly_a_small_lead_tells_no_places_apart(
+    spread: float, is_clear: bool
+) -> None:
+    """Errors of a map are the same for beams beside each other and favour one place of two."""
+    relocation = begin(FURNISHED, Eye(FURNISHED).scan(Pose(1.5, 1.0, 0.3)))
+    best = relocation.hypotheses[0]
+    best.evidence = -1000.0 * spread
+    lead = 1.5 * CONFIG.localization.needed_evidence
+    relocation.hypotheses.append(
+        Hypothesis(Pose(9.0, 9.0, 0.0), best.evidence - lead, best.fit, is_expected=False)
+    )
+    assert (relocation.verdict is Verdict.FOUND) == is_clear
