@@ -76,6 +76,9 @@ _FARTHER_SPREAD: Final = (0.1**2, 0.1**2, 0.15**2)
 """m; m2, rad2: of a match from farther away, of a scan that agrees less than is usual."""
 _CLEARLY: Final = 1.15
 """Times that a scan must agree better there."""
+_HARDEST: Final = (1.5, 1.5, 8.0)
+"""m/s2, rad/s2; so fast the pace changes at most: beyond that a match jumped along a corridor, and
+the next one would jump back."""
 _LONGEST: Final = 1.0
 """s; over a longer time nothing is known of how fast it moves."""
 _ROUNDS: Final = 5
@@ -166,9 +169,15 @@ def _learn_pace(follower: Row, x: float, y: float, theta: float, elapsed: float)
         return
     off_x, off_y = follower.here[0] - x, follower.here[1] - y
     cosine, sine = math.cos(theta), math.sin(theta)
-    follower.pace[0] = (cosine * off_x + sine * off_y) / elapsed
-    follower.pace[1] = (cosine * off_y - sine * off_x) / elapsed
-    follower.pace[2] = wrapped(follower.here[2] - theta) / elapsed
+    seen = (
+        (cosine * off_x + sine * off_y) / elapsed,
+        (cosine * off_y - sine * off_x) / elapsed,
+        wrapped(follower.here[2] - theta) / elapsed,
+    )
+    for axis in range(3):
+        most = _HARDEST[axis] * elapsed
+        change = seen[axis] - follower.pace[axis]
+        follower.pace[axis] += min(max(change, -most), most)
 
 
 @inner_part
