@@ -21,7 +21,8 @@ from roomba.robot.command import Command
 from roomba.robot.readings import Readings
 
 _FIRST_MAP: Final = 1200
-"""Ticks, a minute; a robot whose scans show so little for so long has no room around it."""
+"""Ticks, one minute: how long to wait for a scan that a map can begin with. A robot whose scans
+show too little for so long has no room around it."""
 _UNKNOWN: Final = (math.nan, math.nan, math.nan)
 """The true pose of a robot that is not simulated."""
 

@@ -1,4 +1,4 @@
-"""Records of headless runs: cleans and explorations."""
+"""What happened on a headless clean, exploration or walk."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ class RunSoFar:
 
     @property
     def trace(self) -> Floats:
-        """As of a recording."""
+        """The rows so far, float32 [n, len(TRACE)], as :class:`RunRecording` has them."""
         return np.array(self.rows, np.float32).reshape(-1, len(TRACE))
 
     def interrupted(self) -> tuple[RunFigures, RunRecording]:

@@ -74,7 +74,10 @@ class Commands:
             self._transitions.go(Event.CONTACT, senses)
 
     def empty_bin(self, senses: Senses) -> None:
-        """Go by an emptied dust bin; raises CommandRefusedError if its level sensor says no."""
+        """Note that the dust bin was emptied by hand.
+
+        Raises CommandRefusedError if its level sensor says no.
+        """
         level = senses.in_bin / self._bin_capacity
         if level >= self._config.bin.full:
             raise CommandRefusedError(

@@ -123,7 +123,10 @@ class Mission:
         self._commands.obey(event, senses, reason)
 
     def empty_bin(self, senses: Senses) -> None:
-        """Go by an emptied dust bin; raises CommandRefusedError if its level sensor says no."""
+        """Note that the dust bin was emptied by hand.
+
+        Raises CommandRefusedError if its level sensor says no.
+        """
         self._commands.empty_bin(senses)
 
     def empty_at_station(self, senses: Senses) -> None:

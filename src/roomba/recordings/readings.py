@@ -99,7 +99,7 @@ class Reading(NamedTuple):
 
 
 class Refused(NamedTuple):
-    """In place of a value that cannot be used: what it is one of, and the reason."""
+    """Stands for a value that cannot be used: ``what`` kind it is of, and the ``reason``."""
 
     what: str
     reason: str

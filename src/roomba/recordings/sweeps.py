@@ -34,7 +34,7 @@ class SweptScans:
     """Makes the scans that are measured in the order in which they are listed."""
 
     def __init__(self, sweep: Sweep) -> None:
-        """Of scans that were measured by a ``sweep``."""
+        """Take how the scans were measured."""
         self._sweep = sweep
         self._lidars: dict[LidarModel, LidarModel] = {}
 

@@ -111,14 +111,18 @@ class GraphRobot(GraphMaps):
         self._publish(twist)
 
     def stop_hand(self) -> None:
-        """Let go."""
+        """Publish one standstill, and take no more twists of the hand."""
         with self._hand_lock:
             self._hand_heard = -math.inf
             if self._drive is not None:
                 self._drive.publish(TwistMessage())
 
     def _publish(self, twist: Twist) -> None:
-        """Be a writer of ``cmd_vel`` as long as a hand drives: it has one writer else."""
+        """Publish a twist.
+
+        ``cmd_vel`` is advertised for that, and dropped after the last stop, so that other writers
+        are alone on it.
+        """
         if self._drive is None:
             self._drive = rospy.Publisher("cmd_vel", TwistMessage, queue_size=1, tcp_nodelay=True)
         self._drive.publish(twist_message(twist))

@@ -1,4 +1,7 @@
-"""The goals of the mission's three actions: how each begins, what of it is told, how it ends."""
+"""The goals of clean, dock, undock and explore.
+
+How each begins, what it tells on the way, and how it ends.
+"""
 
 from __future__ import annotations
 

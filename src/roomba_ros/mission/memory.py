@@ -28,7 +28,10 @@ from roomba_ros.runtime.background import Background
 
 
 class MissionMemory:
-    """Of one robot in one map: files by the map's digest in the robot's own ``folder``."""
+    """Keeps a robot's errand and dirt map for one map.
+
+    The files in its ``folder`` are named by the map's digest.
+    """
 
     def __init__(
         self, folder: Path, digest: str, config: MemoryConfig, background: Background

@@ -43,7 +43,7 @@ class StationLink:
         subscribe("emptying_wanted", Bool, data_of, self._on_wanted, tcp_nodelay=True)
 
     def step(self, seconds: float) -> None:
-        """Let it want what it was told, for the next ``seconds``."""
+        """Set whether the station empties during the next ``seconds``, by the newest message."""
         if self._station is not None:
             self._station.is_wanted = self._left > 0.0
             self._left = max(self._left - seconds, 0.0)

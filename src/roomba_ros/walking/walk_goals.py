@@ -86,7 +86,7 @@ class WalkToPointGoal(WalkGoal):
 
     @property
     def heading(self) -> float | None:
-        """As it comes."""
+        """None: the action asks for no final heading."""
         return None
 
     def feedback_period(self, duration: float) -> float:

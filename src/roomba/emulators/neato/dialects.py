@@ -62,23 +62,23 @@ class Dialect(ABC):
 
     @abstractmethod
     def version(self) -> Rows:
-        """Of GetVersion."""
+        """Return the rows of the answer to GetVersion."""
 
     @abstractmethod
     def charger(self, battery: BatteryState) -> Rows:
-        """Of GetCharger."""
+        """Return the rows of the answer to GetCharger."""
 
     @abstractmethod
     def analog(self, seen: Observation, power: Power) -> Rows:
-        """Of GetAnalogSensors."""
+        """Return the rows of the answer to GetAnalogSensors."""
 
     @abstractmethod
     def digital(self, seen: Observation) -> Rows:
-        """Of GetDigitalSensors."""
+        """Return the rows of the answer to GetDigitalSensors."""
 
     @abstractmethod
     def motors(self, left: Wheel, right: Wheel, power: Power) -> Rows:
-        """Of GetMotors."""
+        """Return the rows of the answer to GetMotors."""
 
 
 class Botvac(Dialect):

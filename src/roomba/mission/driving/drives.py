@@ -74,8 +74,11 @@ class Drives:
             self.trail.add_all(places)
             self.driver.caught_up(senses)
 
-    def leaves_zone(self, senses: Senses) -> bool:
-        """Begin to drive out of a no-go zone, should the robot be in one; tell whether it is."""
+    def begin_to_leave_zone(self, senses: Senses) -> bool:
+        """Begin to drive out of the no-go zone that the robot is in; return whether a drive began.
+
+        None does outside of zones, nor where no way leads out.
+        """
         here = (senses.pose.x, senses.pose.y)
         if not self.context.is_in_zone(here):
             return False

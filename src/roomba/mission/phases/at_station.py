@@ -1,4 +1,4 @@
-"""The phases at the station: undocking, docking, and charging."""
+"""The phases at the station: undocking, docking, charging, and emptying the bin."""
 
 from __future__ import annotations
 
@@ -74,8 +74,11 @@ class AtStation:
 
     @property
     def _is_turned(self) -> bool:
-        """Whether docking and undocking are told of a robot that is turned about: they know one
-        whose nose goes to the station."""
+        """Whether the robot docks backwards.
+
+        Docking and undocking assume that its nose faces the station: they are told the pose turned
+        about.
+        """
         return self._robot.body.docks_backwards
 
     def _sensed(self, senses: Senses) -> DockSenses:

@@ -65,7 +65,7 @@ class CleanPhase:
             self._clean_dirty_at_hand(cleaning, senses)
             return self._drive_on(cleaning, senses, limit)
         ended = None
-        if not drives.leaves_zone(senses):
+        if not drives.begin_to_leave_zone(senses):
             ended = self._begin_path(cleaning, senses)
         return ended or replace(self._drive_on(cleaning, senses, limit), message="")
 

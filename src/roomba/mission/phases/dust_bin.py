@@ -40,7 +40,7 @@ class DustBin:
         return self._config.full * self._capacity
 
     def look(self, in_bin: float, cell_area: float, usual: Callable[[], float]) -> bool:
-        """Look how much is in it, g; tell whether it has become full by that.
+        """Take the level sensor's reading, g; return whether the bin became full by it.
 
         Cells are of ``cell_area`` m2, with ``usual`` grains/m2 on the floor of this clean.
         """
@@ -53,11 +53,11 @@ class DustBin:
         return self.is_full
 
     def fill(self, in_bin: float) -> None:
-        """Take it for full, with so much in it by its level sensor, g."""
+        """Mark the bin as full, with so much in it by its level sensor, g."""
         self.is_full, self._full_at = True, in_bin
 
     def emptied(self) -> None:
-        """Take it for empty."""
+        """Mark the bin as empty."""
         self.is_full = False
         for name in ("silent_cells", "silent_way", "heard"):
             self.rows[name] = 0

@@ -82,7 +82,7 @@ def go_home(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) 
         return waiting
     if drives.driver is not None:
         return _go_home_on(drives, retries, senses, limit)
-    if not drives.leaves_zone(senses):
+    if not drives.begin_to_leave_zone(senses):
         try:
             points = drives.way_home(senses)
         except NoPathError as error:

@@ -32,7 +32,7 @@ class Compared(NamedTuple):
 
     @property
     def is_unsure(self) -> bool:
-        """Whether it may as well be."""
+        """Whether the robot may be at another place: that one is likelier, or several fit alike."""
         return self.is_elsewhere or self.verdict is Verdict.AMBIGUOUS
 
 

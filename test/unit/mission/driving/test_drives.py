@@ -55,12 +55,12 @@ def drives(*zones: Zone, kind: type[Obstacles] = Obstacles) -> Drives:
 
 def test_in_a_zone_it_begins_to_leave_it() -> None:
     inside = drives(ZONE)
-    assert inside.leaves_zone(IN_ZONE)
+    assert inside.begin_to_leave_zone(IN_ZONE)
     assert inside.driver is not None
     end = inside.driver.tracker.rest[-1]
     assert not inside.context.is_in_zone((float(end[0]), float(end[1])))
     outside = drives(ZONE)
-    assert not outside.leaves_zone(AWAY)
+    assert not outside.begin_to_leave_zone(AWAY)
     assert outside.driver is None
 
 
@@ -70,7 +70,7 @@ def test_another_context_counts_from_then_on_and_the_path_is_driven_on() -> None
     driver = at_work.driver
     at_work.use_context(context(ZONE))
     assert at_work.driver is driver
-    assert at_work.leaves_zone(IN_ZONE)
+    assert at_work.begin_to_leave_zone(IN_ZONE)
 
 
 def test_it_is_as_far_home_as_the_way_is_long() -> None:

@@ -119,7 +119,7 @@ def _go(
 
 @inner_part
 def _leave_surroundings(belief: Row, numbers: Row, way: float, turn: float) -> None:
-    """Be as much less sure as other walls, with other errors of the map, come in sight.
+    """Add the map's error to the covariance as other walls, with other errors, come in sight.
 
     The pose that fits the map best is off by these errors; they are alike where the same is seen
     (a Gauss-Markov process over way and turn).

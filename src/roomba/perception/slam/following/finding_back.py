@@ -58,7 +58,10 @@ class FindingBack:
         return bool(hardly_drove and row["lost_turn"] < config.carried_turn)
 
     def is_without_hold(self, follower: ScanFollower) -> bool:
-        """Whether it has gone on for so long unconfirmed that the map must come to where it is."""
+        """Whether scans have failed to fit for so long that the map must go on in a new piece.
+
+        That begins at the dead-reckoned pose.
+        """
         config = self._config
         is_searched = self._row["misses"] >= config.given_up_after
         if not is_searched or not follower.shows_enough:

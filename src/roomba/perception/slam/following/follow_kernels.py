@@ -184,7 +184,10 @@ def _learn_pace(follower: Row, x: float, y: float, theta: float, elapsed: float)
 def _look_farther(
     follower: Row, surfels: Surfels, points: Floats, count: int, guess: Floats, expected: float
 ) -> None:
-    """Be where a scan fits about ``guess`` [3], if it agrees there as ``expected``, and better."""
+    """Match a scan in a wide window about ``guess`` [3].
+
+    The result is kept only if it agrees as ``expected``, and clearly better than before.
+    """
     pose, covariance = follower.work[1], follower.work[COVARIANCE : COVARIANCE + 3]
     before, sure = follower.work[10:13], follower.work[13]
     met, close = follower.met, follower.close

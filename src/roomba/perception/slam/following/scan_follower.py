@@ -226,7 +226,7 @@ class ScanFollower:
         return int(self._row["misses"])
 
     def try_at(self, pose: Floats, better: float = 1.0) -> None:
-        """Be at ``pose`` [3] if the newest scan confirms it; else stay where it was.
+        """Move the estimate to ``pose`` [3] if the newest scan confirms it; else leave it.
 
         Where the scan confirms both, it must agree ``better`` times as well with ``pose``.
         """

@@ -60,9 +60,9 @@ class SubmapGraph:
         self.poses = start[None].copy()
         self.links: list[Link] = []
         self._waiting: list[Link] = []
-        self._anywhere: dict[int, bool] = {}
-        """Submaps that began where the robot was carried, and whether its wheels told that; another
-        process forgets them."""
+        self._carried_to: dict[int, bool] = {}
+        """Number of each submap that began after the robot was carried -> whether the lifted wheels
+        told that. Not saved: lost at a restart."""
         self.laid = 0
         """Parts that :meth:`join_parts` found."""
 
@@ -124,7 +124,7 @@ class SubmapGraph:
         """
         count = len(self.submaps)
         if carried is not None:
-            self._anywhere[count] = carried is Carried.TOLD
+            self._carried_to[count] = carried is Carried.TOLD
         piece = self._config.pieces
         away = piece.deviation + piece.share * unsure_way
         turn = piece.heading_deviation + piece.share * unsure_turn
@@ -175,8 +175,8 @@ class SubmapGraph:
         to which it only seems to have been carried, and that may well be there.
         """
         labels = part_labels(len(self.submaps), self.links)
-        for part in sorted(self._anywhere.keys() & set(labels.tolist())):
-            if not self._anywhere[part] and not is_contradicted(
+        for part in sorted(self._carried_to.keys() & set(labels.tolist())):
+            if not self._carried_to[part] and not is_contradicted(
                 part, labels, self.submaps, self.poses, self._config
             ):
                 continue

@@ -123,7 +123,7 @@ def test_a_piece_begins_where_the_wheels_say() -> None:
         here = here.compose(Pose(4.0, 0.0, 0.1))
     assert len(mapper.ways_apart) == 1
     # It drove far between the scans: it was not carried, and the piece is where the wheels say.
-    assert not mapper._map.graph._anywhere
+    assert not mapper._map.graph._carried_to
 
 
 def test_what_stops_to_fit_from_one_scan_to_the_next_was_carried() -> None:
@@ -134,7 +134,7 @@ def test_what_stops_to_fit_from_one_scan_to_the_next_was_carried() -> None:
         ranges = EYE.scan(here.compose(at))[BEAMS] if tick < 10 else np.full(len(ANGLES), 0.9)
         mapper.move(0.1 * tick, at, 0.0)
         mapper.see(0.1 * tick, ranges.astype(np.float32), LIDAR)
-    assert mapper._map.graph._anywhere == {len(mapper._map.graph.submaps) - 1: False}
+    assert mapper._map.graph._carried_to == {len(mapper._map.graph.submaps) - 1: False}
 
 
 CORNER = np.array(

@@ -126,7 +126,7 @@ def test_the_graph_lays_a_part_and_what_hangs_on_it_where_it_was_found() -> None
     assert graph.laid == 0
     assert np.array_equal(graph.poses[2:4], thought)
     # Nor where it seems to have been carried, and all could be where it is thought to be.
-    graph._anywhere[2] = False
+    graph._carried_to[2] = False
     far = graph.poses.copy()
     graph.poses[2:] += (30.0, 0.0, 0.0)
     graph.join_parts()
