@@ -6,9 +6,7 @@ import math
 
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import ControlConfig
-from roomba.geometry import Pose, Twist
-
-_STANDSTILL = Twist()
+from roomba.geometry import STANDSTILL, Pose, Twist
 
 
 class PositionLoop:
@@ -29,7 +27,7 @@ class PositionLoop:
         distance = pose.distance_to(*target)
         bearing = pose.bearing_to(*target)
         if self._is_there(target, distance):
-            return _STANDSTILL
+            return STANDSTILL
         return Twist(
             self._forward_speed(distance, bearing, max_speed),
             self._turning_speed(bearing),

@@ -13,7 +13,7 @@ from enum import Enum
 
 from roomba.clock import is_recent
 from roomba.configuration.body import BodyConfig
-from roomba.geometry import Twist
+from roomba.geometry import STANDSTILL, Twist
 
 
 class Hold(Enum):
@@ -111,18 +111,18 @@ class SpeedLoop:
         if self.emergency:
             # Commands from before are dropped, so that nothing is driven at the release.
             self._commands.clear()
-            return Twist(), Hold.EMERGENCY
+            return STANDSTILL, Hold.EMERGENCY
         command = self._fresh_command(now)
         if command is None:
-            return Twist(), Hold.NO_COMMAND
+            return STANDSTILL, Hold.NO_COMMAND
         if self.speed_limit == 0.0:
-            return Twist(), Hold.SPEED_ZERO
+            return STANDSTILL, Hold.SPEED_ZERO
         if self._hazards.wheel_drop:
-            return Twist(), Hold.WHEEL_DROP
+            return STANDSTILL, Hold.WHEEL_DROP
         if self._hazards.cliff:
             self._backs_since = _began(self._backs_since, now)
             is_over = now - self._backs_since > self._body.cliff_backing_time
-            return Twist() if is_over else self._backwards(), Hold.CLIFF
+            return STANDSTILL if is_over else self._backwards(), Hold.CLIFF
         limited = self._within_limit(command)
         if self._hazards.bumper and limited.linear > 0.0:
             self._pressed_since = _began(self._pressed_since, now)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import LookingAroundConfig
-from roomba.geometry import Pose, Twist
+from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.localization.localizer import Localizer
 
@@ -56,7 +56,7 @@ class LookAround:
         left = pose.distance_to(*target)
         if left < config.arrival_tolerance:
             self._target = None
-            return Twist()
+            return STANDSTILL
         if abs(bearing) > config.aimed:
             most = config.turning_speed
             return Twist(0.0, max(-most, min(most, 4.0 * bearing)))
@@ -65,7 +65,7 @@ class LookAround:
             # Something came into the way.
             self._visited.append((pose.x, pose.y))
             self._target = None
-            return Twist()
+            return STANDSTILL
         return Twist(min(config.speed, left + 0.05, room), 2.0 * bearing)
 
     def _next_target(self, pose: Pose, ends: NDArray[np.float64]) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from roomba.clock import RobotTime
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.sensors import StationConfig
-from roomba.geometry import Pose, Twist, wrap_angle
+from roomba.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from roomba.mission.docking.search import BeamSearch, drive_to, is_at_staging, steered
 from roomba.mission.docking.step import DockSenses, DockState, DockStep, Trouble
 from roomba.mission.docking.track import StationTrack
@@ -58,7 +58,7 @@ class Docking:
         self._is_blind = False
         self._lines_up = False
         self._arrived: float | None = None
-        self._wanted = Twist()
+        self._wanted = STANDSTILL
         self._dt = 0.0
         # When something was so for the last time, s since the beginning.
         self._entered = self._led = self._known = self._moved = self._no_current = 0.0
@@ -67,7 +67,7 @@ class Docking:
 
     def tick(self, senses: DockSenses) -> DockStep:
         """Return what is wanted now."""
-        wanted = Twist()
+        wanted = STANDSTILL
         if self._state not in (DockState.DOCKED, DockState.FAILED):
             self._follow(senses)
             self._notice(senses)
@@ -132,13 +132,13 @@ class Docking:
             case DockState.WAITING:
                 return self._wait_for_free_way()
             case _:
-                return Twist()
+                return STANDSTILL
 
     def _look_for_beams(self, senses: DockSenses) -> Twist:
         if not self._track.is_known or not (senses.is_known or senses.beams.leads):
             if self._time.elapsed - self._known > self._config.lost_timeout:
                 self._fail(Trouble.LOST)
-            return Twist()
+            return STANDSTILL
         if self._is_led(senses):
             return self._begin_attempt(is_blind=False)
         if self._search is None:
@@ -156,7 +156,7 @@ class Docking:
         config = self._config
         if self._attempts >= config.max_attempts:
             self._fail(self._trouble or Trouble.BEAMS_LOST)
-            return Twist()
+            return STANDSTILL
         self._attempts += 1
         self._search = self._arrived = None
         self._is_blind = is_blind
@@ -169,7 +169,7 @@ class Docking:
         if abs(left) < shortest and aside < shortest and self._looks_at_station:
             return self._give_up_attempt(None)
         self._enter(DockState.APPROACHING)
-        return Twist()
+        return STANDSTILL
 
     @property
     def _looks_at_station(self) -> bool:
@@ -183,7 +183,7 @@ class Docking:
             if track.left > config.contact_margin or self._lines_up:
                 return self._give_up_attempt(Trouble.HIDDEN if self._is_blind else Trouble.BLOCKED)
             self._enter(DockState.TOUCHING)
-            return Twist()
+            return STANDSTILL
         if self._is_stuck:
             return self._give_up_attempt(Trouble.STUCK)
         if self._lines_up:
@@ -195,12 +195,12 @@ class Docking:
         elif not self._is_blind and self._time.elapsed - self._led > config.beam_wait:
             self._trouble = Trouble.BEAMS_LOST
             self._enter(DockState.SEARCHING)
-            return Twist()
+            return STANDSTILL
         if track.left < -config.overrun:
             return self._give_up_attempt(
                 Trouble.NOT_THERE if self._is_blind else Trouble.NO_CONTACT
             )
-        return Twist() if self._awaits_current() else self._drive_at_station()
+        return STANDSTILL if self._awaits_current() else self._drive_at_station()
 
     def _awaits_current(self) -> bool:
         """Whether it stands for now where it should be docked: current may be told late.
@@ -233,7 +233,7 @@ class Docking:
                 self._dock()
         elif now - self._entered > config.contact_wait:
             return self._give_up_attempt(Trouble.NO_POWER if self._is_blind else Trouble.NO_CURRENT)
-        return Twist()
+        return STANDSTILL
 
     def _dock(self) -> None:
         self._reason = _DOCKED_BLIND if self._is_blind else ""
@@ -242,7 +242,7 @@ class Docking:
     def _give_up_attempt(self, trouble: Trouble | None) -> Twist:
         self._trouble = trouble
         self._enter(DockState.BACKING_OFF)
-        return Twist()
+        return STANDSTILL
 
     def _back_off(self, senses: DockSenses) -> Twist:
         config, search = self._config, self._search
@@ -265,12 +265,12 @@ class Docking:
             self._enter(DockState.WAITING)
         else:
             self._enter(DockState.SEARCHING)
-        return Twist()
+        return STANDSTILL
 
     def _wait_for_free_way(self) -> Twist:
         if self._time.elapsed - self._entered > self._config.blocked_wait:
             self._enter(DockState.SEARCHING)
-        return Twist()
+        return STANDSTILL
 
     def _enter(self, state: DockState) -> None:
         self._state = state

@@ -10,7 +10,7 @@ from enum import Enum
 
 from roomba.clock import RobotTime
 from roomba.configuration.docking import DockingConfig
-from roomba.geometry import Pose, Twist, wrap_angle
+from roomba.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from roomba.mission.docking.step import DockSenses
 
 
@@ -48,7 +48,7 @@ class Undocking:
         self._last_pose = _believed(senses)
         self._way = 0.0
         self._moved = (0.0, 0.0)
-        self._wanted = Twist()
+        self._wanted = STANDSTILL
         self._touches = senses.bumper
         is_docked = senses.is_charging or _stands_in(station, _believed(senses), config)
         self._state = UndockState.BACKING_OUT if is_docked else UndockState.OUT
@@ -56,7 +56,7 @@ class Undocking:
 
     def tick(self, senses: DockSenses) -> UndockStep:
         """Return what is wanted now."""
-        wanted = Twist()
+        wanted = STANDSTILL
         if self._state is UndockState.BACKING_OUT:
             self._follow(senses)
             self._state, self._reason = self._judge(senses)
