@@ -118,20 +118,20 @@ class LiveHousehold:
         if plan.is_on:
             self._require_rooms(plan.order)
             self._plans.require_day_to_come(plan)
-        self._change(lambda all_: replaced(all_, "plans", plan.name, plan))
+        self._change(lambda plans: replaced(plans, "plans", plan.name, plan))
 
     def remove_plan(self, name: str) -> None:
         """Remove a plan."""
-        self._change(lambda all_: removed(all_, "plans", name))
+        self._change(lambda plans: removed(plans, "plans", name))
 
     def put_preset(self, preset: Preset) -> None:
         """Add a preset, or replace the one of the same name."""
         self._require_rooms(preset.order)
-        self._change(lambda all_: replaced(all_, "presets", preset.name, preset))
+        self._change(lambda plans: replaced(plans, "presets", preset.name, preset))
 
     def remove_preset(self, name: str) -> None:
         """Remove a preset."""
-        self._change(lambda all_: removed(all_, "presets", name))
+        self._change(lambda plans: removed(plans, "presets", name))
 
     def begin_preset(self, name: str) -> None:
         """Begin the clean of a preset now."""
@@ -139,25 +139,25 @@ class LiveHousehold:
 
     def set_quiet(self, quiet: Sequence[QuietHours]) -> None:
         """Replace all quiet hours."""
-        self._change(lambda all_: all_.model_copy(update={"quiet": tuple(quiet)}))
+        self._change(lambda plans: plans.model_copy(update={"quiet": tuple(quiet)}))
 
     def set_emptying(self, when: Emptying) -> None:
         """Set when a station that can empties the bin."""
-        self._change(lambda all_: all_.model_copy(update={"emptying": when}))
+        self._change(lambda plans: plans.model_copy(update={"emptying": when}))
 
     def set_zone(self, zone: str) -> None:
         """Set the time zone."""
-        self._change(lambda all_: all_.model_copy(update={"zone": zone}))
+        self._change(lambda plans: plans.model_copy(update={"zone": zone}))
 
     def set_waits_for_empty_home(self, *, is_wanted: bool) -> None:
         """Set whether plans wait while a person is at home."""
-        self._change(lambda all_: all_.model_copy(update={"waits_for_empty_home": is_wanted}))
+        self._change(lambda plans: plans.model_copy(update={"waits_for_empty_home": is_wanted}))
 
     def set_person_home(self, *, is_home: bool) -> None:
         """Tell whether a person is at home; what is so already is not written again."""
         if self.plans().household.is_person_home == is_home:
             return
-        self._change(lambda all_: all_.model_copy(update={"is_person_home": is_home}))
+        self._change(lambda plans: plans.model_copy(update={"is_person_home": is_home}))
 
     def _live(self) -> None:
         while not self._ends.wait(self._period):

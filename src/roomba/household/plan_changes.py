@@ -43,11 +43,11 @@ def with_orders_again(
     Those of which the order is no longer as it was ``after`` go on by other names of rooms.
     """
 
-    def change(all_: HouseholdPlans) -> HouseholdPlans:
-        return all_.model_copy(
+    def change(plans: HouseholdPlans) -> HouseholdPlans:
+        return plans.model_copy(
             update={
-                "plans": _again(all_.plans, after.plans, before.plans, names),
-                "presets": _again(all_.presets, after.presets, before.presets, names),
+                "plans": _again(plans.plans, after.plans, before.plans, names),
+                "presets": _again(plans.presets, after.presets, before.presets, names),
             }
         )
 

@@ -36,7 +36,7 @@ class BlindMap:
         """Begin at ``start``, map frame."""
         self._config, self._start = config, start
         self._reckoning = DeadReckoning(localization, gyro)
-        self._sheet = OccupancyCounts(config.resolution)
+        self._counts = OccupancyCounts(config.resolution)
         self._drawn: Pose | None = None
         self._lidar: LidarModel | None = None
 
@@ -63,7 +63,7 @@ class BlindMap:
         still = lidar.at_once(stamp, ranges, self._reckoning.path)
         count = surface_points(still, beams, 0.0, points, self._sums)
         pose = here.as_array()
-        self._sheet.draw(points[:count].astype(np.float32), beams.mount[:2], pose)
+        self._counts.draw(points[:count].astype(np.float32), beams.mount[:2], pose)
 
     @property
     def pose(self) -> Pose:
@@ -77,7 +77,7 @@ class BlindMap:
 
     def occupancy(self) -> OccupancyMap:
         """Return the map as it is now; raises ValueError before the first scan."""
-        return self._sheet.occupancy(
+        return self._counts.occupancy(
             self._config.occupied_share, self._config.occupied_beams, self._config.least_floor
         )
 

@@ -107,7 +107,7 @@ class PathDriver:
         self._was_touching = any(senses.touches)
         self._jumps = ClockJumps(last=senses.now, longest=LONGEST_TICK)
         self._backs_from: tuple[float, float, float] | None = None
-        self._wriggle: Recovery | None = None
+        self._recovery: Recovery | None = None
         self.progress = np.zeros(1, PROGRESS)
         self.progress["least"] = config.least_progress
         self.progress["leaves_trouble"] = config.leaves_trouble
@@ -151,8 +151,8 @@ class PathDriver:
         self._notice_touch(senses)
         if self._backs_from is not None:
             return self._back_off(senses, self._backs_from)
-        if self._wriggle is not None:
-            return self._get_free(senses, self._wriggle)
+        if self._recovery is not None:
+            return self._get_free(senses, self._recovery)
         if self._needs_new_way(senses):
             self._leave_path(senses)
         elif self._comes_no_farther(senses):
@@ -189,7 +189,7 @@ class PathDriver:
             is_here = senses.pose.distance_to(*self._touched_at) < self._config.touch_radius
             self._touches = self._touches + 1 if is_here else 1
             self._touched_at = senses.pose.x, senses.pose.y
-            self._wriggle = None
+            self._recovery = None
             self._backs_from = senses.now, senses.pose.x, senses.pose.y
             self._state = DriveState.BACKING
 
@@ -273,18 +273,18 @@ class PathDriver:
         if recoveries > self._config.most_recoveries:
             self._state = DriveState.STUCK
             self._reason = (
-                f"stuck near {senses.where}: backing, turning and wriggling did not help; "
+                f"stuck near {senses.where}: backing, turning and driving curves did not help; "
                 "set it free and resume"
             )
             return
         self._state = DriveState.RECOVERING
-        self._wriggle = Recovery(recoveries, self._config, senses)
+        self._recovery = Recovery(recoveries, self._config, senses)
 
     def _get_free(self, senses: Senses, recovery: Recovery) -> DriveStep:
         twist = recovery.tick(senses)
         if twist is not None:
             return DriveStep(self._state, twist)
-        self._wriggle = None
+        self._recovery = None
         self._state = DriveState.DRIVING
         if recovery.moved(senses):
             self._obstacles.forget_felt_at(senses)

@@ -55,11 +55,11 @@ class Trail:
         count = int(self._count[0])
         newest = np.arange(count - 1, max(count - _LENGTH, 0) - 1, -1)
         back = self._places[newest % _LENGTH]
-        for count in range(_EVERY, len(back) + 1, _EVERY):
-            points = plan((float(back[count - 1, 0]), float(back[count - 1, 1])))
+        for places in range(_EVERY, len(back) + 1, _EVERY):
+            points = plan((float(back[places - 1, 0]), float(back[places - 1, 1])))
             if points is not None:
-                way = float(np.hypot(*np.diff(back[:count], axis=0).T).sum())
-                return np.concatenate((back[:count], points)), way
+                way = float(np.hypot(*np.diff(back[:places], axis=0).T).sum())
+                return np.concatenate((back[:places], points)), way
         return None, 0.0
 
 

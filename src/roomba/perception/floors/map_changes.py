@@ -76,7 +76,7 @@ class MapChanges:
         frame = occupancy.frame
         place = np.array([frame.origin_x, frame.origin_y, frame.resolution])
         hits, passes = np.zeros(frame.shape, np.uint16), np.zeros(frame.shape, np.uint16)
-        self._sheet = CountArrays(hits, passes, place, NO_BOUNDS.copy())
+        self._counts = CountArrays(hits, passes, place, NO_BOUNDS.copy())
         self._scores = np.zeros(frame.shape, np.int8)
         self._refused = {kind: np.zeros(frame.shape, np.bool_) for kind in ChangeKind}
         self._is_mapped_near = self._is_blurred(occupancy.solid)
@@ -102,7 +102,7 @@ class MapChanges:
         at = pose.as_array()
         farthest = min(lidar.farthest, self._config.farthest)
         count_scan(
-            self._sheet,
+            self._counts,
             ranges,
             lidar.directions,
             lidar.mount,
@@ -160,7 +160,7 @@ class MapChanges:
     def _finish_look(self, now: float, pose: Pose) -> None:
         config = self._config
         score_look(
-            self._sheet,
+            self._counts,
             self._scores,
             config.least_beams,
             config.solid_share,
