@@ -55,7 +55,7 @@ class Setpoint:
         """Whether the newest setpoint is as recent as a stream's; it may be forgotten already."""
         return is_recent(now, self._received, self._stream_timeout)
 
-    def is_given_up(self, now: float, distance: float) -> bool:
+    def drop_if_out_of_reach(self, now: float, distance: float) -> bool:
         """Tell at a tick how far it is to the setpoint, m; return whether that was dropped now."""
         self._came_nearer += self._jumps.at(now)
         if distance <= self._nearest - self._nearer:
@@ -69,7 +69,7 @@ class Setpoint:
         """Forget the setpoint."""
         self._target = None
 
-    def check(self, now: float, senders: int) -> bool:
+    def drop_if_lost(self, now: float, senders: int) -> bool:
         """Drop a stream that is silent, or whose sender vanished; return whether it was dropped."""
         if self._target is None:
             return False

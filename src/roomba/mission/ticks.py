@@ -176,7 +176,7 @@ class MissionTicks:
         """Find out what happened, and let the machine know."""
         # Under way to it, docking says when the contact is good, and undocking when it is out.
         at_station = self._phase in (Phase.DOCKING, Phase.UNDOCKING)
-        if self._monitor.contact_changed(senses) and not at_station:
+        if self._monitor.note_contact(senses) and not at_station:
             event = Event.CONTACT if senses.battery.is_docked else Event.CONTACT_LOST
             self._transitions.go(event, senses)
         failure = self._monitor.failure(self._transitions.state, senses, self.last_place)

@@ -120,7 +120,7 @@ class PositionPubNode:
 
     def _drop_vanished_wish(self, now: float) -> None:
         with self._lock:
-            has_vanished = self._setpoint.check(now, self._wishes.get_num_connections())
+            has_vanished = self._setpoint.drop_if_lost(now, self._wishes.get_num_connections())
         # A walk that has arrived sends no more.
         if has_vanished and not self._loop.arrived:
             rospy.logwarn(
@@ -157,7 +157,7 @@ class PositionPubNode:
     def _gives_up(self, now: float, distance: float) -> bool:
         """Whether the setpoint, so many m off, is out of reach; it is forgotten then."""
         with self._lock:
-            is_given_up = self._setpoint.is_given_up(now, distance)
+            is_given_up = self._setpoint.drop_if_out_of_reach(now, distance)
         if is_given_up:
             rospy.logwarn(
                 "change_position is given up %.2f m from its point: the robot came no nearer for "

@@ -172,7 +172,7 @@ class Cleaning:
         With all that is known by now that takes less way than to go around it and to come back for
         what is next to it.
         """
-        if not self._rounds.replans(now, Path(rest).length):
+        if not self._rounds.begin_replan(now, Path(rest).length):
             return False
         self._begin_anew(rest)
         return True
@@ -274,7 +274,7 @@ class Cleaning:
         way of its own later.
         """
         ledger, config, at = self.ledger, self._config, (here.x, here.y)
-        if self._rounds.takes_anew():
+        if self._rounds.take_anew():
             large = self._large(left, config.least_for_round)
             if large.any():
                 return large
@@ -318,7 +318,7 @@ class Cleaning:
                 return self._context.coverage.plan(
                     at, None, todo, obstacles, edges_only=self.ledger.edges_only
                 )
-            if self._rounds.tries_to_get_out():
+            if self._rounds.count_way_out():
                 self._rounds.take_back()
                 raise
             return None

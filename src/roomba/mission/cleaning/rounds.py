@@ -57,13 +57,16 @@ class Rounds:
         """Do not count the last plan as a round: the next one is made anew."""
         self._count, self._last_missed, self._is_anew = 1, math.inf, True
 
-    def takes_anew(self) -> bool:
-        """Whether this plan is made anew; the next one then is not."""
+    def take_anew(self) -> bool:
+        """Return whether this plan is made anew; the next one then is not."""
         is_anew, self._is_anew = self._is_anew, False
         return is_anew
 
-    def replans(self, now: float, left: float) -> bool:
-        """Whether a path with ``left`` m of way to go may be planned anew at ``now``, s."""
+    def begin_replan(self, now: float, left: float) -> bool:
+        """Count a plan made anew at ``now``, s, of a path with ``left`` m of way to go.
+
+        Returns whether it may be made; if not, it is not counted.
+        """
         config = self._config
         if left < config.least_way_to_replan or self._replans >= config.most_replans:
             return False
@@ -72,7 +75,7 @@ class Rounds:
         self._replans, self._replanned_at = self._replans + 1, now
         return True
 
-    def tries_to_get_out(self) -> bool:
-        """Whether a robot that is shut in tries once more to find a way out."""
+    def count_way_out(self) -> bool:
+        """Count a try of a robot that is shut in to get out; return whether it is to be made."""
         self._ways_out += 1
         return self._ways_out <= self._config.most_ways_out

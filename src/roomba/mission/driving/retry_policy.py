@@ -36,8 +36,8 @@ class RetryPolicy:
         wait = config.first_wait if self._waits <= config.first_waits else config.wait
         return 0.0 <= now - self._since < wait
 
-    def looks_again(self, now: float) -> bool:
-        """Whether it is time, while it waits, to look whether there is a way by now."""
+    def take_look(self, now: float) -> bool:
+        """Return whether it is time, while it waits, to look for a way; the next look is later."""
         if 0.0 <= now - self._looked < self._config.look_period:
             return False
         self._looked = now
@@ -47,8 +47,8 @@ class RetryPolicy:
         """Wait no longer: there is a way."""
         self._since = -math.inf
 
-    def has_ended(self, now: float) -> bool:
-        """Whether a wait ended since this was asked last."""
+    def take_end(self, now: float) -> bool:
+        """Return whether a wait ended, once for each wait."""
         ended = self._has_begun and not self.is_waiting(now)
         self._has_begun = self._has_begun and not ended
         return ended

@@ -122,7 +122,7 @@ class CleanPhase:
         if self._begin_look(senses, math.inf):
             return None
         # It may have given up before it tried all.
-        if len(exploration.unseen) > given_up or phases.looks_again(exploration, drives):
+        if len(exploration.unseen) > given_up or phases.forget_obstacles_once(exploration, drives):
             return PhaseStep()
         if not drives.may_go_home(senses):
             # Shut in it has not seen all.

@@ -30,8 +30,8 @@ class Monitor:
         """Whether it does not know its place."""
         return self._astray is not None
 
-    def contact_changed(self, senses: Senses) -> bool:
-        """Whether the station's contact came or went since it was looked at before."""
+    def note_contact(self, senses: Senses) -> bool:
+        """Note whether the station's contact is there; return whether it came or went."""
         changed = senses.battery.is_docked != self.was_docked
         self.was_docked = senses.battery.is_docked
         return changed

@@ -29,14 +29,16 @@ def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: 
     points = exploration.next_path(senses.pose, drives.context, obstacles)
     if points is None:
         # It may have given up before it tried all.
-        is_done = len(exploration.unseen) == given_up and not looks_again(exploration, drives)
+        is_done = len(exploration.unseen) == given_up and not forget_obstacles_once(
+            exploration, drives
+        )
         return PhaseStep(event=Event.FINISHED if is_done else None)
     drives.begin(points, senses)
     return replace(look_on(exploration, drives, senses, limit, most_stuck), message="")
 
 
-def looks_again(exploration: Exploration, drives: Drives) -> bool:
-    """Look anew, once before the end, for what stands in the way: it may have gone."""
+def forget_obstacles_once(exploration: Exploration, drives: Drives) -> bool:
+    """Forget what stands in the way, once before the end: it may have gone; return whether now."""
     if exploration.looked_again:
         return False
     exploration.looked_again = True
@@ -132,9 +134,9 @@ def wait_on(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) 
     As soon as there is a way it waits no longer.
     """
     stands = drives.driver is None and retries.is_waiting(senses.now)
-    if stands and retries.looks_again(senses.now) and drives.may_go_home(senses):
+    if stands and retries.take_look(senses.now) and drives.may_go_home(senses):
         retries.end()
-    if retries.has_ended(senses.now):
+    if retries.take_end(senses.now):
         drives.driver = None
     if not retries.is_waiting(senses.now):
         return None

@@ -59,22 +59,22 @@ def test_what_was_cut_off_is_no_round_a_limited_number_of_times(rounds: Rounds) 
 
 def test_a_plan_that_is_made_anew_is_so_once(rounds: Rounds) -> None:
     rounds.begin(1.0)
-    assert not rounds.takes_anew()
+    assert not rounds.take_anew()
     rounds.begin_anew()
     assert not rounds.is_over(1.0)
-    assert rounds.takes_anew()
-    assert not rounds.takes_anew()
+    assert rounds.take_anew()
+    assert not rounds.take_anew()
 
 
 def test_a_short_way_is_not_planned_anew_nor_one_too_soon_nor_too_often(rounds: Rounds) -> None:
     least, period, begin = CONFIG.least_way_to_replan, CONFIG.replan_period, 500.0
-    assert not rounds.replans(begin, 0.99 * least)
-    assert rounds.replans(begin, least)
-    assert not rounds.replans(begin + 0.99 * period, least)
+    assert not rounds.begin_replan(begin, 0.99 * least)
+    assert rounds.begin_replan(begin, least)
+    assert not rounds.begin_replan(begin + 0.99 * period, least)
     # A clock that was set back holds up nothing.
-    assert rounds.replans(begin - 1.0, least)
+    assert rounds.begin_replan(begin - 1.0, least)
     done = 2
-    while rounds.replans(begin + done * period, least):
+    while rounds.begin_replan(begin + done * period, least):
         done += 1
     assert done == CONFIG.most_replans
 
@@ -84,7 +84,7 @@ def test_a_robot_that_is_shut_in_tries_to_get_out_a_limited_number_of_times(
 ) -> None:
     rounds.begin(3.0)
     tries = 0
-    while rounds.tries_to_get_out():
+    while rounds.count_way_out():
         rounds.take_back()
         assert rounds.is_first
         rounds.begin(3.0)

@@ -17,9 +17,9 @@ def test_it_waits_a_while_then_half_a_minute_and_then_gets_out_first() -> None:
         assert retries.gets_out
         assert retries.is_waiting(100.0)
         assert retries.is_waiting(100.0 + wait - 0.1)
-        assert not retries.has_ended(100.0 + wait - 0.1)
+        assert not retries.take_end(100.0 + wait - 0.1)
         assert not retries.is_waiting(100.0 + wait)
-        assert [retries.has_ended(100.0 + wait) for _ in range(2)] == [True, False]
+        assert [retries.take_end(100.0 + wait) for _ in range(2)] == [True, False]
     retries.renew()
     retries.wait(100.0)
     assert not retries.is_waiting(110.0)
@@ -56,10 +56,10 @@ def test_told_to_go_on_it_counts_anew() -> None:
 def test_while_it_waits_it_looks_now_and_then_and_may_wait_no_longer() -> None:
     retries = RetryPolicy(WaitingConfig())
     retries.wait(100.0)
-    assert [retries.looks_again(100.0 + 0.5 * count) for count in range(9)].count(True) == 2
+    assert [retries.take_look(100.0 + 0.5 * count) for count in range(9)].count(True) == 2
     retries.end()
     assert not retries.is_waiting(105.0)
-    assert retries.has_ended(105.0)
+    assert retries.take_end(105.0)
 
 
 def test_a_new_errand_begins_with_nothing_tried() -> None:

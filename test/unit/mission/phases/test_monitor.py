@@ -57,9 +57,9 @@ class Rig:
 def test_contact_that_comes_or_goes_is_noticed_once() -> None:
     docked = replace(AWAY, battery=Battery(1.0, 26.0, is_docked=True))
     monitor = Rig().monitor
-    seen = [monitor.contact_changed(each) for each in (AWAY, docked, docked, AWAY, AWAY)]
+    seen = [monitor.note_contact(each) for each in (AWAY, docked, docked, AWAY, AWAY)]
     assert seen == [False, True, False, True, False]
-    assert not Rig(docked).monitor.contact_changed(docked)
+    assert not Rig(docked).monitor.note_contact(docked)
 
 
 @pytest.mark.parametrize(
