@@ -88,11 +88,7 @@ def wished(*targets: tuple[float, float]) -> Setpoint:
 
 def given_up_at(setpoint: Setpoint, distances: dict[float, float]) -> list[float]:
     """Return when it was given up, of times and the distances then."""
-    return [
-        time
-        for time, distance in distances.items()
-        if setpoint.drop_if_out_of_reach(time, distance)
-    ]
+    return [at for at, off in distances.items() if setpoint.drop_if_out_of_reach(at, off)]
 
 
 def ticks(start: float, seconds: float, distance: float, speed: float = 0.0) -> dict[float, float]:

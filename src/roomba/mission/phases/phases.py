@@ -29,9 +29,8 @@ def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: 
     points = exploration.next_path(senses.pose, drives.context, obstacles)
     if points is None:
         # It may have given up before it tried all.
-        is_done = len(exploration.unseen) == given_up and not forget_obstacles_once(
-            exploration, drives
-        )
+        tried_all = len(exploration.unseen) == given_up
+        is_done = tried_all and not forget_obstacles_once(exploration, drives)
         return PhaseStep(event=Event.FINISHED if is_done else None)
     drives.begin(points, senses)
     return replace(look_on(exploration, drives, senses, limit, most_stuck), message="")
