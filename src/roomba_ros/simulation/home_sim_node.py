@@ -247,6 +247,7 @@ class HomeSimNode:
         self._services = SimServices(self._simulator, self._lock)
         self._drive.start()
         self._station.start()
+        self._services.start()
         self._parts = {
             _POSE: subscribe("pose", PoseStamped, stamped_pose_of, self._on_pose, tcp_nodelay=True)
         }

@@ -40,8 +40,11 @@ class SimServices:
     """
 
     def __init__(self, simulator: Simulator, lock: threading.Lock) -> None:
-        """Connect; ``lock`` guards the simulator."""
+        """Connect nothing yet; ``lock`` guards the simulator."""
         self._simulator, self._lock = simulator, lock
+
+    def start(self) -> None:
+        """Connect."""
         rospy.Service("sim/spill", SpillDirt, self._on_spill)
         rospy.Service("sim/inject_fault", InjectFault, self._on_fault)
         rospy.Service("sim/empty_bin", Trigger, self._on_empty_bin)
