@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.commands.campaign.running.measures import MEASURES, value_of
+from roomba.commands.campaign.running.measures import value_of
 from roomba.commands.campaign.running.specification import Campaign
 from roomba.commands.campaign.running.store import Row
 
@@ -118,8 +118,3 @@ def interval_of(differences: Floats, confidence: float) -> tuple[float | None, f
     error = float(differences.std(ddof=1)) / math.sqrt(count)
     reach = error * float(t.ppf(0.5 + 0.5 * confidence, count - 1))
     return mean - reach, mean + reach
-
-
-def labels_of(measures: Sequence[str]) -> list[str]:
-    """Return what people call some measures."""
-    return [MEASURES[name].label for name in measures]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import threading
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -35,9 +34,9 @@ class HeardMessage:
 class Listener:
     """Hears all that is said below a topic, and can say something itself."""
 
-    def __init__(self, port: int, base: str, now: Callable[[], float] = time.time) -> None:
+    def __init__(self, port: int, base: str) -> None:
         """Connect to the broker at a port of this machine."""
-        self._base, self._now = base, now
+        self._base = base
         self._messages: list[HeardMessage] = []
         self._lock = threading.Lock()
         self._client = mqtt.Client(CallbackAPIVersion.VERSION2)
@@ -68,4 +67,4 @@ class Listener:
 
     def _came(self, _: Any, __: Any, message: mqtt.MQTTMessage) -> None:
         with self._lock:
-            self._messages.append(HeardMessage(self._now(), message.topic, bytes(message.payload)))
+            self._messages.append(HeardMessage(time.time(), message.topic, bytes(message.payload)))

@@ -23,16 +23,16 @@ _NEAR: Final = 0.5
 class Thinned:
     """Rows evenly spread over a drive: when there are too many, every other one goes."""
 
-    def __init__(self, most: int = _MOST_ROWS) -> None:
-        """Keep so many at most."""
+    def __init__(self) -> None:
+        """Begin with none."""
         self.rows: list[Any] = []
-        self._most, self._stride, self._count = most, 1, 0
+        self._stride, self._count = 1, 0
 
     def append(self, row: Any) -> None:
         """Take one, or leave it out."""
         if self._count % self._stride == 0:
             self.rows.append(row)
-            if len(self.rows) > self._most:
+            if len(self.rows) > _MOST_ROWS:
                 self.rows = self.rows[::2]
                 self._stride *= 2
         self._count += 1

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Final, Protocol
 
 from roomba.configuration.robot import RobotConfig
@@ -61,24 +61,20 @@ class Create2Body:
         config: RobotConfig,
         *,
         lidar: LidarReader | None = None,
-        bauds: Sequence[int] = BAUDS,
         opened: Callable[[str, int], RobotLine] = SerialLine,
         switch: Switch | None = None,
-        wall: Callable[[], float] = time.monotonic,
     ) -> None:
         """Be about to drive the robot of ``config`` on ``port``; nothing is opened yet.
 
         ``now`` is the robot's clock, s, by which readings are timed; it never goes back, and may
-        stand while the line is gone, as ``wall`` does not, by which waits end. ``lidar`` is one on
-        a line of its own, read from :meth:`begin` to :meth:`end`; ``bauds`` are the rates to try,
-        ``opened`` opens a port.
+        stand while the line is gone: waits end by the computer's. ``lidar`` is one on a line of its
+        own, read from :meth:`begin` to :meth:`end`; ``opened`` opens a port.
         """
-        self._port, self._now, self._wall = port, now, wall
-        self._config, self._bauds = config, bauds
+        self._port, self._now, self._config = port, now, config
         self._lidar, self._opened = lidar, opened
         self._switch = switch or DeadManSwitch(port)
         self._line: RobotLine | None = None
-        self._pin = BrcPin(wall)
+        self._pin = BrcPin(time.monotonic)
         self._lock = threading.Lock()
         self._wanted, self._wanted_at = Command(), -math.inf
         self._sings_until, self._is_to_sing = -math.inf, False
@@ -130,7 +126,7 @@ class Create2Body:
         if not command.twist.is_finite:
             raise ValueError(f"expected a finite twist, got {command.twist}")
         with self._lock:
-            self._wanted, self._wanted_at = command, self._wall()
+            self._wanted, self._wanted_at = command, time.monotonic()
 
     def locate(self) -> None:
         """Play a few notes."""
@@ -143,7 +139,7 @@ class Create2Body:
         if not (self._is_found() or (self._is_woken() and self._is_found())):
             raise LineError(
                 f"expected a Create 2 on {self._port}, got no answer at "
-                f"{' or '.join(map(str, self._bauds))} baud. Is it switched on (CLEAN lights up)?"
+                f"{' or '.join(map(str, BAUDS))} baud. Is it switched on (CLEAN lights up)?"
             )
         self._pin.forget()
         self._obedience.forget()
@@ -155,11 +151,11 @@ class Create2Body:
 
     def _is_found(self) -> bool:
         """Whether it answers at one of the rates."""
-        return any(self._answers(baud) for baud in self._bauds)
+        return any(self._answers(baud) for baud in BAUDS)
 
     def _is_woken(self) -> bool:
         """Wake it, if the line has the pin for that; whether it has."""
-        line = self._opened(self._port, self._bauds[0])
+        line = self._opened(self._port, BAUDS[0])
         try:
             return self._pin.wake(line)
         finally:
@@ -170,8 +166,8 @@ class Create2Body:
         try:
             if self._line is None:
                 raise LineError("expected begin() before serve()")
-            self._take(self._line.read(max(0.001, min(_PERIOD, self._due - self._wall()))))
-            now = self._wall()
+            self._take(self._line.read(max(0.001, min(_PERIOD, self._due - time.monotonic()))))
+            now = time.monotonic()
             if now - self._heard > _GONE:
                 raise LineError(f"expected a frame each 15 ms, got none for {_GONE:g} s")
             if self._obedience.is_lost(now, self._twist, self._odometry.twist):
@@ -218,9 +214,9 @@ class Create2Body:
             self._line.discard()
             self._line.write(LONG_PADDING + commands.into(OpenMode.PASSIVE))
             self._line.write(commands.song() + commands.stream(self._lists[0]))
-            self._due, until = self._wall(), self._wall() + _FIRST
+            self._due, until = time.monotonic(), time.monotonic() + _FIRST
             self._heard = -math.inf
-            while not math.isfinite(self._heard) and self._wall() < until:
+            while not math.isfinite(self._heard) and time.monotonic() < until:
                 self._take(self._line.read(_PERIOD))
         except LineError:
             self._let_go()
@@ -232,7 +228,7 @@ class Create2Body:
 
     def _take(self, data: bytes) -> None:
         for told in self._reader.take(data):
-            self._heard, now = self._wall(), self._now()
+            self._heard, now = time.monotonic(), self._now()
             with self._lock:
                 self._told.update(told)
                 self._state = state_of(self._told)

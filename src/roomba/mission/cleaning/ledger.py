@@ -107,14 +107,13 @@ class CoverageLedger:
         """Clean some floor at the end."""
         self.stages.append(stage)
 
-    def next_stage(self) -> Stage | None:
-        """Go on to the next part, and return it; another pass sweeps all anew."""
+    def next_stage(self) -> None:
+        """Go on to the next part; another pass sweeps all anew."""
         self.stage_number += 1
         stage = self.stage
         if stage is not None and stage.again:
             self.sweep_anew(stage.floor)
-            stage = self.stages[self.stage_number] = Stage(stage.name, stage.floor)
-        return stage
+            self.stages[self.stage_number] = Stage(stage.name, stage.floor)
 
     @property
     def queue(self) -> tuple[str, ...]:

@@ -37,11 +37,6 @@ class WayAhead:
         row["keep"] = obstacles.keep
 
     @property
-    def is_current(self) -> bool:
-        """Whether nothing came or went since the last look."""
-        return bool(self.rows[0]["checked"] == self._obstacles.version)
-
-    @property
     def clear_to(self) -> float:
         """Up to where on the path, m, nothing that is known is in the way."""
         return float(self.rows[0]["clear_to"])

@@ -27,14 +27,14 @@ class RecentSight:
     Kernels may go on with its ``arrays``.
     """
 
-    def __init__(self, config: RecentSightConfig, beams: int = 0) -> None:
-        """Begin with nothing seen; there is room for scans of so many ``beams``, and for larger."""
+    def __init__(self, config: RecentSightConfig) -> None:
+        """Begin with nothing seen, and no room yet: see :meth:`reserve`."""
         self._config = config
         self._mount = np.zeros(3)
         self._ring = np.zeros(2, np.int64)
         self._stamps, self._places = np.zeros(KEPT), np.zeros((KEPT, 3))
         self._counts = np.zeros(KEPT, np.int64)
-        self._ends = np.zeros((KEPT, beams, 4))
+        self._ends = np.zeros((KEPT, 0, 4))
 
     @property
     def arrays(self) -> Sights:

@@ -94,16 +94,11 @@ class DirtMap:
         area = np.count_nonzero(here) * CELL**2
         return float(self.grains[rows, columns][here].sum() / area) if area else 0.0
 
-    def dirty_now(self, frame: GridFrame, times: float, least: float) -> Mask:
-        """Return where the present run counted so many times the usual of it, on another grid.
+    def dirty_cells(self, times: float, least: float) -> Mask:
+        """Return where the present run counted so many times the usual of it, over ``frame``.
 
         Where it counted fewer than ``least`` grains/m2 no floor is dirty.
         """
-        dirty: Mask = self.over(self.dirty_cells(times, least), frame)
-        return dirty
-
-    def dirty_cells(self, times: float, least: float) -> Mask:
-        """Return the same over ``frame``, the map's own cells."""
         return self.cells_from(self.dirty_from(times, least))
 
     def cells_from(self, density: float) -> Mask:

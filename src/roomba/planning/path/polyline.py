@@ -83,10 +83,6 @@ class Path:
         along = s - leg.start
         return leg.x + along * leg.ahead_x, leg.y + along * leg.ahead_y
 
-    def remaining(self, s: float) -> float:
-        """Return the length from arc length ``s`` to the end, m."""
-        return self.length - min(max(s, 0.0), self.length)
-
     def project(self, x: float, y: float, from_s: float = 0.0, window: float = 1.0) -> float:
         """Return the arc length, m, of the path's point that is nearest to (x, y).
 

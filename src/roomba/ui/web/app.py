@@ -72,7 +72,6 @@ def create_app(
         "history": keeper is not None,
         "camera": isinstance(robot, CameraClient),
         "maps": isinstance(robot, MapKeeper),
-        "household": household is not None,
     }
     app = DescribedApp(
         title="roomba_robot",

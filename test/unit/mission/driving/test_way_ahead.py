@@ -46,9 +46,7 @@ class Rig:
 def test_a_path_is_clear_as_far_as_it_was_looked_at() -> None:
     rig = Rig()
     ahead = WayAhead(rig.path, rig.obstacles, LOOK_AHEAD)
-    assert not ahead.is_current
     assert not ahead.is_blocked(0.0)
-    assert ahead.is_current
     assert ahead.clear_to == pytest.approx(2.0 - LOOK_AHEAD)
     assert ahead.blocked_at is None
     # Where the look ended it looks on.
@@ -61,7 +59,6 @@ def test_what_comes_is_noticed_and_blocks_from_look_ahead_on() -> None:
     ahead = WayAhead(rig.path, rig.obstacles, LOOK_AHEAD)
     assert not ahead.is_blocked(1.0)
     rig.see(THING_X, Pose(1.5, 2.0))
-    assert not ahead.is_current
     assert not ahead.is_blocked(1.0)
     assert ahead.blocked_at is not None
     reach = CONFIG.body.radius

@@ -117,14 +117,14 @@ def test_a_room_is_as_dirty_as_its_floor_in_the_mean() -> None:
 
 def test_what_is_much_dirtier_than_usual_now_is_dirty() -> None:
     dirt = DirtMap(MAP)
-    assert not dirt.dirty_now(FINE, 6.0, 500.0).any()
+    assert not dirt.over(dirt.dirty_cells(6.0, 500.0), FINE).any()
     for column in range(10):
         dirt.note(-0.9 + column * CELL, 3.1, 10.0, CELL)
     usual = 10.0 / CELL**2
     run_over(dirt, 7.0 * usual * CELL**2)
-    dirty = dirt.dirty_now(FINE, 6.0, 500.0)
+    dirty = dirt.over(dirt.dirty_cells(6.0, 500.0), FINE)
     assert (dirty == fine(*HERE)).all()
-    assert not dirt.dirty_now(FINE, 8.0, 500.0).any()
+    assert not dirt.dirty_cells(8.0, 500.0).any()
 
 
 def test_little_is_never_dirty() -> None:
@@ -133,7 +133,7 @@ def test_little_is_never_dirty() -> None:
         dirt.note(-0.9 + column * CELL, 3.1, 0.0, CELL)
     run_over(dirt, 10.0)
     assert 10.0 / CELL**2 < 500.0
-    assert not dirt.dirty_now(FINE, 6.0, 500.0).any()
+    assert not dirt.over(dirt.dirty_cells(6.0, 500.0), FINE).any()
 
 
 def test_dirty_is_many_times_the_usual_of_what_is_known() -> None:

@@ -17,9 +17,6 @@ CORNER = Path(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 2.0]]))
 def test_stations_and_length() -> None:
     assert CORNER.stations == pytest.approx([0.0, 2.0, 3.0, 3.0 + math.sqrt(2.0)])
     assert CORNER.length == pytest.approx(3.0 + math.sqrt(2.0))
-    assert CORNER.remaining(0.5) == pytest.approx(2.5 + math.sqrt(2.0))
-    assert CORNER.remaining(9.0) == 0.0
-    assert CORNER.remaining(-1.0) == CORNER.length
 
 
 def test_left_turns_are_positive_and_the_ends_do_not_turn() -> None:
