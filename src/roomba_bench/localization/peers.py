@@ -12,6 +12,8 @@ import numpy as np
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OccupancyMap
+from roomba.perception.localization.belief.belief import numbers_of, unknown_belief
+from roomba.perception.localization.belief.reckon_kernels import carry
 from roomba.perception.localization.tracker import Tracker
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.matching.surface_field import SurfaceField
@@ -41,8 +43,8 @@ _SPACING = 0.02
 """m; between points on the map's surfaces."""
 _MATCHES = 600
 """Scans that are matched over and over: a minute's."""
-_SPREAD = np.diag([0.002**2, 0.002**2, 0.002**2])
-"""m2, rad2; by which a tenth of a second makes a pose unsure, about."""
+_SPREAD = (0.002**2, 0.002**2, 0.002**2)
+"""m2 ahead and left, rad2; by which a tenth of a second makes a pose unsure, about."""
 
 
 @dataclass(frozen=True)
@@ -185,7 +187,7 @@ def _matching(drive: ScannedDrive) -> Work:
         nonlocal tracker, at
         if at == len(ranges):
             tracker, at = _tracker(field, config, home.station), 0
-        tracker.move(steps[at], _SPREAD)
+        _move(tracker, steps[at])
         tracker.see(model.view(ranges[at]))
         at += 1
         return 1.0
@@ -194,4 +196,13 @@ def _matching(drive: ScannedDrive) -> Work:
 
 
 def _tracker(field: SurfaceField, config: RobotConfig, pose: Pose) -> Tracker:
-    return Tracker(field, config.localization, pose, np.diag([0.05**2, 0.05**2, 0.05**2]))
+    numbers = numbers_of(config.localization, config.gyro)
+    unsure = np.diag([0.05**2, 0.05**2, 0.05**2])
+    return Tracker(field, pose, unsure, unknown_belief(), numbers)
+
+
+def _move(tracker: Tracker, step: Pose) -> None:
+    """Let a tracker go on by a step, given in the robot's frame."""
+    pose, covariance = tracker.pose.as_array(), tracker.covariance
+    carry(pose, covariance, step.x, step.y, step.theta, *_SPREAD)
+    tracker.pose, tracker.covariance = Pose(*pose.tolist()), covariance

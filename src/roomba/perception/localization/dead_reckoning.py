@@ -84,12 +84,3 @@ class DeadReckoning:
     def odometry(self) -> Pose:
         """The newest odometry, in its own frame."""
         return Pose(*self._belief["odometry"].tolist())
-
-    def take_spread(self) -> NDArray[np.float64]:
-        """Return what the pose became unsure by since this was last asked for, float64 [3, 3].
-
-        Along the robot's present axes: ahead and left, m2, and of theta, rad2.
-        """
-        spread = np.diag(self._belief["spread"])
-        self._belief["spread"] = 0.0
-        return spread

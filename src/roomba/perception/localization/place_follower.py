@@ -62,9 +62,7 @@ class PlaceFollower:
     def begin_at(self, pose: Pose, covariance: NDArray[np.float64]) -> None:
         """Go on at another pose of the map, unsure by float64 [3, 3], m2 and rad2."""
         self.forget_heading()
-        self.tracker = Tracker(
-            self.field, self._config, pose, covariance, self.belief, self.numbers
-        )
+        self.tracker = Tracker(self.field, pose, covariance, self.belief, self.numbers)
 
     def forget_heading(self) -> None:
         """Compare the next scan's turn to none before it: the pose changed otherwise."""

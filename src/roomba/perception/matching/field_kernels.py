@@ -1,4 +1,4 @@
-"""Compiled lookups in a surface field: distance, gradient, and the length of a ray."""
+"""Compiled lookups in a surface field: distance and gradient."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.compilation import allocating_entry, allocating_part, entry, inlined_entry
+from roomba.compilation import allocating_entry, allocating_part, inlined_entry
 from roomba.raster.regions import cells_along_columns
 
 Field = NDArray[np.float32]
@@ -18,10 +18,6 @@ Place = NDArray[np.float64]
 
 OFF_MAP: Final = 1e3
 """m; the distance to surfaces where there is no map."""
-_TOUCH: Final = 0.005
-"""m; a ray that is this near to a surface has met it."""
-_LEAST_STEP: Final = 0.02
-"""m; a ray that grazes a surface goes on by at least this."""
 
 
 @inlined_entry
@@ -43,23 +39,6 @@ def look(field: Field, place: Place, x: float, y: float) -> tuple[float, float, 
     upper = high + a * (high_next - high)
     slope_x = ((1.0 - b) * (low_next - low) + b * (high_next - high)) * inverse
     return lower + b * (upper - lower), slope_x, (upper - lower) * inverse
-
-
-@entry
-def expected_range(
-    field: Field, place: Place, x: float, y: float, cosine: float, sine: float, most: float
-) -> float:
-    """Return how far a beam from a point goes before it meets a surface, m, at most ``most``.
-
-    The beam advances by the distance to the nearest surface (sphere tracing, Hart 1996).
-    """
-    way = 0.0
-    while way < most:
-        distance, _, _ = look(field, place, x + way * cosine, y + way * sine)
-        if distance < _TOUCH or distance >= OFF_MAP:
-            return min(way + min(distance, 0.0), most) if distance < _TOUCH else most
-        way += max(distance, _LEAST_STEP)
-    return most
 
 
 @allocating_entry

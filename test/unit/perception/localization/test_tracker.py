@@ -27,8 +27,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose, wrap_angle
-from roomba.perception.localization.belief.belief import unknown_belief
-from roomba.perception.localization.tracker import Tracker, moved
+from roomba.perception.localization.belief.belief import Rows, numbers_of, unknown_belief
+from roomba.perception.localization.belief.reckon_kernels import carry
+from roomba.perception.localization.tracker import Tracker
 from roomba.perception.matching.scan_view import Fit, ScanView
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.world.home.home import Home
@@ -40,7 +41,30 @@ SURE = np.diag([0.02**2, 0.02**2, 0.02**2])
 
 
 def tracker_at(home: Home, pose: Pose) -> Tracker:
-    return Tracker(SurfaceField.of(home.map), CONFIG.localization, pose, SURE.copy())
+    return tracker_in(SurfaceField.of(home.map), pose, SURE, unknown_belief())
+
+
+def tracker_in(
+    field: SurfaceField, pose: Pose, covariance: NDArray[np.float64], belief: Rows
+) -> Tracker:
+    numbers = numbers_of(CONFIG.localization, CONFIG.gyro)
+    return Tracker(field, pose, covariance, belief, numbers)
+
+
+def moved(
+    pose: Pose, covariance: NDArray[np.float64], step: Pose, spread: NDArray[np.float64]
+) -> tuple[Pose, NDArray[np.float64]]:
+    """Return a pose and its covariance after a step in its own frame, unsure by ``spread``.
+
+    ``spread`` is float64 [3, 3] along the axes of the robot after the step.
+    """
+    after, unsure = pose.as_array(), covariance.copy()
+    carry(after, unsure, step.x, step.y, step.theta, *np.diag(spread).tolist())
+    return Pose(*after.tolist()), unsure
+
+
+def move(tracker: Tracker, step: Pose, spread: NDArray[np.float64]) -> None:
+    tracker.pose, tracker.covariance = moved(tracker.pose, tracker.covariance, step, spread)
 
 
 def loop(count: int, middle: Pose, radius: float) -> list[Pose]:
@@ -67,7 +91,7 @@ def follow(
     for before, after in pairwise(truth):
         step = before.inverse().compose(after)
         noise = random.normal(0.0, (WAY_NOISE, WAY_NOISE, TURN_NOISE))
-        tracker.move(step.compose(Pose(*noise.tolist())), SPREAD)
+        move(tracker, step.compose(Pose(*noise.tolist())), SPREAD)
         view = LIDAR.view(see_as(eye.scan(after, random), after))
         tracker.see(view)
         tracker.judge(view)
@@ -96,7 +120,7 @@ def test_its_error_is_what_its_covariance_says() -> None:
     for before, after in pairwise(IN_FURNISHED):
         noise = random.normal(0.0, (WAY_NOISE, WAY_NOISE, TURN_NOISE))
         step = before.inverse().compose(after).compose(Pose(*noise.tolist()))
-        tracker.move(step, SPREAD)
+        move(tracker, step, SPREAD)
         tracker.see(LIDAR.view(eye.scan(after, random)))
         off = tracker.pose
         error = np.array([off.x - after.x, off.y - after.y, wrap_angle(off.theta - after.theta)])
@@ -155,7 +179,7 @@ def test_what_little_agrees_with_the_map_takes_it_nowhere_and_teaches_no_walls()
     """The rest is not where the map has it: what agrees may have been moved as well."""
     pose, belief = Pose(3.4, 1.3, 0.0), unknown_belief()
     field = SurfaceField.of(FURNISHED.map)
-    tracker = Tracker(field, CONFIG.localization, pose, SURE.copy(), belief)
+    tracker = tracker_in(field, pose, SURE, belief)
     ranges = Eye(FURNISHED).scan(pose)
     for _ in range(10):
         tracker.see(LIDAR.view(ranges))
@@ -163,7 +187,7 @@ def test_what_little_agrees_with_the_map_takes_it_nowhere_and_teaches_no_walls()
     assert not tracker.is_doubtful
     before, sure = tracker.pose, tracker.covariance[0, 0]
     for number in range(100):
-        tracker.move(Pose(), 0.01 * SPREAD)
+        move(tracker, Pose(), 0.01 * SPREAD)
         belief["unlike"] = 1.0  # as if it saw another place each time
         view = LIDAR.view(moved_wall_among_much_else(ranges))
         tracker.see(view)
@@ -196,7 +220,7 @@ def test_an_unsure_pose_is_matched_from_farther_away() -> None:
         way = random.uniform(-math.pi, math.pi)
         off = Pose(0.25 * math.cos(way), 0.25 * math.sin(way))
         start = Pose(true.x + off.x, true.y + off.y, true.theta + 0.15)
-        unsure = Tracker(field, CONFIG.localization, start, np.diag([0.09, 0.09, 0.04]))
+        unsure = tracker_in(field, start, np.diag([0.09, 0.09, 0.04]), unknown_belief())
         unsure.see(LIDAR.view(eye.scan(true)))
         assert unsure.pose.distance_to(true.x, true.y) < 0.02
 

@@ -7,12 +7,13 @@ import math
 import numpy as np
 import pytest
 from fixtures.references.slow_lidar import ranges_to_cells
+from fixtures.references.sphere_traced import expected_range
 from fixtures.robots.located import FURNISHED, free_poses
 from hypothesis import given
 from hypothesis import strategies as st
 
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.perception.matching.field_kernels import OFF_MAP, expected_range, look
+from roomba.perception.matching.field_kernels import OFF_MAP, look
 from roomba.perception.matching.surface_field import SurfaceField
 
 STEP = 1e-4
@@ -28,8 +29,7 @@ def look_at(field: SurfaceField, x: float, y: float) -> tuple[float, float, floa
 
 
 def range_from(field: SurfaceField, x: float, y: float, angle: float, most: float) -> float:
-    cosine, sine = math.cos(angle), math.sin(angle)
-    return float(expected_range(field.values, field.place, x, y, cosine, sine, most))
+    return expected_range(field, x, y, math.cos(angle), math.sin(angle), most)
 
 
 def walled(thickness: int) -> SurfaceField:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fixtures.references.sphere_traced import expected_range
 from fixtures.robots.located import FURNISHED, LIDAR, TWO_ROOMS, Eye, free_poses
 from fixtures.thoroughness import examples
 from hypothesis import given, settings
@@ -13,7 +14,6 @@ from hypothesis import strategies as st
 
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.perception.matching.field_kernels import expected_range
 from roomba.perception.matching.fit_kernels import (
     AGREEING,
     EVIDENCE,
@@ -202,7 +202,7 @@ def test_beams_go_through_what_a_ray_of_its_own_meets_before(seed: int) -> None:
         to_x, to_y = there.x - off.x, there.y - off.y
         # The robot itself fills the first 0.1 m.
         met = 0.1 + expected_range(
-            FIELD.values, FIELD.place, off.x + 0.1 * to_x, off.y + 0.1 * to_y, to_x, to_y, length
+            FIELD, off.x + 0.1 * to_x, off.y + 0.1 * to_y, to_x, to_y, length
         )
         through += met < length - (0.06 + 0.01 * length)
     assert fit_at(off, view).through * len(view) == pytest.approx(through, abs=0.5)
