@@ -18,7 +18,7 @@ from roomba.control.speed_loop import Hazards, SpeedLoop
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap
-from roomba.mission.inputs.planning_context import UNWATCHED, PlanningContext
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event, Phase, next_state
@@ -32,6 +32,7 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.perception.slam.mapper import Mapper
 from roomba.perception.things.layer import ThingLayer
+from roomba.planning.coverage.planner import UNWATCHED
 from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 from roomba.planning.path.polyline import Path
 from roomba.robot.command import Command

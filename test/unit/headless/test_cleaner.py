@@ -40,9 +40,9 @@ from roomba.mission.cleaning.request import (
     CleanRequest,
     MissReason,
 )
-from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.phases.machine import Event, Phase
 from roomba.planning.coverage.plan import CoveragePlan
+from roomba.planning.coverage.planner import CoveragePlanner
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba.world.engine.state.arrays import Fault
 
@@ -101,13 +101,13 @@ def test_the_same_seed_gives_the_same_trace_and_another_one_another() -> None:
 
 def test_of_each_clean_its_own_plans_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[int] = []
-    plan_coverage = PlanningContext.plan_coverage
+    plan = CoveragePlanner.plan
 
     def counted(*given: Any, **named: Any) -> CoveragePlan:
         made.append(1)
-        return plan_coverage(*given, **named)
+        return plan(*given, **named)
 
-    monkeypatch.setattr(PlanningContext, "plan_coverage", counted)
+    monkeypatch.setattr(CoveragePlanner, "plan", counted)
     robot = HeadlessMission(HOME)
     for _ in range(2):
         made.clear()

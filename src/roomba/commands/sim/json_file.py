@@ -11,8 +11,8 @@ under way, without charging and waiting, by that. ``missed`` is what the robot i
 left; ``unreached`` is floor that its map shows, but to which no way leads from its station:
 ``area_m2``, in pieces of 1 m2 and more, and the ``rooms`` of which it is so much. ``trajectory``
 has rows t, x, y, theta: true poses, ten a second, the first and the last one included. ``wall_s``
-is what the clean took on the clock, and ``planning_s`` what of it went into ``plans`` coverage
-plans; all else is the same for the same trial, bit for bit.
+is what the clean took on the clock, and ``planning_s`` what of it went into ``plans`` of the
+coverage planner, ways through gaps included; all else is the same for the same trial, bit for bit.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.plan import CoveragePlan
-from roomba.planning.coverage.planner import CoveragePlanner
+from roomba.planning.coverage.planner import UNWATCHED, CoveragePlanner
 from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 from roomba.planning.path.careful import CarefulPathPlanner
 from roomba.planning.path.costmap import Point, RoundObstacle
@@ -34,8 +34,6 @@ Mask = NDArray[np.bool_]
 
 _NEARER: Final = 0.02
 """m; by so much the place before the station comes nearer to it, until there is room."""
-UNWATCHED: Final = contextlib.nullcontext()
-"""Around plans that are not counted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +86,8 @@ class PlanningContext:
         """Make the planners; ``station`` is where the docked robot stands, map frame.
 
         In a map that ``is_growing`` paths keep the distances of exploring. ``stages`` are those of
-        planning coverage. ``plan_watch`` is entered for each plan of coverage, and may count them.
+        planning coverage. ``plan_watch`` is entered for each plan of its coverage planners, and may
+        count them.
         """
         self.occupancy, self.station = occupancy, station
         self.rooms, self.zones = rooms, zones or Zones()
@@ -145,6 +144,7 @@ class PlanningContext:
             self._sharp_corner,
             self._coverage_config,
             self._stages,
+            self._plan_watch,
         )
 
     @property
@@ -167,11 +167,10 @@ class PlanningContext:
         when the robot cannot move.
         """
         home = (self.staging.x, self.staging.y)
-        with self._plan_watch:
-            if end is not None:
-                with contextlib.suppress(NoPathError):
-                    return self.coverage.plan(here, end, todo, obstacles, edges_only=edges_only)
-            return self.coverage.plan(here, home, todo, obstacles, edges_only=edges_only)
+        if end is not None:
+            with contextlib.suppress(NoPathError):
+                return self.coverage.plan(here, end, todo, obstacles, edges_only=edges_only)
+        return self.coverage.plan(here, home, todo, obstacles, edges_only=edges_only)
 
     def with_closed_gaps(self, obstacles: Sequence[RoundObstacle]) -> list[RoundObstacle]:
         """Return the obstacles, and what closes gaps between them that are too narrow."""

@@ -12,7 +12,10 @@ first can be replaced: :class:`~roomba.planning.coverage.stages.CoverageStages`.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterable
+from contextlib import AbstractContextManager
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +40,10 @@ _OFF_MIDDLES = 0.2
 it takes the least error of the drive to leave a whole row unswept."""
 
 
+UNWATCHED: Final = contextlib.nullcontext()
+"""Around plans that are not counted."""
+
+
 class CoveragePlanner:
     """Plans over one map for one body and one tool; all lengths in m, map frame."""
 
@@ -48,12 +55,15 @@ class CoveragePlanner:
         sharp_corner: float,
         config: CoverageConfig,
         stages: CoverageStages = OUR_STAGES,
+        watch: AbstractContextManager[object] = UNWATCHED,
     ) -> None:
         """Take the map, how far the middle keeps from all that is solid, and the tool's width.
 
-        At corners of more than ``sharp_corner``, rad, the robot turns on the spot. Raises
-        ValueError for lengths that are not finite or not above 0.
+        At corners of more than ``sharp_corner``, rad, the robot turns on the spot. ``watch`` is
+        entered for each plan, also one that fails, and may count them. Raises ValueError for
+        lengths that are not finite or not above 0.
         """
+        self._watch = watch
         self.floor = CoverageFloor.build(map, reach, tool_width, config)
         self._sharp_corner, self._config, self._stages = sharp_corner, config, stages
         self._ground: Ground | None = None
@@ -80,6 +90,18 @@ class CoveragePlanner:
                 f"expected todo as bool of shape {self.floor.frame.shape}, "
                 f"got {todo.dtype} of shape {todo.shape}"
             )
+        with self._watch:
+            return self._plan(start, end, todo, obstacles, edges_only=edges_only)
+
+    def _plan(
+        self,
+        start: Point,
+        end: Point | None,
+        todo: Mask | None,
+        obstacles: Iterable[RoundObstacle],
+        *,
+        edges_only: bool,
+    ) -> CoveragePlan:
         ground, first = self._ground_from(start, obstacles)
         last = None if end is None else _end_on(ground, end)
         need = ground.coverable if todo is None else ground.coverable & todo[ground.window]

@@ -17,8 +17,9 @@ from roomba.configuration.robot import RobotConfig
 from roomba.errors import RoomsError
 from roomba.geometry import Pose
 from roomba.headless.plan_watch import PlanWatch
-from roomba.mission.inputs.planning_context import UNWATCHED, PlanningContext
+from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+from roomba.planning.coverage.planner import UNWATCHED
 from roomba.planning.path.planner import NoPathError
 from roomba.world.home.home import Home
 
@@ -93,6 +94,16 @@ def test_a_plan_that_fails_is_counted_too() -> None:
     with pytest.raises(NoPathError):
         home.plan_coverage((1.0, 0.5), home.coverable(), around, edges_only=False)
     assert watch.plans == 1
+
+
+def test_whoever_plans_coverage_the_plan_is_counted() -> None:
+    watch = PlanWatch()
+    home = context(plan_watch=watch)
+    at, todo = (1.0, 0.5), home.coverable()
+    home.coverage.plan(at, None, todo)
+    home.growing_coverage.plan(at, None, todo)
+    home.squeeze(at, (1.5, 1.25), [])
+    assert watch.plans == 3
 
 
 def test_it_squeezes_through_where_paths_keep_away() -> None:
