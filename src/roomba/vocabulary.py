@@ -16,6 +16,8 @@ MOST_CORNERS: Final = 200
 """Of a zone."""
 LONGEST_NAME: Final = 80
 """Characters of a room's or zone's name."""
+OVERTAKEN: Final = "a newer goal took over"
+"""Why a goal ended to which another one was preferred."""
 _JOINERS: Final = "\u200c\u200d"
 """Invisible, but part of a word in Persian and of many emoji: between what they join or part."""
 _LISTED: Final = 20

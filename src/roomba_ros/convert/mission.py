@@ -97,15 +97,15 @@ def request_of(goal: CleanGoal) -> CleanRequest:
     try:
         request = CleanRequest(
             mode,
-            tuple(goal.rooms),
-            zones,
-            spot if mode is CleanMode.SPOT else None,
-            goal.passes or 1,
-            FANS[goal.fan],
-            goal.in_order,
-            ways_of(goal),
-            CARPETS[goal.carpets],
-            EDGES[goal.edges],
+            rooms=tuple(goal.rooms),
+            zones=zones,
+            spot=spot if mode is CleanMode.SPOT else None,
+            passes=goal.passes or 1,
+            fan=FANS[goal.fan],
+            in_order=goal.in_order,
+            each=ways_of(goal),
+            carpets=CARPETS[goal.carpets],
+            edges=EDGES[goal.edges],
         )
     except CleanRefusedError as error:
         raise CleanGoalError(str(error)) from error

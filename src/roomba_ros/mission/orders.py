@@ -22,7 +22,7 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event, Phase
 from roomba.storage.checkpoint import Goal
-from roomba.vocabulary import RoomWay, listed
+from roomba.vocabulary import OVERTAKEN, RoomWay, listed
 from roomba_ros.convert.mission import ways_of
 from roomba_ros.convert.values import data_of
 from roomba_ros.mission.goals import GOALS, Ended, MissionGoal
@@ -30,7 +30,6 @@ from roomba_ros.runtime.action_goal import GoalIdentity, server_of
 from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe
 
-_OVERTAKEN: Final = "a newer goal took over"
 _DONE: Final = {
     Event.PAUSE: "paused",
     Event.RESUME: "going on",
@@ -205,7 +204,7 @@ class MissionOrders:
         # Of what was under way; no client waits for one that was resumed after an error.
         ended = _take_ended(mission)
         if old is not None:
-            self._answers.append(partial(old.stopped, ended, _OVERTAKEN))
+            self._answers.append(partial(old.stopped, ended, OVERTAKEN))
         goal.accept()
         self._takes_drive()
 

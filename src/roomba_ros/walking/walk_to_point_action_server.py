@@ -27,6 +27,7 @@ from roomba.mission.walking.walk import Walk, WalkState, expected_duration
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.planning.path.planner import PathPlanner
 from roomba.robot.lookout import Lookout
+from roomba.vocabulary import OVERTAKEN
 from roomba_ros.convert.common import header, map_of, path_message, pose_in_map
 from roomba_ros.convert.values import data_of
 from roomba_ros.runtime.action_goal import GoalIdentity, server_of
@@ -46,7 +47,6 @@ from roomba_ros.walking.walk_goals import MoveBaseGoal, WalkGoal, WalkToPointGoa
 
 NAME = "walk_to_point_action_server_node"
 _HEARD = ("odom", "imu", "scan", "bumper", "cliff")
-_OVERTAKEN = "a newer goal took over"
 
 
 @dataclass
@@ -191,7 +191,7 @@ class WalkToPointActionServer:
         has_newer = False
         for goal in reversed([self._goals.popleft() for _ in range(len(self._goals))]):
             if goal.is_recalled or has_newer:
-                goal.cancelled(0.0, _OVERTAKEN if has_newer else "cancelled before it began")
+                goal.cancelled(0.0, OVERTAKEN if has_newer else "cancelled before it began")
                 continue
             try:
                 walk = self._begin(goal.destination, senses)
@@ -231,7 +231,7 @@ class WalkToPointActionServer:
         now = rospy.get_time()
         old, self._job = self._job, None
         if old is not None:
-            old.goal.cancelled(old.walk.time_spent(now), _OVERTAKEN)
+            old.goal.cancelled(old.walk.time_spent(now), OVERTAKEN)
         duration = expected_duration(walk.path, self._parameters.values.robot_max_speed)
         goal.accept(f"{walk.path.length:.2f} m to walk")
         self._job = _Job(goal, walk, goal.feedback_period(duration), now)

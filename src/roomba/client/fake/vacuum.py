@@ -21,7 +21,7 @@ from roomba.client.protocol import (
     RobotUnavailableError,
     VacuumSnapshot,
 )
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
+from roomba.vocabulary import OVERTAKEN, CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 
 if TYPE_CHECKING:
     from roomba.client.clock import Clock
@@ -208,6 +208,6 @@ class FakeVacuum:
     def _begin(self, errand: _Errand, script: ErrandScript) -> _Errand:
         if script.outcome is not ErrandOutcome.REFUSED:
             if self._errand is not None:
-                self._errand.end("a newer goal took over")
+                self._errand.end(OVERTAKEN)
             self._errand = errand
         return errand

@@ -247,7 +247,7 @@ def _request_of(given: argparse.Namespace) -> CleanRequest:
             zones=tuple(_rectangle("--zone", corners) for corners in given.zone),
             spot=None if given.spot is None else (given.spot[0], given.spot[1]),
             passes=given.passes,
-            fan=FanLevel[given.fan.upper()],
+            fan=FanLevel(given.fan),
             in_order=True,
             carpets=CarpetWay(given.carpets.replace("-", " ")),
             edges=EdgeOrder(given.edges),

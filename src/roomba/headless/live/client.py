@@ -380,14 +380,14 @@ def _request_of(order: view.CleanOrder) -> CleanRequest:
     return made(
         lambda: CleanRequest(
             CleanMode(order.mode),
-            order.rooms,
-            order.zones,
-            order.spot,
-            order.passes,
-            FanLevel[order.fan.upper()],
-            order.in_order,
-            order.each,
-            CarpetWay(order.carpets),
-            EdgeOrder(order.edges),
+            rooms=order.rooms,
+            zones=order.zones,
+            spot=order.spot,
+            passes=order.passes,
+            fan=FanLevel(order.fan),
+            in_order=order.in_order,
+            each=order.each,
+            carpets=CarpetWay(order.carpets),
+            edges=EdgeOrder(order.edges),
         )
     )

@@ -27,8 +27,8 @@ from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Errand, Event, Phase
 from roomba.mission.walking.walk import WalkState, expected_duration, feedback_period
+from roomba.vocabulary import OVERTAKEN
 
-NEWER: Final = "a newer goal took over"
 _PERIOD: Final = 1.0
 """s of the robot's clock between two news of an errand, as on ROS."""
 
@@ -167,7 +167,7 @@ class LiveWalk(LiveErrand[float, WalkReport]):
 
     def give_way(self) -> None:
         """End, because something newer took over."""
-        self._end(self._reported(WalkOutcome.CANCELLED, NEWER))
+        self._end(self._reported(WalkOutcome.CANCELLED, OVERTAKEN))
 
     def _cancel(self, robot: Embodied) -> None:
         robot.brain.walking.end()
@@ -225,7 +225,7 @@ class LiveClean(LiveErrand[CleanProgress, CleanReport]):
 
     def give_way(self) -> None:
         """End, because something newer took over."""
-        self._end(_empty_clean(ErrandOutcome.STOPPED, NEWER))
+        self._end(_empty_clean(ErrandOutcome.STOPPED, OVERTAKEN))
 
     def _refused(self, reason: str) -> CleanReport:
         return _empty_clean(ErrandOutcome.REFUSED, reason)
@@ -256,7 +256,7 @@ class LiveExploring(LiveErrand[float, ExploreReport]):
 
     def give_way(self) -> None:
         """End, because something newer took over."""
-        self._end(self._reported(ErrandOutcome.STOPPED, NEWER))
+        self._end(self._reported(ErrandOutcome.STOPPED, OVERTAKEN))
 
     def _refused(self, reason: str) -> ExploreReport:
         return self._reported(ErrandOutcome.REFUSED, reason)
@@ -299,7 +299,7 @@ class LiveDocking(LiveErrand[str, DockReport]):
 
     def give_way(self) -> None:
         """End, because something newer took over."""
-        self._end(DockReport(ErrandOutcome.STOPPED, NEWER))
+        self._end(DockReport(ErrandOutcome.STOPPED, OVERTAKEN))
 
     def _cancel(self, robot: Embodied) -> None:
         super()._cancel(robot)

@@ -88,8 +88,20 @@ class LiveRobotClient:
         edges: EdgeOrder = EdgeOrder.ANY,
     ) -> CleanHandle:
         """Start cleaning."""
-        wish = mode, tuple(rooms), tuple(zones), spot, passes, fan, in_order, tuple(each)
-        request = made(lambda: CleanRequest(*wish, carpets, edges))
+        request = made(
+            lambda: CleanRequest(
+                mode,
+                rooms=tuple(rooms),
+                zones=tuple(zones),
+                spot=spot,
+                passes=passes,
+                fan=fan,
+                in_order=in_order,
+                each=tuple(each),
+                carpets=carpets,
+                edges=edges,
+            )
+        )
         return self._begin(LiveClean(*self._parts, request))
 
     def change_rooms(self, rooms: Sequence[str], each: Sequence[RoomWay] = ()) -> None:

@@ -67,13 +67,13 @@ def request_of(values: Values) -> CleanRequest:
     spot = values["spot"]
     return CleanRequest(
         CleanMode(values["mode"]),
-        tuple(str(name) for name in values["rooms"]),
-        tuple((float(a), float(b), float(c), float(d)) for a, b, c, d in values["zones"]),
-        None if spot is None else (float(spot[0]), float(spot[1])),
-        int(values["passes"]),
-        FanLevel[values["fan"]],
-        bool(values["in_order"]),
-        tuple(RoomWay(int(passes), FanLevel[fan]) for passes, fan in values["each"]),
-        CarpetWay[values["carpets"]],
-        EdgeOrder[values["edges"]],
+        rooms=tuple(str(name) for name in values["rooms"]),
+        zones=tuple((float(a), float(b), float(c), float(d)) for a, b, c, d in values["zones"]),
+        spot=None if spot is None else (float(spot[0]), float(spot[1])),
+        passes=int(values["passes"]),
+        fan=FanLevel[values["fan"]],
+        in_order=bool(values["in_order"]),
+        each=tuple(RoomWay(int(passes), FanLevel[fan]) for passes, fan in values["each"]),
+        carpets=CarpetWay[values["carpets"]],
+        edges=EdgeOrder[values["edges"]],
     )

@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import Enum
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
+
+UNKNOWN_COVARIANCE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
+"""Of a pose that is not known at all, m2 and rad2: not to be changed in place."""
 
 
 class Knowledge(Enum):
@@ -36,7 +40,7 @@ class Estimate:
 
     ``covariance`` is float64 [3, 3], of x, y (m2) and theta (rad2); ``agreement`` the share of the
     last scan's beams that agree with the map; ``reason`` says why it is not known, and what helps.
-    What is not known at all is unsure by 100 m.
+    What is not known at all is unsure by UNKNOWN_COVARIANCE.
     """
 
     pose: Pose

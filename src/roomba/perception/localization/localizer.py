@@ -22,7 +22,7 @@ from roomba.perception.localization.belief.correct_kernels import is_calm
 from roomba.perception.localization.belief.reckon_kernels import SET_BACK
 from roomba.perception.localization.confirmation import Confirmation
 from roomba.perception.localization.doubt import Doubt
-from roomba.perception.localization.estimate import Estimate, Knowledge
+from roomba.perception.localization.estimate import UNKNOWN_COVARIANCE, Estimate, Knowledge
 from roomba.perception.localization.global_search import FoundPlace, GlobalSearch
 from roomba.perception.localization.knowledge import Circumstances, Searched, knowledge_in
 from roomba.perception.localization.place_follower import PlaceFollower
@@ -39,7 +39,6 @@ from roomba.perception.matching.scan_view import (
 )
 from roomba.perception.matching.surface_field import SurfaceField
 
-_ANYWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
 """m2, rad2; of an unknown pose: so large that a reader of the covariance alone does not use it."""
 _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
 """m2, rad2; of a place that was found, before scans narrow it down."""
@@ -202,7 +201,7 @@ class Localizer:
         estimate = self.estimate
         if self._search is not None:
             self._search.use(self._followed.walls)
-            self._followed.begin_at(estimate.pose, _ANYWHERE)
+            self._followed.begin_at(estimate.pose, UNKNOWN_COVARIANCE)
         else:
             self.told(estimate.pose, (estimate.position_deviation, estimate.heading_deviation))
 
@@ -256,7 +255,7 @@ class Localizer:
         knowledge, reason = self._knowledge()
         covariance = tracker.covariance + tracker.map_spread
         if self._search is not None or self._is_lifted:
-            covariance = _ANYWHERE
+            covariance = UNKNOWN_COVARIANCE
         agreement = 0.0 if self._is_blind else tracker.agreement
         return Estimate(tracker.pose, covariance, knowledge, agreement, reason)
 

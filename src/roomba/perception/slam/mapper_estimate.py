@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import cache
 from typing import Final
 
@@ -11,10 +10,9 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mapping import FollowingConfig
 from roomba.geometry import Pose
-from roomba.perception.localization.estimate import Estimate, Knowledge
+from roomba.perception.localization.estimate import UNKNOWN_COVARIANCE, Estimate, Knowledge
 from roomba.perception.slam.following.scan_follower import ScanFollower
 
-_NOWHERE: Final = np.diag([100.0**2, 100.0**2, math.pi**2])
 _WAS_LIFTED: Final = (
     "the robot was lifted while it made its map: put it on its station, tell where it is (in RViz: "
     "2D Pose Estimate), or drive it a little where the map shows enough"
@@ -34,7 +32,7 @@ def estimate_at(pose: Pose, follower: ScanFollower, config: FollowingConfig) -> 
 
 def lost_estimate(pose: Pose) -> Estimate:
     """Return the estimate of a robot that was carried, and was at ``pose`` before."""
-    return Estimate(pose, _NOWHERE, Knowledge.LOST, 0.0, _WAS_LIFTED)
+    return Estimate(pose, UNKNOWN_COVARIANCE, Knowledge.LOST, 0.0, _WAS_LIFTED)
 
 
 @cache

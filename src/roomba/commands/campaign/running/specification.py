@@ -89,9 +89,7 @@ class Variant(Frozen):
         return Trial(
             home=home,
             seed=seed,
-            request=CleanRequest(
-                CleanMode(self.mode), passes=self.passes, fan=FanLevel[self.fan.upper()]
-            ),
+            request=CleanRequest(CleanMode(self.mode), passes=self.passes, fan=FanLevel(self.fan)),
             sensors=self.sensors,
             lidar=self.lidar,
             wheels=self.wheels,

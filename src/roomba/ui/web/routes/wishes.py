@@ -70,15 +70,15 @@ def order_of(wish: CleanWish) -> CleanOrder:
     """Return what the robot is told to clean."""
     return CleanOrder(
         wish.mode,
-        tuple(wish.rooms),
-        wish.in_order,
-        tuple(wish.zones),
-        wish.spot,
-        wish.passes,
-        wish.fan,
-        ways_of(wish.each),
-        wish.carpets,
-        wish.edges,
+        rooms=tuple(wish.rooms),
+        in_order=wish.in_order,
+        zones=tuple(wish.zones),
+        spot=wish.spot,
+        passes=wish.passes,
+        fan=wish.fan,
+        each=ways_of(wish.each),
+        carpets=wish.carpets,
+        edges=wish.edges,
     )
 
 
