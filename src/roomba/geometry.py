@@ -39,6 +39,8 @@ class Twist:
 
 
 STANDSTILL = Twist()
+RoundObstacle = tuple[float, float, float]
+"""x, y and radius of a round thing that the map does not show, m, map frame."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from roomba.commands.trials.figures import Figures, MissedShare
 from roomba.commands.trials.homes import home_of, rooms_of
 from roomba.commands.trials.numbers import DOCKING, MISSION, ROBOT, with_numbers
 from roomba.commands.trials.stages import stages_of
-from roomba.commands.trials.things import Disc, seeded_things
+from roomba.commands.trials.things import seeded_things
 from roomba.commands.trials.trial import Setting, Trial
 from roomba.commands.trials.truth import coverable_floor, true_map
 from roomba.commands.trials.zones import zones_of
@@ -30,7 +30,7 @@ from roomba.configuration.simulation import (
     load_simulated_config,
 )
 from roomba.files.shipped import CONFIGURATION
-from roomba.geometry import Pose
+from roomba.geometry import Pose, RoundObstacle
 from roomba.grid import FREE
 from roomba.headless.burst import LONGEST_BURST
 from roomba.headless.cleaner import HeadlessMission
@@ -38,7 +38,6 @@ from roomba.headless.odometry import odometry_error
 from roomba.headless.records import CleanRecord
 from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.swept.coverage_map import CoverageMap
-from roomba.planning.path.costmap import RoundObstacle
 from roomba.world.home.home import Home
 from roomba.world.home.raster import largest_component, where_body_fits
 
@@ -64,7 +63,7 @@ class Run:
     home: Home
     robot: SimulatedRobotConfig
     reach: float
-    things: tuple[Disc, ...]
+    things: tuple[RoundObstacle, ...]
     coverable: Mask
     truth: CoverageMap
 

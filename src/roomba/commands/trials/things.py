@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from roomba.commands.options import UsageError
-from roomba.geometry import Pose
+from roomba.geometry import Pose, RoundObstacle
 from roomba.world.home.home import Home
 from roomba.world.home.raster import Mask, where_body_fits
 
@@ -18,17 +18,16 @@ _LEAST, _MOST = 0.04, 0.14
 _FROM_STATION: Final = 1.2
 """m; no thing stands nearer to the station."""
 
-Disc = tuple[float, float, float]
-"""x, y and radius, m, map frame."""
 
-
-def seeded_things(home: Home, staging: Pose, floor: Mask, count: int, seed: int) -> list[Disc]:
+def seeded_things(
+    home: Home, staging: Pose, floor: Mask, count: int, seed: int
+) -> list[RoundObstacle]:
     """Return round things on ``floor``, bool over the home's grid, that touch nothing else.
 
     Raises UsageError for a floor that has no room for so many.
     """
     random = np.random.default_rng([_STREAM, seed])
-    things: list[Disc] = []
+    things: list[RoundObstacle] = []
     for _ in range(count):
         radius = float(random.uniform(_LEAST, _MOST))
         places = floor & where_body_fits(home.frame, home.solid | home.drop, radius)

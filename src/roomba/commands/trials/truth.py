@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
+from roomba.geometry import RoundObstacle
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.cleaning.stages import stages_of
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap
-from roomba.planning.path.costmap import RoundObstacle
 from roomba.vocabulary import CleanMode
 from roomba.world.home.home import Home
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.mission import CleaningConfig
-from roomba.geometry import Pose
+from roomba.geometry import Pose, RoundObstacle
 from roomba.mission.cleaning.another_round import (
     floor_in_reach,
     may_be_opened,
@@ -38,7 +38,6 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import patches_of
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.coverage.plan import CoveragePlan
-from roomba.planning.path.costmap import RoundObstacle
 from roomba.planning.path.planner import NoPathError
 from roomba.planning.path.polyline import Path
 from roomba.raster.regions import large_regions

@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.geometry import RoundObstacle
 from roomba.grid import GridFrame
 from roomba.mission.cleaning.request import Missed, MissReason
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import Patch, patches_of
-from roomba.planning.path.costmap import RoundObstacle
 
 Mask = NDArray[np.bool_]
 

@@ -6,12 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.mission import CleaningConfig
+from roomba.geometry import RoundObstacle
 from roomba.mission.cleaning.dirty.detour import with_detour
 from roomba.mission.cleaning.dirty.dirty_floor import DirtyFloor, DirtyPatch
 from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.worth import PlanOver, is_worth_its_way, way_worth
 from roomba.mission.inputs.planning_context import PlanningContext
-from roomba.planning.path.costmap import Point, RoundObstacle
+from roomba.planning.path.costmap import Point
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]

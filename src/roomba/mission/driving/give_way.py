@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.mission import GivingWayConfig
+from roomba.geometry import RoundObstacle
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.trail import Trail
 from roomba.mission.inputs.senses import Senses
 from roomba.planning.frontiers.kernels import ways_from
-from roomba.planning.path.costmap import Point, RoundObstacle
+from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError, PathPlanner
 
 Floats = NDArray[np.float64]

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.control.path_tracker import PathTracker
+from roomba.geometry import RoundObstacle
 from roomba.planning.coverage.floor.floor import CoverageFloor
-from roomba.planning.path.costmap import RoundObstacle
 
 Floats = NDArray[np.float64]
 

@@ -15,14 +15,13 @@ from numpy.typing import NDArray
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import WalkConfig
 from roomba.configuration.mission import DrivingConfig
-from roomba.geometry import Pose
+from roomba.geometry import Pose, RoundObstacle
 from roomba.mission.driving.unknown_things import UnknownThings
 from roomba.mission.inputs.senses import Senses
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.low_things import LowThings, OfferedZone
 from roomba.perception.rooms.zones import Zones
 from roomba.perception.things.layer import ThingLayer
-from roomba.planning.path.costmap import RoundObstacle
 
 _FOREVER: Final = math.inf
 _TOUCHES: Final = 20

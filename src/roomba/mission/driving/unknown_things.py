@@ -8,10 +8,7 @@ from typing import NamedTuple
 
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import WalkConfig
-from roomba.geometry import Pose
-
-Obstacle = tuple[float, float, float]
-"""x, y and radius of a round thing, m, map frame."""
+from roomba.geometry import Pose, RoundObstacle
 
 
 class _Touch(NamedTuple):
@@ -59,7 +56,7 @@ class UnknownThings:
     def _angles(self, left: bool, right: bool) -> tuple[float, ...]:
         return self._both if left and right else self._left if left else self._right
 
-    def at(self, now: float, radius: float | None = None) -> list[Obstacle]:
+    def at(self, now: float, radius: float | None = None) -> list[RoundObstacle]:
         """Return what is still remembered; a clock set back forgets nothing.
 
         Things touch the body where that felt them; ``radius``, m, is given to them in place of the

@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.mission import ExploringConfig
-from roomba.geometry import Pose
+from roomba.geometry import Pose, RoundObstacle
 from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.exploring.open_edges import open_edges, what_is_not_seen
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.frontiers.frontiers import Frontier, FrontierChoice, frontiers, is_frontier
-from roomba.planning.path.costmap import Point, RoundObstacle
+from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError
 
 _MOST_TRIES: Final = 12

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.planning.path.costmap import RoundObstacle
+from roomba.geometry import RoundObstacle
 
 _SIZE: Final = 0.01
 """m; radius of what is put into a gap to close it."""

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.things import ThingConfig
-from roomba.geometry import Pose
+from roomba.geometry import Pose, RoundObstacle
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import look
 from roomba.perception.matching.surface_field import SurfaceField
@@ -18,8 +18,6 @@ from roomba.perception.things.range_kernels import unknown_noises
 from roomba.perception.things.state import LAYER, Things
 
 Ranges = NDArray[np.float32]
-RoundObstacle = tuple[float, float, float]
-"""x, y and radius of a round thing, m, map frame."""
 
 _MOST_CELLS: Final = 4096
 """Cells that may have evidence: 10 m2 of a usual map, more than stands about in a home."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import cached_property
 
+from roomba.geometry import RoundObstacle
 from roomba.grid import OccupancyMap
-from roomba.planning.path.costmap import Point, RoundObstacle
+from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError, Path, PathPlanner
 
 

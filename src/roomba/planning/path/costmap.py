@@ -14,14 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.compilation import entry, part
+from roomba.geometry import RoundObstacle
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.path.straight_walls import has_shares, solid_parts
 from roomba.raster.regions import dilated, numbered_regions
 
 Mask = NDArray[np.bool_]
 Point = tuple[float, float]
-RoundObstacle = tuple[float, float, float]
-"""x, y and radius of a round thing that the map does not show, m."""
 
 _PARTS = 5
 """To a side of a cell that may be solid in part; odd: one of them is in the cell's middle."""

@@ -13,7 +13,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.planning.path.costmap import FitMap, RoundObstacle, room_beside
+from roomba.geometry import RoundObstacle
+from roomba.planning.path.costmap import FitMap, room_beside
 from roomba.planning.path.string_kernels import FULL, QUARTER, Pegs, String, mark_corners, pull
 
 _ANGLES = np.arange(4 * QUARTER) * (math.pi / (2 * QUARTER))

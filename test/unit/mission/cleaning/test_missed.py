@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
+from roomba.geometry import RoundObstacle
 from roomba.mission.cleaning.missed import is_hidden, missed_floor, what_is_not_clean
 from roomba.mission.cleaning.request import Missed, MissReason
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import patches_of
-from roomba.planning.path.costmap import RoundObstacle
 
 SITE = PlanningContext(
     TWO_ROOMS.map, TWO_ROOMS.station, RobotConfig(), MissionConfig(), DockingConfig(), two_rooms()

@@ -7,10 +7,9 @@ import pytest
 from fixtures.robots.driven_cleans import HERE, cleaning, context, drive
 
 from roomba.configuration.mission import CleaningConfig, MissionConfig
-from roomba.geometry import Pose
+from roomba.geometry import Pose, RoundObstacle
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.perception.swept.dirt_map import DirtMap
-from roomba.planning.path.costmap import RoundObstacle
 
 
 def note_dirty_patch(dirt: DirtMap) -> None:

@@ -12,7 +12,7 @@ from fixtures.robots.missions import HOME
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import Pose
+from roomba.geometry import Pose, RoundObstacle
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -20,7 +20,6 @@ from roomba.mission.inputs.senses import Senses
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.things.layer import ThingLayer
-from roomba.planning.path.costmap import RoundObstacle
 from roomba.planning.path.planner import NoPathError
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()

@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mission import GivingWayConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import Pose
+from roomba.geometry import Pose, RoundObstacle
 from roomba.mission.driving.give_way import way_aside
 from roomba.mission.driving.trail import Trail
 from roomba.mission.inputs.senses import Senses
-from roomba.planning.path.costmap import RoundObstacle
 from roomba.planning.path.planner import PathPlanner
 
 RADIUS, CONFIG = RobotConfig().body.radius, GivingWayConfig()

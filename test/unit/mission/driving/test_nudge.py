@@ -11,10 +11,9 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.control.path_tracker import PathTracker
-from roomba.geometry import Pose
+from roomba.geometry import Pose, RoundObstacle
 from roomba.mission.driving.nudge import nudged
 from roomba.mission.inputs.planning_context import PlanningContext
-from roomba.planning.path.costmap import RoundObstacle
 
 CONFIG = RobotConfig()
 FLOOR = PlanningContext(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig()).floor

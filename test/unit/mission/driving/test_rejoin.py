@@ -13,7 +13,7 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.control.path_tracker import PathTracker
-from roomba.geometry import Pose
+from roomba.geometry import Pose, RoundObstacle
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
@@ -21,7 +21,6 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.things.layer import ThingLayer
-from roomba.planning.path.costmap import RoundObstacle
 from roomba.planning.path.planner import NoPathError
 
 CONFIG = RobotConfig()

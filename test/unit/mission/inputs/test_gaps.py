@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from roomba.geometry import RoundObstacle
 from roomba.mission.inputs.gaps import closed_gaps
-from roomba.planning.path.costmap import RoundObstacle
 
 REACH, SPARE = 0.165, 0.06
 

@@ -12,7 +12,7 @@ from fixtures.robots.missions import TWO_ROOMS, WALL_X
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import STANDSTILL, Pose
+from roomba.geometry import STANDSTILL, Pose, RoundObstacle
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.driving.drives import Drives
@@ -28,7 +28,6 @@ from roomba.mission.phases.step import PhaseStep
 from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.frontiers.frontiers import Frontier
-from roomba.planning.path.costmap import RoundObstacle
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
 SITE = PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())

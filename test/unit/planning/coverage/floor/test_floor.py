@@ -14,9 +14,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from roomba.configuration.coverage import CoverageConfig
+from roomba.geometry import RoundObstacle
 from roomba.grid import FREE, UNKNOWN, GridFrame, OccupancyMap
 from roomba.planning.coverage.floor.floor import CoverageFloor, fine_frame
-from roomba.planning.path.costmap import Mask, RoundObstacle
+from roomba.planning.path.costmap import Mask
 
 CONFIG = CoverageConfig()
 
