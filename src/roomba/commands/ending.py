@@ -19,7 +19,8 @@ NOT_READ: Final = 1
 INTERRUPTED: Final = 130
 """Exit status after Ctrl-C."""
 _STANDARD_ERROR: Final = 2
-_STOPPED: Final = "stopped on the way"
+STOPPED: Final = "stopped on the way"
+"""What is told after Ctrl-C."""
 _FULL: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """Reasons for which a file takes no more."""
 
@@ -40,7 +41,7 @@ def quiet_end() -> Iterator[None]:
         print(f"expected room for what is written: {error}; make some", file=sys.stderr)
         sys.exit(NOT_READ)
     except KeyboardInterrupt:
-        print(_STOPPED, file=sys.stderr)
+        print(STOPPED, file=sys.stderr)
         sys.exit(INTERRUPTED)
 
 
@@ -61,7 +62,7 @@ def quiet_loading() -> Iterator[None]:
 
 
 def _leave(*_: object) -> None:
-    os.write(_STANDARD_ERROR, f"{_STOPPED}\n".encode())
+    os.write(_STANDARD_ERROR, f"{STOPPED}\n".encode())
     os._exit(INTERRUPTED)
 
 

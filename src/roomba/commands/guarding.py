@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable
 from typing import Final
 
-from roomba.commands.ending import INTERRUPTED
+from roomba.commands.ending import INTERRUPTED, STOPPED
 from roomba.commands.options import UsageError
 from roomba.errors import RoombaError
 
@@ -16,20 +16,28 @@ USAGE: Final = 2
 """Exit status for a command line, or an input, that cannot be used."""
 
 
-def guarded(work: Callable[[], int], program: str, refused: int = ENDED_OTHERWISE) -> int:
+def guarded(
+    work: Callable[[], int],
+    program: str,
+    refused: int = ENDED_OTHERWISE,
+    *,
+    unfit: tuple[type[RoombaError], ...] = (UsageError,),
+    stopped: str = STOPPED,
+) -> int:
     """Return the exit status of some work of a ``program``; an error is printed in a line.
 
-    ``refused`` is the status for an input that cannot be used. Raises BrokenPipeError, when the
-    reader of the output has closed it: that is for :mod:`.ending`.
+    For errors that are ``unfit`` it is USAGE, and ``refused`` for others of an input that cannot be
+    used. ``stopped`` is told after Ctrl-C. Raises BrokenPipeError, when the reader of the output
+    has closed it: that is for :mod:`.ending`.
     """
 
     def complain(text: str, status: int) -> int:
-        print(f"{program}: {' '.join(text.split())}", file=sys.stderr)
+        complain_of(program, text)
         return status
 
     try:
         return work()
-    except UsageError as error:
+    except unfit as error:
         return complain(str(error), USAGE)
     except RoombaError as error:
         return complain(str(error), refused)
@@ -38,4 +46,9 @@ def guarded(work: Callable[[], int], program: str, refused: int = ENDED_OTHERWIS
     except OSError as error:
         return complain(f"{error}; choose another file", ENDED_OTHERWISE)
     except KeyboardInterrupt:
-        return complain("stopped on the way", INTERRUPTED)
+        return complain(stopped, INTERRUPTED)
+
+
+def complain_of(program: str, text: str) -> None:
+    """Print in a line what a ``program`` could not do."""
+    print(f"{program}: {' '.join(text.split())}", file=sys.stderr)

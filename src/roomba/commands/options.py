@@ -17,7 +17,8 @@ from roomba.errors import RoombaError
 Named: TypeAlias = tuple[str, Path | None]
 """An option, and the file that it names."""
 MOST_SEED: Final = 2**63 - 1
-_STANDARD_OUTPUT: Final = "-"
+STANDARD_OUTPUT: Final = "-"
+"""In place of a file's name."""
 _HELP: Final = ("-h", "--help")
 
 
@@ -57,7 +58,7 @@ class Parser(HelpfulParser):
         told.add_argument(
             "--json",
             nargs="?",
-            const=_STANDARD_OUTPUT,
+            const=STANDARD_OUTPUT,
             metavar="FILE|-",
             help=f"{figures}, for programs; -, or nothing: standard output",
         )
@@ -111,7 +112,7 @@ finite = number(math.isfinite, "finite numbers (m, rad)")
 
 def file_of(name: str | None) -> Path | None:
     """Return the file that figures are written to; None for standard output."""
-    return None if name in (None, _STANDARD_OUTPUT) else Path(str(name))
+    return None if name in (None, STANDARD_OUTPUT) else Path(str(name))
 
 
 def check_config(path: Path | None) -> None:

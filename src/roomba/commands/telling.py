@@ -11,10 +11,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from roomba.commands.options import STANDARD_OUTPUT
 from roomba.geometry import Pose
 
-STANDARD_OUTPUT: Final = "-"
-"""In place of a file's name."""
 _WIDTH: Final = 120
 """Columns of a table that does not go to a terminal."""
 

@@ -4,7 +4,7 @@ import pytest
 
 from roomba.commands.guarding import USAGE, guarded
 from roomba.commands.options import UsageError
-from roomba.errors import RoombaError
+from roomba.errors import ConfigError, RoombaError
 
 
 @pytest.mark.parametrize(
@@ -40,3 +40,17 @@ def test_a_pipe_that_was_closed_is_not_told_as_an_error() -> None:
 
     with pytest.raises(BrokenPipeError):
         guarded(work, "./roomba map")
+
+
+def test_what_is_unfit_and_what_is_told_when_it_is_stopped_is_the_commands_own(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def unfit() -> int:
+        raise ConfigError("no")
+
+    def stopped() -> int:
+        raise KeyboardInterrupt
+
+    assert guarded(unfit, "./roomba campaign", 7, unfit=(ConfigError,)) == USAGE
+    assert guarded(stopped, "./roomba campaign", stopped="the same command goes on") == 130
+    assert capsys.readouterr().err.endswith("./roomba campaign: the same command goes on\n")

@@ -10,12 +10,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from roomba.commands.campaign.options import PROGRAM, CampaignOptions, options_of
-from roomba.commands.ending import INTERRUPTED, quiet_loading
-from roomba.commands.guarding import USAGE
+from roomba.commands.ending import STOPPED, quiet_loading
+from roomba.commands.guarding import complain_of, guarded
 from roomba.commands.options import UsageError
 from roomba.commands.progress import Show, progress
 from roomba.commands.telling import clock, named_table, tell_tables, write_json
-from roomba.errors import RoombaError
+from roomba.errors import ConfigError, RoombaError
 
 if TYPE_CHECKING:
     from roomba.commands.campaign.running.machines import Machines
@@ -33,30 +33,14 @@ Lost = list[tuple[str, str]]
 
 def main(arguments: list[str] | None = None) -> int:
     """Do what a command line asks for; returns the exit status."""
-    try:
-        options = options_of(arguments)
-        return _run(options, sys.argv[1:] if arguments is None else arguments)
-    except UsageError as error:
-        return _complain(str(error), USAGE)
-    except RoombaError as error:
-        return _complain(str(error), _status_of(error))
-    except BrokenPipeError:
-        raise  # the reader of the output has gone: roomba.commands.ending
-    except OSError as error:
-        return _complain(f"{error}; choose another file", SOME_FAILED)
-    except KeyboardInterrupt:
-        return _complain("stopped on the way; the same command goes on", INTERRUPTED)
-
-
-def _status_of(error: RoombaError) -> int:
-    from roomba.errors import ConfigError
-
-    return USAGE if isinstance(error, ConfigError) else SOME_FAILED
-
-
-def _complain(text: str, status: int) -> int:
-    print(f"{PROGRAM}: {' '.join(text.split())}", file=sys.stderr)
-    return status
+    words = sys.argv[1:] if arguments is None else arguments
+    return guarded(
+        lambda: _run(options_of(arguments), words),
+        PROGRAM,
+        SOME_FAILED,
+        unfit=(UsageError, ConfigError),
+        stopped=f"{STOPPED}; the same command goes on",
+    )
 
 
 def _run(options: CampaignOptions, words: Sequence[str]) -> int:
@@ -122,7 +106,7 @@ def _write_results(
         return
     if reason := why_no_parquet():
         mend = "pip install 'roomba_robot[campaign]'"
-        _complain(f"no {_PARQUET}: {reason}; to mend it: {mend}", DONE)
+        complain_of(PROGRAM, f"no {_PARQUET}: {reason}; to mend it: {mend}")
     else:
         write_parquet(options.out / _PARQUET, campaign, rows)
     if options.keep:
@@ -133,7 +117,7 @@ def _write_results(
         try:
             keep_runs(History(history_folder()), campaign, rows, repeat)
         except RoombaError as error:
-            _complain(f"the runs were not kept in the history: {error}", 0)
+            complain_of(PROGRAM, f"the runs were not kept in the history: {error}")
 
 
 def _tell(options: CampaignOptions, campaign: Campaign, rows: Sequence[Row], lost: Lost) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from roomba.commands.first_use import require_compiled
+from roomba.commands.guarding import COMPLETED, USAGE
 from roomba.commands.options import HelpfulParser
 from roomba.commands.play.bumping import bumping_life
 from roomba.commands.play.living import add_robot_options, wanted_robot
@@ -61,10 +62,10 @@ def main(arguments: list[str] | None = None) -> int:
             _live(wanted, client, bound, source, told, ending, smart_home)
         except RoombaError as error:
             print(f"{PROGRAM}: {error}", file=sys.stderr)
-            return 2
+            return USAGE
         except KeyboardInterrupt:
-            return 0
-    return 0
+            return COMPLETED
+    return COMPLETED
 
 
 def _robot(
