@@ -5,7 +5,7 @@
 """
 
 from roomba.client.protocol import CleanProgress
-from roomba.commands.ending import quiet_end
+from roomba.commands.process_end import quiet_end
 from roomba_ros.client.roomba_client import RoombaClient
 
 

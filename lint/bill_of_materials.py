@@ -22,7 +22,7 @@ from packageurl import PackageURL
 
 from lint.advisories import audit
 from lint.materials import Material, python_materials, system_materials
-from roomba.commands.ending import quiet_end
+from roomba.commands.process_end import quiet_end
 
 _SCHEMA: Final = SchemaVersion.V1_6
 

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from rich.console import Console
 
-from roomba.commands.ending import quiet_end
 from roomba.commands.first_use import require_compiled
 from roomba.commands.options import HelpfulParser, UsageError, check_written, file_of
-from roomba.commands.spelling import spelled
+from roomba.commands.process_end import quiet_end
+from roomba.commands.program_name import spelled
 from roomba_bench.bench import Bench
 from roomba_bench.machine import Machine
 from roomba_bench.places import HERE

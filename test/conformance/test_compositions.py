@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from roomba.configuration.body import BodyConfig
 from roomba.geometry import Pose
 from roomba.headless.body import SimulatedBody
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Phase
 from roomba.robot.readings import Readings

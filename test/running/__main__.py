@@ -16,7 +16,7 @@ from running.pytests import pytest_command
 from running.robots import Robots
 from running.suites import FIRST, ROOT, Asked, Kind, asked_for
 
-from roomba.commands.ending import quiet_end
+from roomba.commands.process_end import quiet_end
 
 CHECKS = (sys.executable, "-m", "running.checks")
 SAFETY = (sys.executable, "-m", "safety")

@@ -27,7 +27,7 @@ from soak.rows import Row, table
 from soak.standstill import standstill
 from soak.starts import starts
 
-from roomba.commands.ending import quiet_end
+from roomba.commands.process_end import quiet_end
 
 PARTS: Final[dict[str, Callable[[Arena], list[Row]]]] = {
     "mixed": mixed,

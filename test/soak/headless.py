@@ -17,8 +17,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from fixtures.robots.missions import HOME
 
-from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.robot import LiveRobot
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest, CleanResult
 from roomba.mission.phases.machine import Phase
 

@@ -11,7 +11,7 @@ from fixtures.probe import Probe
 from fixtures.waiting import wait_until
 from roomba_robot.msg import CleanAction, CleanGoal, CleanResult, Rectangle, VacuumState
 
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.vocabulary import CleanMode
 from roomba.world.layers.layer import load_home

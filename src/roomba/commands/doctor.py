@@ -22,7 +22,7 @@ from enum import Enum
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from roomba.commands.ending import quiet_end
+from roomba.commands.process_end import quiet_end
 
 SYSTEM_PYTHON = "/usr/bin/python3"
 DEFAULT_MASTER = "http://localhost:11311"

@@ -19,7 +19,7 @@ from typing import Final
 from rich.console import Console
 
 from roomba.commands.compiling import is_kept
-from roomba.commands.ending import quiet_end, quiet_loading
+from roomba.commands.process_end import quiet_end, quiet_loading
 
 _CLEAN, _PLAN = "roomba.commands.trials.warm", "roomba.commands.warm_up"
 _TITLE: Final = "Compiling what a clean needs, once"

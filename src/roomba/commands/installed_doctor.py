@@ -14,7 +14,7 @@ from roomba.commands.doctor import (
     as_table,
     why_not_all_importable,
 )
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 
 _MODULES: Final = (
     "cv2", "fastapi", "matplotlib", "numba", "numpy", "pebble", "PIL", "pydantic", "rich",

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Final
 
-from roomba.commands.ending import quiet_end, quiet_loading
+from roomba.commands.process_end import quiet_end, quiet_loading
 
 _IS_WINDOWS: Final = os.name == "nt"
 

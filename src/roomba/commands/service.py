@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Final
 
 from roomba.client.ports import DEFAULT_PORT, LAST_PORT
-from roomba.commands.ending import quiet_end
 from roomba.commands.options import HelpfulParser, whole
-from roomba.commands.spelling import spelled
+from roomba.commands.process_end import quiet_end
+from roomba.commands.program_name import spelled
 from roomba.errors import RoombaError
 from roomba.files.atomic import write_whole
 

@@ -15,7 +15,7 @@ from roomba.geometry import Pose
 from roomba.headless.body import SimulatedBody
 from roomba.headless.burst_kernels import run
 from roomba.headless.burst_state import BURST, Drive, Floor, PlaceParts, Sight, World
-from roomba.headless.rows import BELIEVED, PASSED
+from roomba.headless.tick_rows import BELIEVED, PASSED
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.dirty.watch_kernels import WATCH
 from roomba.mission.driving.progress_kernels import PROGRESS

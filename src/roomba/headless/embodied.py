@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from roomba.configuration.robot import RobotConfig
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
-from roomba.headless.rows import PASSED
+from roomba.headless.tick_rows import PASSED
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.perception.swept.dirt_map import DirtMap
@@ -30,7 +30,7 @@ _UNKNOWN: Final = (math.nan, math.nan, math.nan)
 class Embodied:
     """One robot, whose time passes only while it is ticked; ``robot`` is its configuration.
 
-    ``rows`` are the ticks that passed, as of :mod:`roomba.headless.rows`, in pieces.
+    ``rows`` are the ticks that passed, as of :mod:`roomba.headless.tick_rows`, in pieces.
     """
 
     body: Body
@@ -131,7 +131,7 @@ class Embodied:
 
     @property
     def passed(self) -> NDArray[np.float64]:
-        """All ticks that passed, float64 [n, PASSED], as of :mod:`roomba.headless.rows`."""
+        """All ticks that passed, float64 [n, PASSED], as of :mod:`roomba.headless.tick_rows`."""
         return np.concatenate([np.empty((0, PASSED)), *self.rows])
 
     def senses(self) -> Senses:

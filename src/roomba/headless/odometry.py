@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig
 from roomba.headless.odometry_kernels import reckon_rows
-from roomba.headless.rows import GYRO, ODOMETRY, TIME, TRUE
+from roomba.headless.tick_rows import GYRO, ODOMETRY, TIME, TRUE
 from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 
@@ -29,7 +29,7 @@ def odometry_error(
 ) -> float | None:
     """Return by how much dead reckoning is off after each :data:`PIECE` of way, m per m.
 
-    ``rows`` is float64 [n, PASSED], as of :mod:`roomba.headless.rows`. It is the mean of the
+    ``rows`` is float64 [n, PASSED], as of :mod:`roomba.headless.tick_rows`. It is the mean of the
     distances between where the robot was and where wheels and gyro had it, from where both began a
     piece, by the way of a piece; None of a shorter way. ``calibration`` None: without any;
     ``has_gyro`` False: by the wheels alone. ``biases``, float64 [k, 2], are times, s, and what was

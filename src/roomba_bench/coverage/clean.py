@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from roomba.files.shipped import HOMES
 from roomba.headless.burst import LONGEST_BURST
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, MissReason
 from roomba.perception.localization.estimate import Knowledge
 from roomba.world.home.home import Home

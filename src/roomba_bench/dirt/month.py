@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from roomba.commands.trials.homes import rooms_of
 from roomba.configuration.household import DueConfig
 from roomba.files.shipped import HOMES
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.perception.rooms.rooms import Rooms
 from roomba.plans.due import DirtRecords, learned, needs_of

@@ -15,7 +15,7 @@ from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.sensors import EXACT_LIDAR
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanResult
 from roomba.mission.docking.docking import staging_pose
 from roomba.world.home.home import Home

@@ -8,7 +8,7 @@ from __future__ import annotations
 import importlib
 from types import MappingProxyType
 
-from roomba.commands.ending import quiet_loading
+from roomba.commands.process_end import quiet_loading
 from roomba_bench.bench import Bench
 from roomba_bench.record import Record
 from roomba_bench.ros.graph import NO_ROS, has_ros

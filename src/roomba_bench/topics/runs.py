@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 from roomba_bench.bench import Bench
 from roomba_bench.places import HERE
 from roomba_bench.record import Better, PeerFigure, Record

@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
-from roomba.commands.ending import quiet_end
+from roomba.commands.process_end import quiet_end
 from roomba.commands.sim.command import main as simulate
 from roomba.commands.trials.runs import TrialSetup
 from roomba.control.path_tracker import PathTracker
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba_ros.convert.common import (
     map_message,
     mount_message,

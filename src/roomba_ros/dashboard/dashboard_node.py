@@ -24,10 +24,10 @@ from roomba.household.folder import household_folder
 from roomba.household.household import LiveHousehold
 from roomba.ui.desktop import open_on_desktop
 from roomba.ui.smart_home.switch import Switched, switched_on
+from roomba.ui.web.addresses import ALL, addresses_of, guard_for, is_host
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import LOOPBACK
 from roomba.ui.web.kept_token import kept_token
-from roomba.ui.web.reach import ALL, addresses_of, guard_for, is_host
 from roomba.ui.web.server import PageServer, listen
 from roomba_ros.convert.values import data_of
 from roomba_ros.dashboard.graph_robot import GraphRobot

@@ -23,7 +23,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.files.occupancy_map import load_map
 from roomba.geometry import Pose
 from roomba.grid import FREE
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba_ros.convert.common import mount_message, odometry_message, pose_message
 from roomba_ros.convert.sensors import imu_message, scan_message
 

@@ -18,8 +18,8 @@ from roomba.configuration.mapping import MappingConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose, Twist
 from roomba.headless.burst import Burst
-from roomba.headless.cleaner import HeadlessMission
-from roomba.headless.rows import BELIEVED, GYRO, ODOMETRY, PASSED, TIME, TRUE
+from roomba.headless.mission import HeadlessMission
+from roomba.headless.tick_rows import BELIEVED, GYRO, ODOMETRY, PASSED, TIME, TRUE
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event, Phase
 from roomba.perception.localization.estimate import Knowledge

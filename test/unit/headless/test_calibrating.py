@@ -9,7 +9,7 @@ from fixtures.robots.missions import TWO_ROOMS
 from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.headless.odometry import odometry_error
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.perception.calibration.calibration import Calibration

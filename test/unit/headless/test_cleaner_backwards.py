@@ -12,7 +12,7 @@ from roomba.configuration.simulation import SimulatedRobotConfig, load_simulated
 from roomba.files.shipped import CONFIGURATION, HOMES
 from roomba.geometry import Pose, wrap_angle
 from roomba.headless.body import lidar_model
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home

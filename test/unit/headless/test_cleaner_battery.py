@@ -8,7 +8,7 @@ from fixtures.robots.headless_cleans import assert_all_clean, assert_stands, beg
 from fixtures.robots.missions import HOME, floor_clean, in_phase, until, wait
 
 from roomba.geometry import Pose
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import (
     CleanOutcome,
     CleanRequest,

@@ -23,7 +23,7 @@ from fixtures.thoroughness import core_first
 
 from roomba.configuration.docking import DockingConfig
 from roomba.geometry import Pose
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.checkpoint import CheckpointError
 from roomba.mission.cleaning.request import (
     CleanOutcome,

@@ -8,7 +8,7 @@ from fixtures.robots.headless_cleans import BODY, assert_all_clean, begun
 from fixtures.robots.missions import FLOOR_TOO_LITTLE, HOME, TWO_ROOMS, WALL_X, floor_clean, until
 
 from roomba.configuration.docking import DockingConfig
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.headless.records import CleanRecord
 from roomba.mission.cleaning.request import (
     CleanOutcome,

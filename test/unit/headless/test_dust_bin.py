@@ -11,7 +11,7 @@ from fixtures.homes.worlds import NOISY
 from fixtures.robots.missions import FLOOR_TOO_LITTLE, STATION, TABLE, floor_clean, in_phase, until
 
 from roomba.configuration.simulation import SimulatedRobotConfig
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Phase

@@ -19,7 +19,7 @@ from roomba.configuration.sensors import EXACT_LIDAR
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.headless.records import ExploreRecord
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.commands import CommandRefusedError

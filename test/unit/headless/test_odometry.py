@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig
 from roomba.headless.odometry import PIECE, odometry_error
-from roomba.headless.rows import GYRO, ODOMETRY, PASSED, TIME, TRUE
+from roomba.headless.tick_rows import GYRO, ODOMETRY, PASSED, TIME, TRUE
 from roomba.perception.calibration.calibration import Calibration
 
 ROBOT = RobotConfig()

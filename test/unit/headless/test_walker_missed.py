@@ -10,7 +10,7 @@ from fixtures.thoroughness import core_first
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult, MissReason
 from roomba.vocabulary import CleanMode
 from roomba.world.layers.layer import load_home

@@ -19,7 +19,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from roomba.configuration.docking import DockingConfig
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.checkpoint import CheckpointError
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.commands import CommandRefusedError

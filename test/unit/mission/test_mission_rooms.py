@@ -17,7 +17,7 @@ from fixtures.robots.missions import (
     wait,
 )
 
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRefusedError, CleanRequest
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Event, Phase

@@ -19,7 +19,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from roomba.geometry import Pose
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, MissReason
 from roomba.perception.rooms.rooms import Rooms
 from roomba.vocabulary import CleanMode

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from roomba.commands.campaign.options import PROGRAM, CampaignOptions, options_of
-from roomba.commands.ending import STOPPED, quiet_loading
-from roomba.commands.guarding import complain_of, guarded
+from roomba.commands.exit_status import complain_of, guarded
 from roomba.commands.options import UsageError
+from roomba.commands.output import clock, named_table, tell_tables, write_json
+from roomba.commands.process_end import STOPPED, quiet_loading
 from roomba.commands.progress import Show, progress
-from roomba.commands.telling import clock, named_table, tell_tables, write_json
 from roomba.errors import ConfigError, RoombaError
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Final
 
 from roomba.commands.campaign.running.machines import Machines
 from roomba.commands.options import Parser, UsageError, check_written, file_of, whole
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 
 PROGRAM: Final = spelled("campaign")
 _MOST_PROCESSES: Final = 1024

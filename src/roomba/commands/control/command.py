@@ -8,7 +8,7 @@ from typing import Final
 
 from roomba.commands.options import HelpfulParser
 from roomba.commands.play.living import add_robot_options, wanted_robot
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 from roomba.errors import RoombaError
 from roomba.headless.live.robot_client import LiveRobotClient
 from roomba.ui.cleaning import CLEANING_HEADING

@@ -11,7 +11,7 @@ from typing import Final
 
 from roomba.commands.emulate.making import BAUD, LD19_BAUD, MADE_UP
 from roomba.commands.options import MOST_SEED, Parser, UsageError, choice, number, whole
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 from roomba.errors import RoombaError
 
 PROGRAM: Final = spelled("emulate")

@@ -2,7 +2,7 @@
 
 import sys
 
-from roomba.commands.ending import quiet_end, quiet_loading
+from roomba.commands.process_end import quiet_end, quiet_loading
 
 if __name__ == "__main__":
     with quiet_end():

@@ -14,7 +14,7 @@ from typing import Final
 from roomba.commands.exercise.course import COURSE, Exercise
 from roomba.commands.exercise.verdict import NOT_YET, PASSED
 from roomba.commands.options import Parser, UsageError, whole
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 
 PROGRAM: Final = spelled("exercise")
 _USAGE: Final = 2

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from roomba.commands.options import HelpfulParser
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 from roomba.errors import RoombaError
 from roomba.recordings.bags.exporting import Form, export_bag
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import time
 
-from roomba.commands.guarding import COMPLETED, guarded
+from roomba.commands.exit_status import COMPLETED, guarded
 from roomba.commands.localize.options import PROGRAM, LocalizeOptions, options_of
 from roomba.commands.options import UsageError
+from roomba.commands.output import named_table, tell_tables, write_json
 from roomba.commands.progress import progress
-from roomba.commands.telling import named_table, tell_tables, write_json
 from roomba.files.occupancy_map import load_map
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap

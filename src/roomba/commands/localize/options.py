@@ -9,7 +9,7 @@ from typing import Final
 
 from roomba.commands.map.drive.options import DRIVES, add_read, wanted_of
 from roomba.commands.options import Parser, check_written, file_of, finite
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 from roomba.geometry import Pose
 from roomba.recordings.choice import Wanted
 from roomba.recordings.readings import Kind

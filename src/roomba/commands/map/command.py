@@ -6,13 +6,13 @@ import sys
 import time
 from typing import TYPE_CHECKING, Final
 
-from roomba.commands.ending import quiet_loading
-from roomba.commands.guarding import COMPLETED, ENDED_OTHERWISE, USAGE, guarded
-from roomba.commands.importing import nothing_thrown_away
+from roomba.commands.exit_status import COMPLETED, ENDED_OTHERWISE, USAGE, guarded
+from roomba.commands.garbage_pause import nothing_thrown_away
 from roomba.commands.map.options import PROGRAM, MapOptions, Output, options_of
 from roomba.commands.options import UsageError
+from roomba.commands.output import tell_tables, write_json
+from roomba.commands.process_end import quiet_loading
 from roomba.commands.progress import Show, progress
-from roomba.commands.telling import tell_tables, write_json
 
 if TYPE_CHECKING:
     from roomba.commands.map.runs import MapRun, MapScene, ObservedExplorer, RunObserver
@@ -57,7 +57,7 @@ def _explore(options: MapOptions) -> int:
 def _shown_by(show: Show, scene: MapScene) -> RunObserver:
     import numpy as np
 
-    from roomba.commands.telling import clock
+    from roomba.commands.output import clock
     from roomba.grid import FREE
 
     all_of_it = float(np.count_nonzero(scene.seen)) * scene.home.frame.resolution**2

@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from roomba.commands.map.runs import Drawn, MapRun
-from roomba.commands.telling import pose_as_json
+from roomba.commands.output import pose_as_json
 
 VERSION: Final = 1
 TIMES: Final = ("wall_s", "times_real_time")

@@ -16,7 +16,7 @@ from roomba.commands.options import (
     check_written,
     file_of,
 )
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 from roomba.commands.trials.options import (
     add_circumstances,
     add_place,

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from roomba.commands.map.map_error import wrong_sides
 from roomba.commands.map.runs import Drawn, MapRun
-from roomba.commands.telling import clock
+from roomba.commands.output import clock
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
 from roomba.plots.png import write_png

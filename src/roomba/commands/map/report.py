@@ -7,7 +7,7 @@ import math
 from rich.table import Table
 
 from roomba.commands.map.runs import Drawn, MapRun
-from roomba.commands.telling import clock, named_table
+from roomba.commands.output import clock, named_table
 
 
 def run_lines(run: MapRun) -> list[tuple[str, str]]:

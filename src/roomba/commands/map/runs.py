@@ -21,9 +21,9 @@ from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.headless.records import ExploreRecord
-from roomba.headless.rows import GYRO, ODOMETRY, TIME, TRUE
+from roomba.headless.tick_rows import GYRO, ODOMETRY, TIME, TRUE
 from roomba.world.home.home import Home
 
 Floats = NDArray[np.float64]

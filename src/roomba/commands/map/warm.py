@@ -11,7 +11,7 @@ from roomba.commands.map.seen_floor import seen_floor
 from roomba.commands.trials.warm import closet
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.perception.rooms.rooms import segment
 
 _ALWAYS: Final[dict[str, Any]] = {"submap_keyframes": 4, "link_points": 50, "redrawn_shift": 1e-6}

@@ -14,7 +14,6 @@ from typing import Final
 import cv2
 from PIL import Image
 
-from roomba.commands.ending import quiet_end
 from roomba.commands.options import HelpfulParser
 from roomba.commands.pictures.cleaning import picture_of_cleaning
 from roomba.commands.pictures.household import picture_of_household
@@ -51,7 +50,8 @@ from roomba.commands.pictures.teaching.stages import picture_of_stages
 from roomba.commands.pictures.teaching.things import picture_of_things
 from roomba.commands.pictures.terminal import picture_of_top
 from roomba.commands.pictures.tour import VIEWS, picture_of_home, picture_of_view, picture_of_walk
-from roomba.commands.spelling import spelled
+from roomba.commands.process_end import quiet_end
+from roomba.commands.program_name import spelled
 from roomba.errors import RoombaError
 from roomba.files.shipped import HOMES
 from roomba.plots.canvas import Picture

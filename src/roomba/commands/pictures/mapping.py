@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from roomba.commands.map.plot import area_of_maps, draw_map, draw_station, draw_way, picture_of
 from roomba.commands.map.runs import run_trial
-from roomba.commands.telling import clock
+from roomba.commands.output import clock
 from roomba.commands.trials.trial import Trial
 from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OccupancyMap
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.planning.path.costmap import Point
 from roomba.plots.canvas import Picture
 from roomba.plots.style import BLUE, INK, ORANGE, Area, draw_robot, drawn, empty_figure

@@ -6,7 +6,7 @@ import numpy as np
 
 from roomba.configuration.sensors import CameraConfig
 from roomba.geometry import Pose
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.plots.canvas import Picture
 from roomba.plots.home import draw_floor_plan
 from roomba.world.camera.camera import Camera, Scene

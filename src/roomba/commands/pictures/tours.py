@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
-from roomba.headless.cleaner import HeadlessMission
-from roomba.headless.rows import BELIEVED, GYRO, ODOMETRY, TIME, TRUE
+from roomba.headless.mission import HeadlessMission
+from roomba.headless.tick_rows import BELIEVED, GYRO, ODOMETRY, TIME, TRUE
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.planning.path.planner import NoPathError
 from roomba.world.home.home import Home

@@ -10,8 +10,8 @@ import sys
 from pathlib import Path
 from typing import Final
 
+from roomba.commands.exit_status import COMPLETED, USAGE
 from roomba.commands.first_use import require_compiled
-from roomba.commands.guarding import COMPLETED, USAGE
 from roomba.commands.options import HelpfulParser
 from roomba.commands.play.bumping import bumping_life
 from roomba.commands.play.living import add_robot_options, wanted_robot
@@ -23,7 +23,7 @@ from roomba.commands.play.owned import (
 )
 from roomba.commands.play.serving import add_page_options, listen_at, serve_page
 from roomba.commands.play.told_to_end import ToldToEnd
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 from roomba.configuration.frozen import load_config
 from roomba.configuration.household import HouseholdConfig
 from roomba.configuration.mapping import MappingConfig

@@ -15,10 +15,10 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import load_config
 from roomba.configuration.mapping import MappingConfig
 from roomba.files.shipped import CONFIGURATION
-from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.client import LiveClient
 from roomba.headless.live.playing import Playing
 from roomba.headless.live.robot import SPEEDS
+from roomba.headless.mission import HeadlessMission
 
 _OPTIONS: Final = ("home", "seed", "speed", "map", "bin", "empties", "wheels")
 """What :func:`add_robot_options` adds."""

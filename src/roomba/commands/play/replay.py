@@ -10,7 +10,7 @@ from typing import Final
 from roomba.commands.options import HelpfulParser
 from roomba.commands.play.serving import add_page_options, listen_at, serve_page
 from roomba.commands.play.told_to_end import ToldToEnd
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 from roomba.errors import RoombaError
 from roomba.history.database import LAST, History
 from roomba.history.folder import history_folder

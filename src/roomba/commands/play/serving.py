@@ -16,10 +16,10 @@ from roomba.commands.play.told_to_end import ToldToEnd
 from roomba.history.recorder import HistoryKeeper
 from roomba.ui.desktop import open_on_desktop
 from roomba.ui.smart_home.switch import Switched
+from roomba.ui.web.addresses import ALL, addresses_of, guard_for, is_host
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import LOOPBACK, Guard
 from roomba.ui.web.kept_token import kept_token
-from roomba.ui.web.reach import ALL, addresses_of, guard_for, is_host
 from roomba.ui.web.server import PageServer, listen
 
 _HEARD_WITHIN: Final = 0.2

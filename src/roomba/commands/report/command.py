@@ -10,9 +10,9 @@ from typing import Final
 from rich.console import Console
 
 from roomba.commands.options import HelpfulParser
+from roomba.commands.output import tell_tables, told_width
+from roomba.commands.program_name import spelled
 from roomba.commands.report.table import csv_of, run_table, runs_table, weeks_table
-from roomba.commands.spelling import spelled
-from roomba.commands.telling import tell_tables, told_width
 from roomba.errors import RoombaError
 from roomba.files.atomic import write_whole
 from roomba.history.database import LAST, History, KeptRun

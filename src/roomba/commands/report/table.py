@@ -12,7 +12,7 @@ from typing import Any, Final
 from rich.table import Table
 from rich.text import Text
 
-from roomba.commands.telling import named_table
+from roomba.commands.output import named_table
 from roomba.history.database import KeptRun
 from roomba.history.report import words
 from roomba.history.totals import totals_by_week

@@ -11,13 +11,13 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from roomba.commands.ending import quiet_loading
-from roomba.commands.guarding import COMPLETED, ENDED_OTHERWISE, USAGE, guarded
-from roomba.commands.importing import nothing_thrown_away
+from roomba.commands.exit_status import COMPLETED, ENDED_OTHERWISE, USAGE, guarded
+from roomba.commands.garbage_pause import nothing_thrown_away
 from roomba.commands.options import UsageError
+from roomba.commands.output import named_table, tell_tables, write_json
+from roomba.commands.process_end import quiet_loading
 from roomba.commands.progress import Show, progress
 from roomba.commands.sim.options import PROGRAM, SimOptions, options_of
-from roomba.commands.telling import named_table, tell_tables, write_json
 from roomba.commands.trials.trial import RANDOM, Trial
 from roomba.errors import RoombaError
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from roomba.commands.trials.figures import Figures
     from roomba.commands.trials.many import Outcome
     from roomba.commands.trials.runs import Run, RunObserver, TrialSetup
-    from roomba.headless.cleaner import HeadlessMission
+    from roomba.headless.mission import HeadlessMission
     from roomba.mission.inputs.planning_context import PlanningContext
 
 BagOpener = Callable[[Path, "TrialSetup"], AbstractContextManager["RunObserver"]]
@@ -85,7 +85,7 @@ def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) 
 
 
 def _shown_by(show: Show) -> RunObserver:
-    from roomba.commands.telling import clock
+    from roomba.commands.output import clock
 
     looked, share = time.monotonic(), 0.0
 

@@ -21,7 +21,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from roomba.commands.telling import pose_as_json
+from roomba.commands.output import pose_as_json
 from roomba.commands.trials.figures import Figures
 from roomba.commands.trials.runs import Run
 from roomba.commands.trials.trial import Trial

@@ -20,7 +20,7 @@ from roomba.commands.options import (
     number,
     whole,
 )
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 from roomba.commands.trials.options import (
     add_circumstances,
     add_place,

@@ -16,8 +16,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch
 from numpy.typing import NDArray
 
+from roomba.commands.output import clock
 from roomba.commands.sim.passes import passes_over
-from roomba.commands.telling import clock
 from roomba.commands.trials.figures import Figures
 from roomba.commands.trials.runs import Run
 from roomba.grid import FREE

@@ -6,8 +6,8 @@ from typing import Final
 
 from rich.table import Table
 
+from roomba.commands.output import clock, named_table
 from roomba.commands.sim.percentiles import PERCENTS, ROWS
-from roomba.commands.telling import clock, named_table
 from roomba.commands.trials.figures import Figures, MissedShare
 from roomba.commands.trials.unreached import NOTHING, Unreached
 

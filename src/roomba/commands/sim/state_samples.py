@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.views import home_view, vacuum_snapshot
+from roomba.headless.mission import HeadlessMission
 from roomba.history.run import Word
 
 _STEP: Final = 2.0

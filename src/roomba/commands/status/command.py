@@ -16,7 +16,7 @@ from rich.table import Table
 
 from roomba.client.ports import DEFAULT_PORT, LAST_PORT, PORTS
 from roomba.commands.options import HelpfulParser, whole
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 from roomba.commands.status.asking import NoRobotError, find_robot, state_at
 from roomba.ui.state_words import lines_of
 

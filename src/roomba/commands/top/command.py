@@ -12,7 +12,7 @@ from roomba.client.address import HERE, page_address, token_for
 from roomba.client.ports import DEFAULT_PORT, PORTS
 from roomba.commands.options import HelpfulParser
 from roomba.commands.play.living import add_robot_options, require_demo, wanted_robot
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 from roomba.commands.status.asking import NoRobotError, find_robot, state_at
 from roomba.errors import RoombaError
 from roomba.ui.state_words import lines_of

@@ -33,7 +33,7 @@ from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose, RoundObstacle
 from roomba.grid import FREE
 from roomba.headless.burst import LONGEST_BURST
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.headless.odometry import odometry_error
 from roomba.headless.records import CleanRecord
 from roomba.perception.calibration.calibration import Calibration

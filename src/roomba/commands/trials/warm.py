@@ -17,7 +17,7 @@ from roomba.configuration.loops import TrackingConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.headless.burst import LONGEST_BURST
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.planning.coverage.stages import OUR_STAGES
 from roomba.world.home.home import DirtSource, Home
 

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import Final
 
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 from roomba.commands.valetudo.homes import unreached_in, write_home
 from roomba.commands.valetudo.options import parser_of, reason_of
 from roomba.errors import RoombaError

@@ -10,8 +10,8 @@ from roomba.client.observed import STATION_BOX
 from roomba.client.protocol import RequestRefusedError
 from roomba.client.view import DoorView, GridLayer, PlayAct, TruthView
 from roomba.geometry import Pose
-from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.live.camera import LiveCamera
+from roomba.headless.mission import HeadlessMission
 from roomba.world.engine.state.arrays import Fault
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator

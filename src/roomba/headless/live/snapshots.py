@@ -20,7 +20,7 @@ from roomba.headless.live.views import (
     map_cells,
     robot_view,
 )
-from roomba.headless.rows import BELIEVED, TIME
+from roomba.headless.tick_rows import BELIEVED, TIME
 from roomba.perception.rooms.rooms import segment
 from roomba.perception.swept.visits import Visits
 

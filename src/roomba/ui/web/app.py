@@ -20,14 +20,14 @@ from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.bounded.limits import SERVER_LIMITS
 from roomba.ui.web.feed import Feed
 from roomba.ui.web.guard import Guard
-from roomba.ui.web.guarding import GuardedRequests
+from roomba.ui.web.guarded_requests import GuardedRequests
 from roomba.ui.web.plain_faults import Refusal, refuse_unfit
+from roomba.ui.web.rosbridge_route import Bridge, add_bridge
 from roomba.ui.web.routes.api import api_of
 from roomba.ui.web.routes.examples import DescribedApp
 from roomba.ui.web.routes.household import household_api
 from roomba.ui.web.routes.past import Replays, history_api
 from roomba.ui.web.routes.playing import playing_api
-from roomba.ui.web.speaking import Bridge, add_bridge
 from roomba.ui.web.streams.listening import events_api
 from roomba.ui.web.streams.metrics import metrics_api
 from roomba.ui.web.viewers import Viewers

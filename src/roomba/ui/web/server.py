@@ -13,9 +13,9 @@ from fastapi import FastAPI
 
 from roomba.client.ports import PORTS
 from roomba.errors import RoombaError
+from roomba.ui.web.addresses import ALL, addresses_of
 from roomba.ui.web.bounded.connections import GuardedConnection, GuardedSocket
 from roomba.ui.web.bounded.limits import BACKLOG, MOST_BODY, PING, SENT_AHEAD
-from roomba.ui.web.reach import ALL, addresses_of
 
 _START: Final = 10.0
 """s of wall time within which the server must be up."""

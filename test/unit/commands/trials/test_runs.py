@@ -26,7 +26,7 @@ from roomba.files.occupancy_map import load_map, save_map
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.coverage_map import GRANTED

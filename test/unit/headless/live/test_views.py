@@ -10,10 +10,10 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.files.shipped import HOMES
 from roomba.headless.body import SimulatedBody
-from roomba.headless.cleaner import HeadlessMission
 from roomba.headless.embodied import Embodied
 from roomba.headless.live.playing import Playing, lift
 from roomba.headless.live.views import home_view, robot_view
+from roomba.headless.mission import HeadlessMission
 from roomba.perception.rooms.zones import Zones
 from roomba.robot.brain import Brain
 from roomba.world.layers.layer import load_home

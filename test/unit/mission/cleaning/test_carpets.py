@@ -7,7 +7,7 @@ from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import NOISY
 from fixtures.robots.missions import STATION, until
 
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.cleaning.stages import edges_of
 from roomba.mission.phases.machine import Phase

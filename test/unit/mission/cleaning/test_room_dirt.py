@@ -9,7 +9,7 @@ from fixtures.robots.missions import DEN, HALL, TWO_ROOMS, WALL_X, two_rooms
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.cleaning.room_dirt import dirt_of_rooms
 from roomba.mission.inputs.planning_context import PlanningContext

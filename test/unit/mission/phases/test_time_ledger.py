@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fixtures.robots.missions import HOME
 
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest, CleanResult
 from roomba.mission.phases.machine import Phase
 from roomba.mission.phases.time_ledger import TimeLedger

@@ -12,7 +12,7 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, Twist
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.walking.walk import Walk, WalkState, feedback_period

@@ -16,7 +16,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.configuration.things import ThingConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.headless.records import WalkRecord
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.walking.walk import Walk, WalkState

@@ -17,7 +17,7 @@ from roomba.configuration.mapping import FloorsConfig, MappingConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose, wrap_angle
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.perception.floors.recognition import FloorRecord
 from roomba.perception.floors.same_floor import FloorMatch, match_floors
 from roomba.world.home.home import Home

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import time
 
-from roomba.commands.guarding import COMPLETED, guarded
+from roomba.commands.exit_status import COMPLETED, guarded
 from roomba.commands.map.drive.options import DriveOptions, options_of
 from roomba.commands.map.options import PROGRAM
+from roomba.commands.output import named_table, tell_tables, write_json
 from roomba.commands.progress import progress
-from roomba.commands.telling import named_table, tell_tables, write_json
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -6,8 +6,8 @@ import sys
 from collections.abc import Callable
 from typing import Final
 
-from roomba.commands.ending import INTERRUPTED, STOPPED
 from roomba.commands.options import UsageError
+from roomba.commands.process_end import INTERRUPTED, STOPPED
 from roomba.errors import RoombaError
 
 COMPLETED: Final = 0
@@ -28,7 +28,7 @@ def guarded(
 
     For errors that are ``unfit`` it is USAGE, and ``refused`` for others of an input that cannot be
     used. ``stopped`` is told after Ctrl-C. Raises BrokenPipeError, when the reader of the output
-    has closed it: that is for :mod:`.ending`.
+    has closed it: that is for :mod:`.process_end`.
     """
 
     def complain(text: str, status: int) -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from roomba.commands.telling import clock, named_table, pose_as_json, write_json
+from roomba.commands.output import clock, named_table, pose_as_json, write_json
 from roomba.geometry import Pose
 
 

@@ -33,7 +33,7 @@ from fixtures.robots.missions import (
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
-from roomba.headless.cleaner import HeadlessMission
+from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import (
     CleanOutcome,
     CleanRefusedError,

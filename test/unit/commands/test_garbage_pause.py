@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from roomba.commands.importing import nothing_thrown_away
+from roomba.commands.garbage_pause import nothing_thrown_away
 
 
 class Thing:

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from roomba.commands.guarding import USAGE, guarded
+from roomba.commands.exit_status import USAGE, guarded
 from roomba.commands.options import UsageError
 from roomba.errors import ConfigError, RoombaError
 

@@ -29,7 +29,7 @@ from roomba.headless.records import (
     longest_errand,
     require_end,
 )
-from roomba.headless.rows import BELIEVED, POSES, TIME
+from roomba.headless.tick_rows import BELIEVED, POSES, TIME
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.at_station import why_not_emptied
 from roomba.mission.phases.machine import Phase
@@ -52,9 +52,9 @@ class HeadlessMission(Embodied):
     """One robot in one home.
 
     ``truth`` is the floor that its tool really passed over, with room in its bin; ``rows`` are the
-    ticks that passed, as of :mod:`roomba.headless.rows`, in pieces; ``context`` is the home as it
-    planned in it at first; ``emptied`` is what was taken out of the dust bin by hand each time, g;
-    ``is_emptied_at_station``: its station does that at once when it is full.
+    ticks that passed, as of :mod:`roomba.headless.tick_rows`, in pieces; ``context`` is the home as
+    it planned in it at first; ``emptied`` is what was taken out of the dust bin by hand each time,
+    g; ``is_emptied_at_station``: its station does that at once when it is full.
     """
 
     body: SimulatedBody

@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from roomba.commands.spelling import spelled
+from roomba.commands.program_name import spelled
 
 
 @pytest.mark.parametrize(

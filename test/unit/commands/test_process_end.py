@@ -24,7 +24,7 @@ COMMANDS = sorted(
 """The files that ``./roomba`` runs."""
 PRINTING = (
     "import sys\n"
-    "from roomba.commands.ending import quiet_end\n"
+    "from roomba.commands.process_end import quiet_end\n"
     "with quiet_end():\n"
     "    {}\n"
     "    sys.exit(0)\n"
@@ -100,7 +100,7 @@ def test_ctrl_c_is_told_in_a_line() -> None:
 def test_ctrl_c_while_modules_are_loaded_ends_the_process_at_once() -> None:
     program = (
         "import signal\n"
-        "from roomba.commands.ending import quiet_loading\n"
+        "from roomba.commands.process_end import quiet_loading\n"
         "with quiet_loading():\n"
         "    try:\n"
         "        signal.raise_signal(signal.SIGINT)\n"
@@ -113,7 +113,7 @@ def test_ctrl_c_while_modules_are_loaded_ends_the_process_at_once() -> None:
 def test_an_interrupt_that_a_shell_ignores_stays_ignored_while_modules_are_loaded() -> None:
     program = (
         "import signal\n"
-        "from roomba.commands.ending import quiet_loading\n"
+        "from roomba.commands.process_end import quiet_loading\n"
         "signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
         "with quiet_loading():\n"
         "    signal.raise_signal(signal.SIGINT)\n"

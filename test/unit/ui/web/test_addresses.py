@@ -11,8 +11,8 @@ import pytest
 from fixtures.written_robot import WrittenRobot
 
 from roomba.client.address import outside_address
+from roomba.ui.web.addresses import ALL, addresses_of, guard_for, hosts_of, is_host
 from roomba.ui.web.app import create_app
-from roomba.ui.web.reach import ALL, addresses_of, guard_for, hosts_of, is_host
 from roomba.ui.web.server import PageServer, listen
 
 NUMBER = "127.0.0.9"
