@@ -249,7 +249,7 @@ def test_what_is_no_map_is_refused_with_the_reason(text: str, reason: str) -> No
     ),
     st.sampled_from(["size", "pixelSize", "layers", "entities", "metaData"]),
 )
-def test_junk_is_refused_and_nothing_else_happens(junk: object, key: str) -> None:
+def test_junk_raises_no_other_error_than_that_it_is_refused(junk: object, key: str) -> None:
     with contextlib.suppress(ValetudoError):
         parse(changed(**{key: junk}))
 

@@ -135,13 +135,17 @@ def test_it_backs_from_what_it_touches_and_then_goes_elsewhere() -> None:
     backing = [look_around.tick(1.0, Pose(), NOTHING, True)]
     backing += [look_around.tick(1.0 + DT * step, Pose(), NOTHING, False) for step in range(1, 32)]
     assert set(backing) == {Twist(-CONFIG.looking_around.backing_speed, 0.0)}
-    assert look_around.tick(1.85, Pose(), NOTHING, False).linear >= 0.0
+    after = look_around.tick(1.85, Pose(), NOTHING, False)
+    assert after.linear >= 0.0
+    assert after != Twist()
 
 
 def test_a_clock_that_is_set_back_does_not_let_it_back_for_ever() -> None:
     look_around = LookAround(CONFIG.body, CONFIG.looking_around)
     look_around.tick(5000.0, Pose(), NOTHING, True)
-    assert look_around.tick(10.0, Pose(), NOTHING, False).linear >= 0.0
+    after = look_around.tick(10.0, Pose(), NOTHING, False)
+    assert after.linear >= 0.0
+    assert after != Twist()
 
 
 def drive(home: Home, start: Pose, seconds: float) -> tuple[Located, list[Pose], int]:

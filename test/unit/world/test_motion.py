@@ -85,7 +85,7 @@ def test_it_is_never_inside_anything_solid_whatever_is_commanded(
     st.floats(0.01, 0.1),
     st.floats(0.1, 1.5),
 )
-def test_nor_in_round_things_and_things_that_move(
+def test_it_is_never_inside_round_or_moving_things(
     commands: list[tuple[float, float]], dt: float, speed: float
 ) -> None:
     size = (0.7, 0.2)

@@ -111,7 +111,7 @@ def test_each_part_is_waited_for() -> None:
     assert wall.ticks(1, robot=8.1) == pytest.approx(0.2, abs=0.002)
 
 
-def test_but_not_the_dead() -> None:
+def test_a_dead_part_is_not_waited_for() -> None:
     wall = Wall()
     wall.pace.heard(PART, 7.6)
     wall.dead.add(PART)
@@ -151,7 +151,7 @@ def test_what_was_asked_for_to_be_slow_stays_so() -> None:
     assert wall.ticks(100, robot=8.1) == pytest.approx(100 * TICK / 0.5)
 
 
-def test_nor_one_that_answered_since_the_last_tick() -> None:
+def test_a_part_that_answered_since_the_last_tick_is_not_waited_for() -> None:
     # Of a place that it knows no newer one is told before the clock goes on.
     wall = Wall()
     wall.pace.heard(PART, 7.6)
@@ -161,7 +161,7 @@ def test_nor_one_that_answered_since_the_last_tick() -> None:
     assert wall.ticks(4, robot=8.1) == pytest.approx(0.2, abs=0.01)
 
 
-def test_nor_one_that_was_never_heard_or_has_another_clock() -> None:
+def test_a_part_never_heard_or_of_another_clock_is_not_waited_for() -> None:
     wall = Wall()
     assert wall.ticks(10, robot=8.1) == pytest.approx(10 * PERIOD)
     for stamp in (500.0, 1.0):

@@ -27,7 +27,7 @@ def test_tokens_differ_and_are_long() -> None:
         (None, False),
     ],
 )
-def test_hosts(host: str | None, is_ours: bool) -> None:
+def test_only_names_of_this_server_are_its_hosts(host: str | None, is_ours: bool) -> None:
     assert Guard("t").is_host(host) is is_ours
 
 
@@ -57,7 +57,7 @@ def test_one_that_is_opened_is_called_by_numbers_too(host: str, is_ours: bool) -
         ("file://127.0.0.1:8400", False),
     ],
 )
-def test_origins(origin: str | None, is_ours: bool) -> None:
+def test_only_pages_of_this_server_are_its_origins(origin: str | None, is_ours: bool) -> None:
     assert Guard("t").is_origin(origin, "127.0.0.1:8400") is is_ours
 
 

@@ -133,7 +133,7 @@ def test_no_route_changes_anything_without_being_allowed(
 
 
 @pytest.mark.parametrize(("headers", "status"), ALSO_FORBIDDEN, ids=range(len(ALSO_FORBIDDEN)))
-def test_nor_in_another_way(
+def test_dock_refuses_malformed_headers(
     page: TestClient, robot: AbleRobot, headers: dict[str, str], status: int
 ) -> None:
     encoded = [(name.encode(), value.encode()) for name, value in headers.items()]

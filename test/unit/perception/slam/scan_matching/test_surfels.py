@@ -61,7 +61,7 @@ def test_a_scan_is_found_again_from_beside_it(off: tuple[float, float, float]) -
 
 
 @given(near, st.floats(-0.3, 0.3), st.floats(-math.pi, math.pi))
-def test_so_is_one_from_another_place(
+def test_a_scan_from_another_place_is_matched(
     off: tuple[float, float, float], way: float, heading: float
 ) -> None:
     there = Pose(START.x + way, START.y + 0.1, heading)

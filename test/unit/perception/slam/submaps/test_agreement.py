@@ -58,7 +58,7 @@ def test_it_is_backed_by_another_child_that_was_found_where_it_must_lie() -> Non
     ],
     ids=["of the same child", "of one far away", "elsewhere", "turned"],
 )
-def test_and_by_nothing_else(other: Link) -> None:
+def test_a_link_is_not_backed_by_links_that_disagree(other: Link) -> None:
     link = moved_by(9, 4.0, 1.0)
     assert not is_backed(link, [link, other], CHAIN, BACKING)
 

@@ -158,7 +158,7 @@ def test_as_much_as_wanted_must_be_seen_again(least: float, count: int) -> None:
 
 
 @pytest.mark.parametrize(("least", "count"), [(0.4, 1), (0.8, 0)])
-def test_and_lie_where_it_was_seen(least: float, count: int) -> None:
+def test_a_link_needs_points_close_to_the_surfaces(least: float, count: int) -> None:
     """Of a third of the points the walls stand 6 cm nearer."""
     submaps, thought = [submap(HERE), submap(THERE, seed=1)], [HERE, THERE]
     cloud = submaps[1].cloud
