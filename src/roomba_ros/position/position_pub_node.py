@@ -13,7 +13,6 @@ from std_msgs.msg import Bool, Float32, String
 from roomba.clock import is_recent
 from roomba.control.position_loop import PositionLoop
 from roomba.control.setpoint import Setpoint
-from roomba.errors import ConfigError
 from roomba.geometry import Pose, Twist
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba_ros.convert.common import twist_message
@@ -26,6 +25,7 @@ from roomba_ros.rooms.topics import RoomTopics
 from roomba_ros.runtime.node import run_node
 from roomba_ros.runtime.parameters import (
     LiveSeedParameters,
+    bool_parameter,
     read_nodes_config,
     read_robot_config,
 )
@@ -70,7 +70,7 @@ class PositionPubNode:
         self._setpoint = Setpoint(
             control.stream_timeout, control.given_up_after, control.arrival_tolerance
         )
-        self._may_look_around = _look_around_parameter()
+        self._may_look_around = bool_parameter("~look_around", True)
         self._lock = threading.Lock()
         self._stops_left = 0
         self._look_asked = -math.inf
@@ -210,13 +210,6 @@ class PositionPubNode:
 
     def _on_look_around(self, is_wanted: bool) -> None:
         self._look_asked = rospy.get_time() if is_wanted else -math.inf
-
-
-def _look_around_parameter() -> bool:
-    value = rospy.get_param("~look_around", True)
-    if not isinstance(value, bool):
-        raise ConfigError(f"parameter ~look_around: expected true or false, got {value!r}")
-    return value
 
 
 def main() -> None:

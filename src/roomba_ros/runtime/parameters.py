@@ -103,6 +103,14 @@ def _configuration_file(part: str) -> Path:
     return shipped if named.isidentifier() and shipped.is_file() else Path(named)
 
 
+def bool_parameter(name: str, default: bool) -> bool:
+    """Return a parameter that is true or false; raises ConfigError for any other value."""
+    value = rospy.get_param(name, default)
+    if not isinstance(value, bool):
+        raise ConfigError(f"parameter {name}: expected true or false, got {value!r}")
+    return value
+
+
 def folder_of(parameter: str, name: str) -> Path:
     """Return the folder that a parameter names; by default one of that name for this robot's files,
     in roomba_robot in the ROS home folder.

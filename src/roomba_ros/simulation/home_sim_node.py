@@ -47,6 +47,7 @@ from roomba_ros.runtime.node import (
 )
 from roomba_ros.runtime.parameters import (
     LiveSeedParameters,
+    bool_parameter,
     read_nodes_config,
     read_simulated_config,
 )
@@ -105,9 +106,7 @@ class HomeSimNode:
         self.period = self._timing.tick
         self._nanoseconds = round(self._timing.tick * 1e9)
         self._speed = _speed_parameter()
-        self._owns_clock = rospy.get_param("~clock", True)
-        if not isinstance(self._owns_clock, bool):
-            raise ConfigError(f"parameter ~clock: expected true or false, got {self._owns_clock!r}")
+        self._owns_clock = bool_parameter("~clock", True)
         self._lock = threading.Lock()
         self._drive = DriveLink(self._config.body.command_timeout, self._lock)
         self._simulator = self._make_simulator()
@@ -120,7 +119,7 @@ class HomeSimNode:
         self._told = 0.0
         self._pace = Pace(self._timing.tick, self._speed, self._nodes.pace, self._is_there)
         self._odom_frame, self._base_frame = frame_id("odom"), frame_id("base_link")
-        self._frames = BodyFrames(self._config) if _tells_frames_parameter() else None
+        self._frames = BodyFrames(self._config) if bool_parameter("~frames", True) else None
         self._connect()
 
     def run(self) -> None:
@@ -288,9 +287,7 @@ def _config_as_wanted(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
     wheels = rospy.get_param("~wheels", "") or config.simulation.condition
     if wheels not in ("factory", "worn"):
         raise ConfigError(f"parameter ~wheels: expected factory or worn, got {wheels!r}")
-    empties = rospy.get_param("~empties", False)
-    if not isinstance(empties, bool):
-        raise ConfigError(f"parameter ~empties: expected true or false, got {empties!r}")
+    empties = bool_parameter("~empties", False)
     config = config.with_sensors(sensors).with_wheels(wheels)
     return config.with_emptying_station() if empties else config
 
@@ -301,14 +298,6 @@ def _tells_map_parameter() -> bool:
     if not isinstance(value, str) or not value:
         raise ConfigError(f"parameter ~map: expected given, none, own or a name, got {value!r}")
     return value == "given"
-
-
-def _tells_frames_parameter() -> bool:
-    """Return whether the frames of the body's parts are told here."""
-    value = rospy.get_param("~frames", True)
-    if not isinstance(value, bool):
-        raise ConfigError(f"parameter ~frames: expected true or false, got {value!r}")
-    return value
 
 
 def _speed_parameter() -> float:
