@@ -215,15 +215,6 @@ class Mapper:
         return lost_estimate(self.pose)
 
     @property
-    def covariance_of_map(self) -> Floats:
-        """How sure the map is where the robot is: of that place against the start, [3, 3].
-
-        m2 and rad2, map frame, from the links between submaps: it grows along the way, and shrinks
-        where a loop closes.
-        """
-        return self._map.graph.covariance()
-
-    @property
     def pace(self) -> Floats:
         """How fast the robot moved between the newest two scans that tell, float64 [3].
 

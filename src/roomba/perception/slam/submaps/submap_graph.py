@@ -25,7 +25,6 @@ from roomba.perception.slam.submaps.parts import (
 from roomba.perception.slam.submaps.pose_graph import (
     Link,
     composed,
-    covariance_of,
     inverse,
     optimised,
     relative_to,
@@ -140,13 +139,6 @@ class SubmapGraph:
         information = _information(piece.told_deviation, piece.told_heading_deviation)
         self.links.append(Link(parent, len(self.submaps), relative, information, False))
         self._add(pose, way)
-
-    def covariance(self) -> Floats:
-        """Return that of the newest submap's pose against the first one, float64 [3, 3].
-
-        m2 and rad2, map frame.
-        """
-        return covariance_of(self.poses, self.links, len(self.poses) - 1)
 
     def close(self) -> None:
         """Link the newest submap to all that show the same walls, and let all agree."""
