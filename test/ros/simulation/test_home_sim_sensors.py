@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from fixtures.graph import RosGraph
 from fixtures.nodes.simulated import Body, simulated
@@ -23,6 +24,7 @@ from roomba_robot.msg import (
     HazardDetection,
     WheelDrop,
 )
+from roomba_robot.srv import SpillDirt
 from sensor_msgs.msg import (
     BatteryState,
     CameraInfo,
@@ -115,7 +117,9 @@ def test_each_sensor_tells_in_the_messages_of_its_kind(apartment: RosGraph) -> N
     discharging = probe.next("/battery_state", BatteryState)
     assert discharging.current < 0.0
     assert discharging.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_DISCHARGING
-    assert probe.next("/dirt_detect", UInt16).data >= 0
+    spill = rospy.ServiceProxy("/sim/spill", SpillDirt)
+    assert spill(x=station.x, y=station.y, radius=1.0, amount=100.0).success
+    body.drive(-0.3, 0.5, lambda: probe.next("/dirt_detect", UInt16).data > 0, "the dirt sensor")
 
     mounted = {
         transform.child_frame_id: transform

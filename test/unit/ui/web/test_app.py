@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -199,22 +200,18 @@ def test_no_file_beside_the_page_is_served(page: TestClient, path: str) -> None:
 def test_a_viewer_gets_home_layers_and_state(page: TestClient) -> None:
     with page.websocket_connect("/live", headers=HOST) as socket:
         kinds: set[str] = set()
-        while kinds != {"home", "layer", "trail", "state"}:
-            message = socket.receive()
+        for message in _messages(socket):
             kinds.add("layer" if message.get("bytes") else json.loads(message["text"])["type"])
+            if kinds == {"home", "layer", "trail", "state"}:
+                break
 
 
 def test_a_viewer_hears_that_the_robot_is_gone(page: TestClient, robot: WrittenRobot) -> None:
     with page.websocket_connect("/live", headers=HOST) as socket:
         robot.is_gone = True
-        while True:
-            message = socket.receive()
-            if message.get("text") and '"link":"gone"' in message["text"]:
-                break
-        assert "ended" in json.loads(message["text"])["reason"]
+        assert "ended" in json.loads(_await(socket, '"link":"gone"'))["reason"]
         robot.is_gone = False
-        while '"link":"live"' not in (socket.receive().get("text") or ""):
-            pass
+        _await(socket, '"link":"live"')
 
 
 def test_only_with_the_token_a_viewer_drives(page: TestClient, robot: WrittenRobot) -> None:
@@ -245,9 +242,18 @@ def test_garbage_ends_no_viewer(page: TestClient, robot: WrittenRobot, told: str
     assert robot.told == []
 
 
-def _await(socket: Any, text: str) -> None:
-    while text not in (socket.receive().get("text") or ""):
-        pass
+def _messages(socket: Any) -> Iterator[Any]:
+    """What comes; fails when it is not left long after all should have come."""
+    end = time.monotonic() + 30.0
+    while time.monotonic() < end:
+        yield socket.receive()
+    raise AssertionError("not within 30 s")
+
+
+def _await(socket: Any, text: str) -> str:
+    """Return the first message with a text in it."""
+    told = (message.get("text") or "" for message in _messages(socket))
+    return next(each for each in told if text in each)
 
 
 def test_routes_are_described(page: TestClient) -> None:
