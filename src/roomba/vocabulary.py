@@ -98,6 +98,13 @@ def fault_of_name(name: str) -> str:
     return f"expected a name of 1 to {LONGEST_NAME} printable characters, got {name[:40]!r}"
 
 
+def checked_name(name: str) -> str:
+    """Return a name; raises ValueError with what is expected in place of what is none."""
+    if fault := fault_of_name(name):
+        raise ValueError(fault)
+    return name
+
+
 def is_readable(text: str) -> bool:
     """Whether all of a text can be seen, but for joiners, each between two other characters."""
     is_visible = [letter.isprintable() and letter != " " for letter in text]

@@ -31,6 +31,8 @@ Point = tuple[float, float]
 
 MOST_PATH: Final = 400
 """Points of the path that are shown."""
+NO_POINTS: Final[NDArray[np.float32]] = np.empty((0, 2), np.float32)
+"""In place of a scan, or of a path, where there is none."""
 
 
 class LayerName(Enum):

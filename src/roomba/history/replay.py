@@ -8,7 +8,6 @@ from bisect import bisect_right
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roomba.client import view
 from roomba.client.observed import TimelineView
@@ -32,7 +31,6 @@ _STEP: Final = 0.2
 """m between two places on the way from row to row."""
 _END: Final = 0.02
 """s before the end that count as the end: times are told in hundredths."""
-_NO_POINTS: Final[NDArray[np.float32]] = np.empty((0, 2), np.float32)
 
 
 class RecordedRobot:
@@ -129,8 +127,8 @@ class RecordedRobot:
             dirt=told(row["dirt"]),
             held="",
             vacuum=snapshot,
-            scan=_NO_POINTS,
-            path=_NO_POINTS,
+            scan=view.NO_POINTS,
+            path=view.NO_POINTS,
             last=self._report(at),
         )
 

@@ -27,7 +27,7 @@ from roomba.vocabulary import (
     CleanMode,
     EdgeOrder,
     FanLevel,
-    fault_of_name,
+    checked_name,
 )
 
 MOST_PLANS: Final = 50
@@ -103,9 +103,7 @@ class Named(Frozen):
     @field_validator("name")
     @classmethod
     def _is_readable(cls, name: str) -> str:
-        if fault := fault_of_name(name):
-            raise ValueError(fault)
-        return name
+        return checked_name(name)
 
 
 class Preset(Named):

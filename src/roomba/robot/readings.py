@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from roomba.control.speed_loop import Hazards
 from roomba.geometry import STANDSTILL, Pose, Twist
-from roomba.mission.docking.beams import StationBeams
+from roomba.mission.docking.beams import NO_BEAMS, StationBeams
 from roomba.mission.inputs.senses import Battery, EmptyingTold, Senses
 from roomba.perception.localization.estimate import Knowledge
 
@@ -45,7 +45,6 @@ class CliffReading:
 
 _NO_CLIFF = CliffReading()
 _FULL = Battery()
-_NO_BEAMS = StationBeams()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,7 +69,7 @@ class Readings:
     cliff: CliffReading = _NO_CLIFF
     dropped_left: bool = False
     dropped_right: bool = False
-    beams: StationBeams = _NO_BEAMS
+    beams: StationBeams = NO_BEAMS
     battery: Battery = _FULL
     grains: float = 0.0
     in_bin: float = 0.0

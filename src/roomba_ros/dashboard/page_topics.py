@@ -32,6 +32,7 @@ from tf2_msgs.msg import TFMessage
 
 from roomba.client.protocol import CleanReport, RobotUnavailableError
 from roomba.client.view import (
+    NO_POINTS,
     ChangeView,
     GridLayer,
     HomeView,
@@ -82,7 +83,6 @@ from roomba_ros.runtime.subscriptions import subscribe
 
 _OLDEST_POSE: Final = 2.0
 """s of wall time; the pose comes 20 times a second."""
-_NO_POINTS: Final[NDArray[np.float32]] = np.empty((0, 2), np.float32)
 
 
 class PageTopics:
@@ -105,7 +105,7 @@ class PageTopics:
         self._true_pose_heard = -math.inf
         self._true_home: ToldHome | None = None
         self._scan: ScanReading | None = None
-        self._path = _NO_POINTS
+        self._path = NO_POINTS
         self._home = HomeView(
             0, "home", (0.0, 0.0, 0.0), (), (), (), config.body.radius, config.brush.width
         )
@@ -193,7 +193,7 @@ class PageTopics:
         """Return where beams of the newest scan end, float32 [n, 2], m, as seen from a pose."""
         scan = self._scan
         if scan is None:
-            return _NO_POINTS
+            return NO_POINTS
         return scan.lidar.view(scan.ranges).ends_at(pose)
 
     def _set(self, name: str, value: object) -> None:

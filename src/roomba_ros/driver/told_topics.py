@@ -15,7 +15,7 @@ from std_msgs.msg import UInt16
 from tf2_msgs.msg import TFMessage
 
 from roomba.configuration.robot import RobotConfig
-from roomba.mission.docking.beams import StationBeams
+from roomba.mission.docking.beams import NO_BEAMS
 from roomba.robot.readings import Readings
 from roomba_ros.convert.common import odometry_message, transform_message
 from roomba_ros.convert.diagnostics import line_message
@@ -33,7 +33,6 @@ from roomba_ros.convert.sensors import (
 )
 from roomba_ros.runtime.node import frame_id
 
-_DARK: Final = StationBeams()
 _OFTEN: Final = 4
 _SELDOM: Final = 20
 """Ticks between two messages of what did not change."""
@@ -175,4 +174,4 @@ def _pressed(told: Readings) -> Sides:
 
 
 def _docked(told: Readings) -> dict[str, bool]:
-    return {"is_seen": told.beams != _DARK, "is_docked": told.battery.is_docked}
+    return {"is_seen": told.beams != NO_BEAMS, "is_docked": told.battery.is_docked}

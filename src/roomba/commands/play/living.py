@@ -9,11 +9,12 @@ from typing import Final
 from roomba.commands.options import MOST_SEED, number, whole
 from roomba.commands.trials.homes import playable_home_of, rooms_of
 from roomba.commands.trials.runs import mission_config, robot_config_of
-from roomba.commands.trials.trial import Trial, Wheels
+from roomba.commands.trials.trial import Trial
 from roomba.commands.trials.zones import zones_of
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import load_config
 from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.simulation import Wheels
 from roomba.files.shipped import CONFIGURATION
 from roomba.headless.live.client import LiveClient
 from roomba.headless.live.playing import Playing

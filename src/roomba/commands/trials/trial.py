@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Final, Literal
+from typing import TYPE_CHECKING, Final
 
 from roomba.geometry import Pose
 from roomba.mission.cleaning.request import CleanRequest, Rectangle
+
+if TYPE_CHECKING:
+    from roomba.configuration.simulation import Sensors, Wheels
 
 RANDOM: Final = "random"
 """The name of a home that the seed makes."""
 MOST_THINGS: Final = 16
 """Of one world: see :data:`roomba.world.engine.state.arrays.MOST_DISCS`."""
 
-Sensors = Literal["noisy", "ideal"]
-Wheels = Literal["factory", "worn"]
 Setting = tuple[str, float | str]
 """The dotted name of a number of the configuration, and its value."""
 

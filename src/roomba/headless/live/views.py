@@ -19,6 +19,7 @@ from roomba.client.protocol import (
 )
 from roomba.client.view import (
     MOST_PATH,
+    NO_POINTS,
     GridLayer,
     HomeView,
     LowThingView,
@@ -47,7 +48,6 @@ from roomba.world.home.home import Home
 from roomba.world.home.materials import MATERIALS
 from roomba.world.home.raster import footprint, outline
 
-_NO_SCAN: Final = np.empty((0, 2), np.float32)
 _DIRTIEST: Final = 8000.0
 """Grains/m2 that are drawn as the dirtiest floor there is: sixteen times where dirt begins."""
 
@@ -67,7 +67,7 @@ def robot_view(
         dirt=now.in_bin,
         held=_held(mission),
         vacuum=vacuum_snapshot(robot),
-        scan=_NO_SCAN if scan is None else scan.lidar.view(scan.ranges).ends_at(pose),
+        scan=NO_POINTS if scan is None else scan.lidar.view(scan.ranges).ends_at(pose),
         path=_path(robot),
         last=last,
         battery_seconds=battery_seconds(now.battery.level, robot.battery_change),
@@ -115,7 +115,7 @@ def _path(robot: Embodied) -> NDArray[np.float32]:
     """Return what is left of the path that it drives, float32 [n, 2], m."""
     driver = robot.mission.driver
     if driver is None:
-        return np.empty((0, 2), np.float32)
+        return NO_POINTS
     return driver.tracker.rest[:MOST_PATH].astype(np.float32)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,3 +22,7 @@ class StationBeams:
     def leads(self) -> bool:
         """Whether they tell a way to the station: the halo alone does not."""
         return self.green or self.red
+
+
+NO_BEAMS: Final = StationBeams()
+"""None of the station's light is in sight."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from roomba.geometry import STANDSTILL, Pose, Twist
-from roomba.mission.docking.beams import StationBeams
+from roomba.mission.docking.beams import NO_BEAMS, StationBeams
 from roomba.perception.localization.estimate import Knowledge
 
 
@@ -33,7 +33,6 @@ class EmptyingTold:
 
 
 _FULL = Battery()
-_NO_BEAMS = StationBeams()
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +56,7 @@ class Senses:
     cliff_left: bool = False
     cliff_right: bool = False
     lifted: bool = False
-    beams: StationBeams = _NO_BEAMS
+    beams: StationBeams = NO_BEAMS
     battery: Battery = _FULL
     grains: float = 0.0
     in_bin: float = 0.0

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from roomba.bumping.brain import BumpingState
 from roomba.bumping.felt_floor import FeltFloor
 from roomba.client.protocol import CleanReport, VacuumSnapshot
-from roomba.client.view import GridLayer, HomeView, LayerName, RobotView, battery_fills
+from roomba.client.view import NO_POINTS, GridLayer, HomeView, LayerName, RobotView, battery_fills
 from roomba.geometry import Pose
 from roomba.headless.live.bumping.robot import BumpingRobot
 from roomba.mission.phases.machine import VACUUM_STATES, Phase
@@ -31,7 +31,6 @@ _PHASES: Final = {
     BumpingState.HELD: Phase.ERROR,
     BumpingState.EMERGENCY: Phase.EMERGENCY,
 }
-_NO_SCAN: Final = np.empty((0, 2), np.float32)
 
 
 def phase_of(state: BumpingState) -> Phase:
@@ -64,8 +63,8 @@ def view_of(
             0.0,
             now.battery.level,
         ),
-        scan=_NO_SCAN,
-        path=_NO_SCAN,
+        scan=NO_POINTS,
+        path=NO_POINTS,
         last=last,
         top_speed=top_speed,
         charges=battery_fills(now.battery.level, is_docked=now.battery.is_docked),

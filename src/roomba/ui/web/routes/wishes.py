@@ -14,20 +14,13 @@ from roomba.vocabulary import (
     MOST_PASSES,
     FanLevel,
     RoomWay,
-    fault_of_name,
+    checked_name,
 )
-
-
-def _readable(name: str) -> str:
-    if fault := fault_of_name(name):
-        raise ValueError(fault)
-    return name
-
 
 Coordinate = Annotated[float, Field(ge=-1000.0, le=1000.0, allow_inf_nan=False)]
 Name = Annotated[
     str,
-    AfterValidator(_readable),
+    AfterValidator(checked_name),
     Field(json_schema_extra={"minLength": 1, "maxLength": LONGEST_NAME}),
 ]
 
