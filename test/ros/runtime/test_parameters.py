@@ -7,7 +7,8 @@ import time
 import pytest
 import rospy
 
-from roomba_ros.runtime.parameters import LiveSeedParameters
+from roomba.errors import ConfigError
+from roomba_ros.runtime.parameters import LiveSeedParameters, bool_parameter
 
 LIMITS = {"/robot_max_speed": 0.5, "/min_cordinate": -100.0, "/max_cordinate": 100.0}
 
@@ -39,3 +40,13 @@ def test_the_guardian_looks_at_each_tick(told: dict[str, float]) -> None:
     parameters = LiveSeedParameters(guardian=True)
     told["/robot_max_speed"] = 0.3
     assert parameters.refresh().robot_max_speed == 0.3
+
+
+def test_what_is_true_or_false_is_nothing_else(monkeypatch: pytest.MonkeyPatch) -> None:
+    values: dict[str, object] = {"~yes": True, "~often": "often", "~one": 1}
+    monkeypatch.setattr(rospy, "get_param", values.get)
+    assert bool_parameter("~yes", False)
+    assert bool_parameter("~other", True)
+    for name in ("~often", "~one"):
+        with pytest.raises(ConfigError, match=f"parameter {name}: expected true or false"):
+            bool_parameter(name, True)
