@@ -96,7 +96,7 @@ def test_a_plan_that_fails_is_counted_too() -> None:
     assert watch.plans == 1
 
 
-def test_whoever_plans_coverage_the_plan_is_counted() -> None:
+def test_all_plans_of_its_planners_are_counted() -> None:
     watch = PlanWatch()
     home = context(plan_watch=watch)
     at, todo = (1.0, 0.5), home.coverable()
