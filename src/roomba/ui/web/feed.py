@@ -7,7 +7,6 @@ viewer takes the newest when it is ready for more; there is no queue.
 from __future__ import annotations
 
 import asyncio
-import math
 import time
 from typing import Final
 
@@ -21,23 +20,13 @@ from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.streams.events import Events
 from roomba.ui.web.streams.metrics import RobotMetrics
 from roomba.ui.web.streams.told import Told
+from roomba.ui.web.streams.trail import ShownTrail
 from roomba.ui.web.tiles import TiledLayer
 
 PERIOD: Final = 0.1
 """s between two looks."""
 _LAYERS_EVERY: Final = 3
 """Looks at the robot for one look at its layers."""
-_STEP: Final = 0.03
-"""m between two places of the trail."""
-_MOST_TRAIL: Final = 20000
-"""Places of the trail that are kept."""
-_FASTEST: Final = 1.0
-"""m/s that no robot drives."""
-_CORRECTED: Final = 0.15
-"""m by which a place may be corrected from one look to the next."""
-
-Place = tuple[float, float] | tuple[float, float, bool]
-"""x and y, m; True where the way begins anew: the robot did not drive there from the one before."""
 
 
 class Feed:
@@ -61,14 +50,9 @@ class Feed:
         self.home: Told | None = None
         self.home_version = 0
         self.layers = {name: TiledLayer(name.value) for name in LayerName}
-        self.trail: list[Place] = []
-        self.trail_began = 0
-        self._trails: dict[int, Told] = {}
+        self.trail = ShownTrail()
         self._jumps = 0
-        self._seen: tuple[float, float, float] | None = None
-        """When, s, and where it was at the last look, x and y, m."""
-        self._is_carried = False
-        """Whether it was, since the last place of the trail."""
+        """Times that another time of a recording was chosen."""
 
     async def run(self) -> None:
         """Look at the robot for ever."""
@@ -84,7 +68,7 @@ class Feed:
         except (RobotUnavailableError, RoombaError) as reason:
             # What was seen last stays on the page, greyed, with the reason.
             self.state = Told({**self.state.value, "link": "gone", "reason": str(reason)})
-            self._seen = None
+            self.trail.lose_sight()
             self.metrics.look(None, self.events.note_gone(str(reason)))
         else:
             self._show(view, home)
@@ -99,27 +83,11 @@ class Feed:
             await self._looked.wait()
         return self.number
 
-    def trail_since(self, count: int) -> Told | None:
-        """Return the places of the trail after the first ``count`` of all that there ever were."""
-        if count not in self._trails:
-            first = max(count - self.trail_began, 0)
-            if first >= len(self.trail) and count >= self.trail_began:
-                return None
-            self._trails[count] = Told(
-                {
-                    "type": "trail",
-                    "whole": count < self.trail_began or count == 0,
-                    "end": self.trail_began + len(self.trail),
-                    "points": self.trail[first:],
-                }
-            )
-        return self._trails[count]
-
     def _show(self, view: RobotView, home: HomeView) -> None:
         """Let viewers have what was seen."""
         if self._recorded is not None:
             self._follow_jumps(self._recorded)
-        self._follow(view.time, view.pose[0], view.pose[1])
+        self.trail.follow(view.time, view.pose[0], view.pose[1])
         told = told_of(self._household)
         state = {**state_of(view), **told, "looked": round(time.time(), 3)}
         if view.last is None and self._keeper is not None:
@@ -147,33 +115,6 @@ class Feed:
     def _follow_jumps(self, recorded: Timeline) -> None:
         """When another time was chosen, let the way up to it take the place of the trail."""
         jumps = recorded.timeline().jumps
-        if jumps == self._jumps:
-            return
-        self._jumps = jumps
-        self._seen = None
-        places = recorded.way()
-        self._trails.clear()
-        self.trail_began += len(self.trail) + 1
-        self.trail = [(round(x, 3), round(y, 3)) for x, y in places[-_MOST_TRAIL:]]
-
-    def _follow(self, now: float, x: float, y: float) -> None:
-        self._is_carried |= not self._may_have_driven(now, x, y)
-        self._seen = now, x, y
-        if self.trail and math.dist(self.trail[-1][:2], (x, y)) < _STEP:
-            return
-        self._trails.clear()
-        place = round(x, 3), round(y, 3)
-        self.trail.append((*place, True) if self._is_carried else place)
-        self._is_carried = False
-        surplus = len(self.trail) - _MOST_TRAIL
-        if surplus > 0:
-            del self.trail[:surplus]
-            self.trail_began += surplus
-
-    def _may_have_driven(self, now: float, x: float, y: float) -> bool:
-        """Whether the robot can have come here by its wheels since it was seen last."""
-        if self._seen is None:  # of what it did meanwhile nothing is known
-            return not self.trail or math.dist(self.trail[-1][:2], (x, y)) <= _CORRECTED
-        then, *before = self._seen
-        reach = _FASTEST * max(now - then, 0.0) + _CORRECTED
-        return math.dist(before, (x, y)) <= reach
+        if jumps != self._jumps:
+            self._jumps = jumps
+            self.trail.replace(recorded.way())

@@ -53,7 +53,7 @@ class Viewers:
                 if changes is not None:
                     versions[name] = layer.version
                     await socket.send_bytes(changes)
-            walked = feed.trail_since(trail)
+            walked = feed.trail.since(trail)
             if walked is not None:
                 trail = walked.value["end"]
                 await socket.send_text(walked.text)

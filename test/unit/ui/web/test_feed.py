@@ -1,4 +1,4 @@
-"""The way that viewers are shown: what the robot did not drive is no part of it."""
+"""The trail of what the feed looks at: by the robot's clock, and by the jumps of a recording."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from typing import cast
 
 from unit.history.seen import HOME, view
 
-from roomba.client.observed import ObservedRobot
+from roomba.client.observed import ObservedRobot, TimelineView
 from roomba.client.protocol import RobotUnavailableError
-from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
-from roomba.ui.web.feed import Feed, Place
+from roomba.client.view import GridLayer, HomeView, LayerName, Point, RobotView
+from roomba.ui.web.feed import Feed
+from roomba.ui.web.streams.trail import Place
 
 Looks = Sequence[tuple[float, tuple[float, float] | None]]
 """s and m."""
@@ -37,36 +38,56 @@ class Seen:
         return None
 
 
-def way_of(looks: Looks) -> list[Place]:
-    feed = Feed(cast(ObservedRobot, Seen(looks)))
+class Recorded(Seen):
+    """The same as a recording, in which another time may be chosen."""
 
+    jumps = 0
+    driven: Sequence[Point] = ()
+
+    def timeline(self) -> TimelineView:
+        return TimelineView(9.0, 1.0, 1.0, is_playing=True, jumps=self.jumps)
+
+    def play(self, *, is_playing: bool) -> None:
+        raise NotImplementedError
+
+    def seek(self, at: float) -> None:
+        raise NotImplementedError
+
+    def set_speed(self, speed: float) -> None:
+        raise NotImplementedError
+
+    def way(self) -> list[Point]:
+        return list(self.driven)
+
+
+def looked(feed: Feed, times: int) -> list[Place]:
     async def look() -> None:
-        for _ in looks:
+        for _ in range(times):
             await feed.look()
 
     asyncio.run(look())
-    return feed.trail
+    return list(feed.trail.places)
 
 
-def test_what_was_driven_is_one_way() -> None:
-    looks = [(0.1 * step, (0.05 * step, 0.0)) for step in range(4)]
-    assert way_of(looks) == [(0.0, 0.0), (0.05, 0.0), (0.1, 0.0), (0.15, 0.0)]
-    # A robot whose time passes quicker drives farther between two looks.
-    assert way_of([(0.0, (0.0, 0.0)), (1.0, (0.5, 0.0))]) == [(0.0, 0.0), (0.5, 0.0)]
+def way_of(looks: Looks) -> list[Place]:
+    return looked(Feed(cast(ObservedRobot, Seen(looks))), len(looks))
 
 
-def test_where_it_was_carried_the_way_begins_anew() -> None:
-    looks = [(0.0, (0.0, 0.0)), (0.1, (0.0, 0.6)), (0.2, (0.05, 0.6))]
-    assert way_of(looks) == [(0.0, 0.0), (0.0, 0.6, True), (0.05, 0.6)]
+def test_the_trail_goes_by_the_clock_and_the_place_of_the_robot() -> None:
+    looks = [(0.0, (0.0, 0.0)), (1.0, (0.5, 0.0)), (1.1, (0.5, 0.6))]
+    assert way_of(looks) == [(0.0, 0.0), (0.5, 0.0), (0.5, 0.6, True)]
 
 
 def test_after_a_time_in_which_it_was_not_seen_the_way_begins_anew() -> None:
     looks = [(0.0, (0.0, 0.0)), (1.0, None), (60.0, (0.0, 0.9))]
     assert way_of(looks) == [(0.0, 0.0), (0.0, 0.9, True)]
-    looks = [(0.0, (0.0, 0.0)), (1.0, None), (2.0, (0.0, 0.1))]
-    assert way_of(looks) == [(0.0, 0.0), (0.0, 0.1)]
 
 
-def test_a_clock_that_begins_anew_begins_a_way() -> None:
-    looks = [(100.0, (0.0, 0.0)), (0.1, (0.4, 0.0))]
-    assert way_of(looks) == [(0.0, 0.0), (0.4, 0.0, True)]
+def test_another_time_of_a_recording_brings_the_way_up_to_it() -> None:
+    robot = Recorded([(0.0, (0.0, 0.0)), (0.1, (3.0, 0.1)), (0.2, (3.0, 0.15))])
+    feed = Feed(cast(ObservedRobot, robot))
+    assert looked(feed, 1) == [(0.0, 0.0)]
+    robot.jumps, robot.driven = 1, [(3.0, 0.0)]
+    assert looked(feed, 1) == [(3.0, 0.0), (3.0, 0.1)]
+    robot.driven = [(7.0, 7.0)]
+    assert looked(feed, 1) == [(3.0, 0.0), (3.0, 0.1), (3.0, 0.15)]
