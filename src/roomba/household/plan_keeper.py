@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import datetime as dt
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
 from typing import Final
 
 from pydantic import ValidationError
@@ -19,13 +19,12 @@ from roomba.client.protocol import (
     RequestRefusedError,
     RobotUnavailableError,
 )
-from roomba.client.view import CleanOrder, RobotView, RoomView
+from roomba.client.view import CleanOrder, RobotView
 from roomba.configuration.household import PlansConfig
 from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.folder import KeptValues
-from roomba.household.plan_changes import Change, with_orders_again
-from roomba.household.room_names import names_now
-from roomba.household.seen_rooms import RoomsEdit, SeenRooms, seen
+from roomba.household.plan_changes import Change
+from roomba.household.rooms_follower import RoomsFollower
 from roomba.plans.due import DAY, RoomNeed
 from roomba.plans.memory import Memory, Note
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder
@@ -62,8 +61,7 @@ class PlanKeeper:
         self._version, self._view_of_version = 0, PlansView()
         self._is_first = True
         self._last: CleanReport | None = None
-        self._kept_rooms, self._seen = rooms, rooms.read(SeenRooms())
-        self._looked_at: tuple[RoomView, ...] = ()
+        self._rooms = RoomsFollower(robot, rooms, dirt, self._on_disk, self._by_other_names)
         self._show()
 
     def view(self) -> PlansView:
@@ -78,16 +76,13 @@ class PlanKeeper:
     def look(self, view: RobotView | None) -> None:
         """Take a step; ``view`` is None while the robot does not answer. Raises OSError."""
         with self._lock:
-            now = self._now()
-            unwritten = self._followed_rooms(now)
-            scheduler = Scheduler(self._household, self._config)
-            has_learned = self._learn(view, now)
-            self._memory, act = scheduler.step(self._memory, now, self._situation(view))
-            if act is not None:
-                self._memory = self._carried_out(scheduler, act, now)
-            self._keep_memory(is_changed=has_learned)
-            if unwritten is not None:
-                raise unwritten
+            try:
+                self._rooms.follow()
+            except OSError:
+                # What the disk refused of the rooms' names does not hold up the plans.
+                self._step(view)
+                raise
+            self._step(view)
 
     def follow_rooms(self) -> None:
         """Let plans, presets and what is learned go by the rooms' names as they are now.
@@ -95,9 +90,17 @@ class PlanKeeper:
         Raises OSError; then it is tried again with the next look.
         """
         with self._lock:
-            unwritten = self._followed_rooms(self._now())
-        if unwritten is not None:
-            raise unwritten
+            self._rooms.follow()
+
+    def _step(self, view: RobotView | None) -> None:
+        """Let the scheduler take a step, and the robot what it wants; raises OSError."""
+        now = self._now()
+        scheduler = Scheduler(self._household, self._config)
+        has_learned = self._learn(view, now)
+        self._memory, act = scheduler.step(self._memory, now, self._situation(view))
+        if act is not None:
+            self._memory = self._carried_out(scheduler, act, now)
+        self._keep_memory(is_changed=has_learned)
 
     def _learn(self, view: RobotView | None, now: dt.datetime) -> bool:
         """Learn of the rooms' dirt from a clean that ended since the last look; raises OSError."""
@@ -105,69 +108,17 @@ class PlanKeeper:
         is_news = last is not None and last is not self._last and not self._is_first
         return last is not None and is_news and self._dirt.note(last, now)
 
-    def _followed_rooms(self, now: dt.datetime) -> OSError | None:
-        """Follow the names of rooms; return what the disk refused."""
-        try:
-            rooms = self._robot.home().rooms
-        except RobotUnavailableError:
-            return None
-        try:
-            self._finish_edit(now)
-            # A map that is being made has none yet, and says nothing of those of another one.
-            if not rooms or rooms == self._looked_at:
-                return None
-            if seen(rooms) != self._seen.rooms:
-                self._begin_edit(rooms)
-                self._finish_edit(now)
-            self._looked_at = rooms
-        except OSError as error:
-            return error
-        except ValueError:
-            # Rooms of numbers that are none are not followed.
-            return None
-        return None
-
-    def _begin_edit(self, rooms: Sequence[RoomView]) -> None:
-        """Keep what other rooms mean for plans and dirt, before that is written; raises OSError."""
-        last, known = self._seen, seen(rooms)
-        names = names_now(last.views, rooms)
-        before = self._kept.read(self._household)
-        if last.edit.is_undone_by(known):
-            again = with_orders_again(last.edit.plans_after, last.edit.plans_before, names)
-            after, why = again(before), "has its rooms again: the newest edit was taken back"
-        else:
-            told = listed([f"{name!r} is {new!r}" for name, new in names.items()])
-            after, why = before.with_room_names(names), f"goes on by other names of rooms: {told}"
-        self._keep_seen(
-            SeenRooms(
-                rooms=known,
-                edit=RoomsEdit(rooms=last.rooms, plans_before=before, plans_after=after),
-                is_pending=bool(names) or after != before,
-                dirt=self._dirt.renamed(names, [room.name for room in last.rooms]),
-                why=why,
-            )
-        )
-
-    def _finish_edit(self, now: dt.datetime) -> None:
-        """Let plans and what is learned be as an edit that is pending wants; raises OSError."""
-        pending = self._seen
-        if not pending.is_pending:
-            return
-        edit = pending.edit
-        change = with_orders_again(edit.plans_before, edit.plans_after, {})
+    @contextlib.contextmanager
+    def _by_other_names(self, change: Change, why: str) -> Iterator[None]:
+        """Let plans go by other names of rooms, and tell of them after it; raises OSError."""
         with contextlib.suppress(RequestRefusedError):  # by a name that no plan can have
             before, changed = self._write(change)
             for plan in changed.plans:
                 if plan not in before.plans:
-                    note = Note(at=now, plan=plan.name, text=pending.why)
+                    note = Note(at=self._now(), plan=plan.name, text=why)
                     self._memory = self._memory.noting(note)
-        self._dirt.keep(pending.dirt)
-        self._keep_seen(SeenRooms(rooms=pending.rooms, edit=edit))
+        yield
         self._keep_memory(is_changed=True)
-
-    def _keep_seen(self, rooms: SeenRooms) -> None:
-        self._kept_rooms.write(rooms)
-        self._seen = rooms
 
     def _situation(self, view: RobotView | None) -> Situation:
         if view is None:
@@ -274,7 +225,7 @@ class PlanKeeper:
 
     def _write(self, change: Change) -> tuple[HouseholdPlans, HouseholdPlans]:
         """Change the plans on the disk; return how they were there, and how they are."""
-        before = self._kept.read(self._household)
+        before = self._on_disk()
         try:
             changed = HouseholdPlans.model_validate(change(before).model_dump())
         except ValidationError as error:
@@ -283,6 +234,9 @@ class PlanKeeper:
         self._kept.write(changed)
         self._household = changed
         return before, changed
+
+    def _on_disk(self) -> HouseholdPlans:
+        return self._kept.read(self._household)
 
     def begin(self, preset: str) -> None:
         """Begin a preset now; raises RequestRefusedError, RobotUnavailableError."""
