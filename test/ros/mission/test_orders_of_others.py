@@ -20,7 +20,7 @@ from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Float32
 
 from roomba.mission.walking.walk import Walk
-from roomba_ros.walking import walk_to_point_action_server
+from roomba_ros.walking import plan_service
 
 CORNER = (0.0, 0.0)
 """m; in the wall, as a message of nothing wants it."""
@@ -125,7 +125,7 @@ def test_of_many_walks_at_once_the_newest_possible_one_alone_is_planned(
         planned.append(arguments[3])
         return Walk(*arguments)
 
-    monkeypatch.setattr(walk_to_point_action_server, "Walk", plan)
+    monkeypatch.setattr(plan_service, "Walk", plan)
     ended: dict[str, tuple[int, str]] = {}
     watched.robot.lockstep.hear(
         "/walk_to_point/result",
