@@ -12,7 +12,7 @@ from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.storage.carpets import CarpetsError, load_carpets, save_carpets
 from roomba.storage.map_bound import map_file_name
 from roomba_ros.convert.mission import carpets_message
-from roomba_ros.mission.home import GROWING, KnownHome
+from roomba_ros.mission.known_home import GROWING, KnownHome
 from roomba_ros.runtime.background import Background
 
 

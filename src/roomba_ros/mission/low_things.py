@@ -14,7 +14,7 @@ from roomba.perception.rooms.low_things import LowThings
 from roomba.storage.low_things import LowThingsError, load_low_things, save_low_things
 from roomba.storage.map_bound import map_file_name
 from roomba_ros.convert.mission import low_things_message
-from roomba_ros.mission.home import GROWING, KnownHome
+from roomba_ros.mission.known_home import GROWING, KnownHome
 from roomba_ros.runtime.background import Background
 
 

@@ -22,7 +22,8 @@ from roomba.vocabulary import listed
 from roomba_ros.mission.carpets import CarpetTopics
 from roomba_ros.mission.drive import MissionDrive
 from roomba_ros.mission.goals import Ended
-from roomba_ros.mission.home import GROWING, HomeTopics, KnownHome
+from roomba_ros.mission.home import HomeTopics
+from roomba_ros.mission.known_home import GROWING, KnownHome
 from roomba_ros.mission.low_things import LowThingTopics
 from roomba_ros.mission.memory import MissionMemory
 from roomba_ros.mission.orders import MissionOrders

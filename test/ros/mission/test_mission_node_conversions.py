@@ -47,7 +47,7 @@ from roomba_ros.convert.mission import (
     zones_message,
 )
 from roomba_ros.convert.readings import beams_of
-from roomba_ros.mission.home import GROWING, KnownHome
+from roomba_ros.mission.known_home import GROWING, KnownHome
 from roomba_ros.senses.heard_place import moved
 
 

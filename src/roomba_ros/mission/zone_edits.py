@@ -1,0 +1,130 @@
+"""The zones of the map, on ROS: kept for each map, told, and edited by people."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import rospy
+from roomba_robot.msg import ZoneArray
+from roomba_robot.srv import (
+    RemoveZone,
+    RemoveZoneRequest,
+    RemoveZoneResponse,
+    SetZone,
+    SetZoneRequest,
+    SetZoneResponse,
+)
+from visualization_msgs.msg import MarkerArray
+
+from roomba.grid import OccupancyMap
+from roomba.perception.rooms.zones import Zones, ZonesError
+from roomba.storage.map_bound import map_file_name
+from roomba.storage.zones import load_zones, save_zones
+from roomba.vocabulary import listed
+from roomba_ros.convert.mission import zone_of, zones_markers, zones_message
+from roomba_ros.mission.known_home import GROWING
+
+
+class ZoneEdits:
+    """Keeps the zones of the newest map; edits are saved at once.
+
+    Publishes: ``zones`` (ZoneArray, latched), ``zones/markers`` (MarkerArray, latched, for RViz).
+    Services: ``set_zone`` (SetZone), ``remove_zone`` (RemoveZone).
+    """
+
+    def __init__(self, folder: Path, lock: threading.Lock, on_edit: Callable[[], None]) -> None:
+        """Connect nothing yet; ``on_edit`` is called under the lock when zones were edited."""
+        self._folder, self._lock, self._on_edit = folder, lock, on_edit
+        self._map: OccupancyMap | None = None
+        self._digest = ""
+        self.zones: Zones | None = None
+        """None before a map, and when they cannot be read: then nothing is cleaned."""
+        self.unreadable = ""
+        """Why zones cannot be read, and what to do."""
+
+    def start(self) -> None:
+        """Connect what tells; nothing can be edited yet."""
+        self._zones_publisher = rospy.Publisher("zones", ZoneArray, queue_size=1, latch=True)
+        self._markers = rospy.Publisher("zones/markers", MarkerArray, queue_size=1, latch=True)
+
+    def serve(self) -> None:
+        """Let zones be edited from now on."""
+        rospy.Service("set_zone", SetZone, self._on_set)
+        rospy.Service("remove_zone", RemoveZone, self._on_remove)
+
+    def follow_map(self, occupancy: OccupancyMap, digest: str) -> None:
+        """Go on with the zones of another map; hold the lock.
+
+        More of a map that is being made has the same zones.
+        """
+        before, self._digest, self._map = self._digest, digest, occupancy
+        if not digest == before == GROWING:
+            self.zones = self._kept_or_carried(occupancy, before)
+            self._tell()
+
+    def look_again(self, occupancy: OccupancyMap) -> bool:
+        """Return whether other zones are kept by now, and go on with them; hold the lock.
+
+        A map that is told again may have taken some over.
+        """
+        kept = self._kept(occupancy)
+        if kept == self.zones:
+            return False
+        self.zones = kept
+        self._tell()
+        return True
+
+    def _kept_or_carried(self, occupancy: OccupancyMap, before: str) -> Zones | None:
+        """Return the zones of a map; those of a map that was made go on in the whole one."""
+        kept, zones = self._kept(occupancy), self.zones
+        if before != GROWING or zones is None or not zones.all or kept is None or kept.all:
+            return kept
+        try:
+            save_zones(zones, occupancy, self._path())
+        except OSError as error:
+            rospy.logerr("the zones cannot be saved: %s", error)
+        return zones
+
+    def _kept(self, occupancy: OccupancyMap) -> Zones | None:
+        """Return the zones of a map; None when they cannot be read."""
+        try:
+            return load_zones(self._path(), occupancy, rospy.logerr)
+        except ZonesError as error:
+            self.unreadable = str(error)
+            rospy.logerr("%s", error)
+            return None
+
+    def _path(self) -> Path:
+        return self._folder / f"{map_file_name(self._digest)}.yaml"
+
+    def _tell(self) -> None:
+        now, zones = rospy.get_time(), self.zones or Zones()
+        self._zones_publisher.publish(zones_message(now, zones, "map"))
+        self._markers.publish(zones_markers(now, zones, "map"))
+
+    def _edit(self, change: Callable[[Zones], Zones]) -> tuple[bool, str]:
+        """Change the zones, tell and save them; return whether that was done, and what or why."""
+        with self._lock:
+            if self._map is None:
+                return False, "there is no map yet; is home_sim_node running?"
+            if self.zones is None:
+                return False, f"{self.unreadable}; then restart"
+            try:
+                zones = change(self.zones)
+                save_zones(zones, self._map, self._path())
+            except ZonesError as error:
+                return False, str(error)
+            except OSError as error:
+                return False, f"the zones cannot be saved: {error}; nothing was changed"
+            self.zones = zones
+            self._tell()
+            self._on_edit()
+            return True, f"the zones are: {listed(zones.names)}"
+
+    def _on_set(self, request: SetZoneRequest) -> SetZoneResponse:
+        return SetZoneResponse(*self._edit(lambda zones: zones.with_zone(zone_of(request.zone))))
+
+    def _on_remove(self, request: RemoveZoneRequest) -> RemoveZoneResponse:
+        return RemoveZoneResponse(*self._edit(lambda zones: zones.without(request.name)))
