@@ -38,29 +38,41 @@ def net_over(fits: Mask) -> Net:
     """Return the net over the cells that fit, bool [rows, columns]."""
     shape = (-(-fits.shape[0] // _BLOCK), -(-fits.shape[1] // _BLOCK))
     net = Net(fits, np.full((*shape, 2), -1, np.int32), np.zeros((*shape, 8), np.int16))
-    _knot(net)
+    _place_knots(net)
+    _link_neighbours(net)
     return net
 
 
 @entry
-def _knot(net: Net) -> None:
+def _place_knots(net: Net) -> None:
+    """Let each block have its knot, the cell that fits nearest its middle."""
     rows, columns = net.links.shape[:2]
-    height, width = net.fits.shape
-    middle = _BLOCK // 2
     for row in range(rows):
         for column in range(columns):
-            y, x = row * _BLOCK + middle, column * _BLOCK + middle
-            if y < height and x < width and net.fits[y, x]:
-                net.knots[row, column, 0], net.knots[row, column, 1] = x, y
-                continue
-            nearest = 1 << 30
-            for y in range(row * _BLOCK, min((row + 1) * _BLOCK, height)):
-                for x in range(column * _BLOCK, min((column + 1) * _BLOCK, width)):
-                    away = (y - row * _BLOCK - middle) ** 2 + (x - column * _BLOCK - middle) ** 2
-                    if net.fits[y, x] and away < nearest:
-                        nearest = away
-                        net.knots[row, column, 0] = x
-                        net.knots[row, column, 1] = y
+            x, y = _nearest_middle(net.fits, row * _BLOCK, column * _BLOCK)
+            net.knots[row, column, 0], net.knots[row, column, 1] = x, y
+
+
+@part
+def _nearest_middle(fits: Mask, top: int, left: int) -> tuple[int, int]:
+    """Return x and y of the cell that fits nearest the middle of a block; -1, -1 for none."""
+    height, width = fits.shape
+    middle_y, middle_x = top + _BLOCK // 2, left + _BLOCK // 2
+    if middle_y < height and middle_x < width and fits[middle_y, middle_x]:
+        return middle_x, middle_y
+    nearest, found_x, found_y = 1 << 30, -1, -1
+    for y in range(top, min(top + _BLOCK, height)):
+        for x in range(left, min(left + _BLOCK, width)):
+            away = (y - middle_y) ** 2 + (x - middle_x) ** 2
+            if fits[y, x] and away < nearest:
+                nearest, found_x, found_y = away, x, y
+    return found_x, found_y
+
+
+@entry
+def _link_neighbours(net: Net) -> None:
+    """Link the knots of blocks side by side or corner to corner, if the way between them fits."""
+    rows, columns = net.links.shape[:2]
     for row in range(rows):
         for column in range(columns):
             x, y = net.knots[row, column]
