@@ -1,8 +1,8 @@
 """The ticks of a mission: what is noticed at each, where its time goes, and what is wanted.
 
-:mod:`.phases.phases` and :mod:`.phases.at_station` do the work of a phase, and
-:mod:`.phases.monitor` notices what comes up in any phase. Ticks of which it is known what they do
-are those of :mod:`.steady`.
+:mod:`.phases.cleaning`, :mod:`.phases.exploring`, :mod:`.phases.returning` and
+:mod:`.phases.at_station` do the work of a phase, and :mod:`.phases.monitor` notices what comes up
+in any phase. Ticks of which it is known what they do are those of :mod:`.steady`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from roomba.geometry import STANDSTILL, Twist
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.retry_policy import RetryPolicy
 from roomba.mission.inputs.senses import Senses
-from roomba.mission.phases import phases
+from roomba.mission.phases import exploring, returning
 from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.carpet import CarpetSense
 from roomba.mission.phases.cleaning import CleanPhase
@@ -209,9 +209,9 @@ class MissionTicks:
                 return self._clean_phase.tick(senses, limit)
             case Phase.EXPLORING:
                 most_stuck = self._config.exploring.most_stuck
-                return phases.explore(job, drives, senses, limit, most_stuck)
+                return exploring.explore(job, drives, senses, limit, most_stuck)
             case Phase.RETURNING:
-                return phases.go_home(drives, self._retries, senses, limit)
+                return returning.go_home(drives, self._retries, senses, limit)
             case Phase.DOCKING:
                 return self._at_station.dock(senses, context.station, context.staging)
             case Phase.CHARGING:

@@ -16,7 +16,7 @@ from roomba.mission.driving.retry_policy import RetryPolicy
 from roomba.mission.exploring.turn_to_see import TurnToSee
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
-from roomba.mission.phases import phases
+from roomba.mission.phases import exploring, returning
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
@@ -58,7 +58,7 @@ class CleanPhase:
             return PhaseStep(event=Event.BIN_FULL)
         if self._turn.is_under_way:
             return PhaseStep(self._turn.tick(senses))
-        waiting = phases.wait_on(drives, self._retries, senses, limit)
+        waiting = returning.wait_on(drives, self._retries, senses, limit)
         if waiting is not None:
             return waiting
         if drives.driver is not None:
@@ -89,7 +89,7 @@ class CleanPhase:
             if points is None and self._turns_to_see(senses):
                 return PhaseStep()
             if points is None:
-                return phases.wait("no way leads out of where it is", drives, retries, senses)
+                return returning.wait("no way leads out of where it is", drives, retries, senses)
         if points is not None:
             drives.begin(points, senses, cleaning.plans_anew)
             return None
@@ -122,14 +122,16 @@ class CleanPhase:
         if self._begin_look(senses, math.inf):
             return None
         # It may have given up before it tried all.
-        if len(exploration.unseen) > given_up or phases.forget_obstacles_once(exploration, drives):
+        if len(exploration.unseen) > given_up or exploring.forget_obstacles_once(
+            exploration, drives
+        ):
             return PhaseStep()
         if not drives.may_go_home(senses):
             # Shut in it has not seen all.
             if self._turns_to_see(senses):
                 return PhaseStep()
             reason = "no way leads out of where it is"
-            return phases.try_home_again(reason, drives, self._retries, senses)
+            return returning.try_home_again(reason, drives, self._retries, senses)
         self._seen_all_of, self._waited = drives.context, RobotTime(senses.now)
         return PhaseStep(message=_WAITS, wants_whole_map=True)
 
@@ -162,7 +164,7 @@ class CleanPhase:
         drives, exploration = self._drives, self._job.exploration
         assert drives.driver is not None
         if exploration is not None and exploration.is_under_way:
-            return phases.look_on(exploration, drives, senses, limit, self._config.most_stuck)
+            return exploring.look_on(exploration, drives, senses, limit, self._config.most_stuck)
         step = drives.driver.tick(senses, limit)
         if step.state is DriveState.STUCK:
             return PhaseStep(step.twist, failure=Failure(CleanOutcome.STUCK, step.reason))

@@ -1,4 +1,4 @@
-"""The phases of exploring and of going home."""
+"""The phase of returning home, and of waiting where no way leads there."""
 
 from __future__ import annotations
 
@@ -8,67 +8,10 @@ from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.path_driver import DriveState
 from roomba.mission.driving.retry_policy import RetryPolicy
-from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.senses import Senses
-from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.planning.path.planner import NoPathError
-
-
-def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: int) -> PhaseStep:
-    """Go to the nearest place from where more can be seen; stuck too often it fails."""
-    exploration = job.exploration
-    assert exploration is not None
-    if job.ledger.must_go_home(senses, drives.distance_home):
-        return PhaseStep(event=Event.LOW)
-    if drives.driver is not None:
-        return look_on(exploration, drives, senses, limit, most_stuck)
-    obstacles = drives.obstacles.standing(senses.now)
-    given_up = len(exploration.unseen)
-    points = exploration.next_path(senses.pose, drives.context, obstacles)
-    if points is None:
-        # It may have given up before it tried all.
-        tried_all = len(exploration.unseen) == given_up
-        is_done = tried_all and not forget_obstacles_once(exploration, drives)
-        return PhaseStep(event=Event.FINISHED if is_done else None)
-    drives.begin(points, senses)
-    return replace(look_on(exploration, drives, senses, limit, most_stuck), message="")
-
-
-def forget_obstacles_once(exploration: Exploration, drives: Drives) -> bool:
-    """Forget what stands in the way, once before the end: it may have gone; return whether now."""
-    if exploration.looked_again:
-        return False
-    exploration.looked_again = True
-    drives.obstacles.forget()
-    return True
-
-
-def look_on(
-    exploration: Exploration, drives: Drives, senses: Senses, limit: float, most_stuck: int
-) -> PhaseStep:
-    """Drive on to a frontier; one where it got stuck is given up, the last time it fails."""
-    assert drives.driver is not None
-    if exploration.is_too_long(senses.now):
-        exploration.cut_off()
-        drives.driver = None
-        return PhaseStep()
-    step = drives.driver.tick(senses, limit)
-    if step.state is DriveState.BACKING:
-        exploration.note_touch(senses.pose)
-    elif exploration.is_as_near_as_it_gets:
-        exploration.cut_off()
-        drives.driver = None
-        return PhaseStep()
-    is_stuck = step.state is DriveState.STUCK
-    if is_stuck and exploration.times_stuck >= most_stuck:
-        return PhaseStep(step.twist, failure=Failure(CleanOutcome.STUCK, step.reason))
-    if step.state.is_over:
-        if step.state is not DriveState.DONE:
-            exploration.cut_off(is_stuck=is_stuck)
-        drives.driver = None
-    return PhaseStep(step.twist)
 
 
 def go_home(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) -> PhaseStep:

@@ -1,4 +1,4 @@
-"""The phases in which it drives, tick by tick: what ends them, and waiting where no way leads."""
+"""The phase of returning, tick by tick: what ends it, and waiting where no way leads."""
 
 from __future__ import annotations
 
@@ -13,21 +13,14 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Pose, RoundObstacle
-from roomba.mission.cleaning.cleaning import Cleaning
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.retry_policy import RetryPolicy
-from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery, Senses
-from roomba.mission.phases.cleaning import CleanPhase
-from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
-from roomba.mission.phases.phases import go_home, look_on
+from roomba.mission.phases.returning import go_home
 from roomba.mission.phases.step import PhaseStep
-from roomba.perception.swept.coverage_bits import SWEPT
-from roomba.perception.swept.dirt_map import DirtMap
-from roomba.planning.frontiers.frontiers import Frontier
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
 SITE = PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
@@ -51,25 +44,6 @@ class Rig:
         """Whether it is on its way farther into the den, away from the door."""
         driver = self.drives.driver
         return driver is not None and driver.tracker.rest[-1, 0] > IN_THE_DEN.pose.x
-
-
-@pytest.mark.parametrize("way", [0.05, 0.5])
-def test_what_is_touched_by_a_viewpoint_ends_the_way_there_after_it_backed_off(way: float) -> None:
-    rig, exploration = Rig(), Exploration(CONFIG.exploring)
-    here = IN_THE_DEN.pose
-    there = (here.x + way, here.y)
-    exploration.goal = Frontier((there[0] + 0.2, here.y), there, way, 0.5)
-    rig.obstacles.things = []
-    rig.drives.begin(np.array([(here.x - 0.3, here.y), there]), IN_THE_DEN)
-    begun = rig.drives.driver
-    touching = replace(IN_THE_DEN, now=0.05, bumper_left=True)
-    assert look_on(exploration, rig.drives, touching, SPEED, 3).twist.linear <= 0.0
-    assert rig.drives.driver is begun
-    back = Pose(here.x - 2.0 * CONFIG.driving.backing_way, here.y, 0.0)
-    look_on(exploration, rig.drives, replace(IN_THE_DEN, now=1.0, pose=back), SPEED, 3)
-    is_near = way < CONFIG.exploring.viewpoint_tolerance
-    assert (rig.drives.driver is None) == is_near
-    assert (exploration.goal is None) == is_near
 
 
 def test_at_home_or_before_it_there_is_nothing_to_drive() -> None:
@@ -127,24 +101,3 @@ def test_it_waits_no_longer_than_there_is_no_way() -> None:
     rig.obstacles.things = []
     assert rig.go_home(replace(IN_THE_DEN, now=now + 3.0)) == PhaseStep()
     assert rig.go_home(replace(IN_THE_DEN, now=now + 5.0)).twist != STANDSTILL
-
-
-def test_with_nothing_left_the_clean_is_finished_after_another_look() -> None:
-    rig = Rig()
-    job = Job(DirtMap(TWO_ROOMS.map), CONFIG, 100.0, IN_THE_DEN)
-    here = replace(IN_THE_DEN, pose=Pose(0.8, 1.2, 0.0))
-    job.begin_clean(Cleaning(CleanRequest(), SITE, job.dirt, CONFIG.cleaning, here.pose), here)
-    assert job.cleaning is not None
-    coverage = job.cleaning.ledger.coverage
-    hall = slice(0, SITE.frame.cell_of(WALL_X, 0.0)[1])
-    coverage.cells[:, hall] |= SWEPT
-    coverage.count_again()
-    # The den was found to be out of reach: perhaps its door is open by now.
-    job.cleaning.cut_off()
-    phase = CleanPhase(job, rig.drives, rig.retries, CONFIG.exploring)
-    steps = [phase.tick(here, SPEED)]
-    while steps[-1] == PhaseStep():
-        steps.append(phase.tick(here, SPEED))
-        assert len(steps) < 10
-    assert steps[-1].event is Event.FINISHED
-    assert len(steps) > 1
