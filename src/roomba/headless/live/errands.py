@@ -1,12 +1,8 @@
-"""Walks and errands of a live robot: begun, followed and ended in the robot's thread, and waited
-for in others."""
+"""What a live robot is let do, a class each: walk, clean, explore, dock and undock."""
 
 from __future__ import annotations
 
-import threading
-from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Final, Generic, TypeVar
 
 from roomba.client.protocol import (
     CleanProgress,
@@ -18,9 +14,9 @@ from roomba.client.protocol import (
     WalkReport,
 )
 from roomba.configuration.nodes import WalkEndConfig
-from roomba.errors import RoombaError
 from roomba.grid import OccupancyMap
 from roomba.headless.embodied import Embodied
+from roomba.headless.live.errand import LiveErrand, Obey
 from roomba.headless.live.snapshots import ErrandsEnded
 from roomba.headless.live.views import vacuum_snapshot
 from roomba.mission.cleaning.request import CleanRequest
@@ -28,106 +24,6 @@ from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Errand, Event, Phase
 from roomba.mission.walking.walk import WalkState, expected_duration, feedback_period
 from roomba.vocabulary import OVERTAKEN
-
-_PERIOD: Final = 1.0
-"""s of the robot's clock between two news of an errand, as on ROS."""
-
-_News = TypeVar("_News")
-_Report = TypeVar("_Report")
-Obey = Callable[[Callable[[Embodied], None]], None]
-"""Lets the robot carry out a command."""
-
-
-class LiveErrand(ABC, Generic[_News, _Report]):
-    """One thing that the robot is to do.
-
-    ``obey`` lets the robot carry out a command, ``ending`` tells why its time does not pass any
-    more, and ``pace`` is its seconds per second: one that is slow tells news more often.
-    """
-
-    def __init__(self, obey: Obey, ending: Callable[[], str], pace: float) -> None:
-        """Begin nothing yet."""
-        self._obey, self._ending = obey, ending
-        self._slowness = min(1.0, pace)
-        self._period = _PERIOD * self._slowness
-        self._told = threading.Condition()
-        self._news: _News | None = None
-        self._report: _Report | None = None
-        self._began = self._due = 0.0
-
-    def next_feedback(self, timeout: float) -> _News | None:
-        """Wait up to ``timeout`` s of wall time for news, else None; None at once at its end."""
-        with self._told:
-            self._told.wait_for(lambda: self.has_ended or self._news is not None, timeout)
-            if self.report() is not None:
-                return None
-            news, self._news = self._news, None
-            return news
-
-    def report(self) -> _Report | None:
-        """Return its end, or None while it lasts."""
-        with self._told:
-            if self._report is None and self._ending():
-                self._report = self._lost(self._ending())
-            return self._report
-
-    def cancel(self) -> None:
-        """Let the robot stop and stay."""
-        self._obey(lambda robot: None if self.has_ended else self._cancel(robot))
-
-    @property
-    def has_ended(self) -> bool:
-        """Whether its end is known."""
-        return self._report is not None
-
-    def begin(self, robot: Embodied) -> bool:
-        """Let the robot begin, and return whether it does; else the report says why not."""
-        self._began = self._due = robot.now.time
-        try:
-            self._begin(robot)
-        except (RoombaError, ValueError) as refusal:
-            self._end(self._refused(str(refusal)))
-        return not self.has_ended
-
-    @abstractmethod
-    def follow(self, robot: Embodied, ended: ErrandsEnded) -> None:
-        """Tell how far it is, and its end if it has ended."""
-
-    @abstractmethod
-    def give_way(self) -> None:
-        """End, because something newer took over."""
-
-    @abstractmethod
-    def _begin(self, robot: Embodied) -> None:
-        """Let the robot begin; raises RoombaError with the reason why not."""
-
-    def _cancel(self, robot: Embodied) -> None:
-        robot.mission.command(Event.STOP, robot.senses())
-
-    @abstractmethod
-    def _refused(self, reason: str) -> _Report:
-        """Return the report of what is not begun."""
-
-    @abstractmethod
-    def _lost(self, reason: str) -> _Report:
-        """Return the report of what has no end, as the robot's time ended."""
-
-    def _is_due(self, robot: Embodied) -> bool:
-        """Whether it is time for news, which is so each period."""
-        if robot.now.time < self._due:
-            return False
-        self._due = robot.now.time + self._period
-        return True
-
-    def _tell(self, news: _News) -> None:
-        with self._told:
-            self._news = news
-            self._told.notify_all()
-
-    def _end(self, report: _Report) -> None:
-        with self._told:
-            self._report = report
-            self._told.notify_all()
 
 
 class LiveWalk(LiveErrand[float, WalkReport]):

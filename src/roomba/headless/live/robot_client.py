@@ -18,13 +18,8 @@ from roomba.client.protocol import (
 from roomba.configuration.seed import SeedParameters
 from roomba.headless.embodied import Embodied
 from roomba.headless.live.client import LiveClient
-from roomba.headless.live.errands import (
-    LiveClean,
-    LiveDocking,
-    LiveErrand,
-    LiveExploring,
-    LiveWalk,
-)
+from roomba.headless.live.errand import LiveErrand
+from roomba.headless.live.errands import LiveClean, LiveDocking, LiveExploring, LiveWalk
 from roomba.headless.live.floor_plan import made
 from roomba.headless.live.snapshots import ErrandsEnded
 from roomba.headless.live.views import vacuum_snapshot
