@@ -1,4 +1,5 @@
-"""The words and limits of what can be asked for: by programs, the menu, messages, the page."""
+"""The words and limits of what can be asked for, by programs, the menu, messages, the page; and
+the words for what a robot does."""
 
 from __future__ import annotations
 
@@ -68,6 +69,45 @@ class EdgeOrder(Enum):
     """Before the rest of the floor, room by room."""
     LAST = "last"
     """After it."""
+
+
+class Phase(str, Enum):
+    """What a robot does now.
+
+    A phase equals its word, which is what programs hear. Another program's robot may tell a word
+    that is none of these.
+    """
+
+    IDLE = "idle"
+    """Stands somewhere and has nothing to do."""
+    DOCKED = "docked"
+    """Stands on its station and has nothing to do."""
+    UNDOCKING = "undocking"
+    CLEANING = "cleaning"
+    EXPLORING = "exploring"
+    """On its way to where its map ends."""
+    RETURNING = "returning"
+    """On its way to a place before its station."""
+    DOCKING = "docking"
+    """Into the station, by its beams."""
+    CHARGING = "charging"
+    """On its station, to go on with its errand afterwards."""
+    BIN_FULL = "bin full"
+    """Stands, to go on with its errand when its dust bin was emptied."""
+    EMPTYING = "emptying"
+    """On its station, which takes the dirt out of its bin."""
+    PAUSED = "paused"
+    """Stands until it is told to go on."""
+    ERROR = "error"
+    """Stands until the operator helped and tells it to resume."""
+    EMERGENCY = "emergency stop"
+    """Stands until the emergency stop is released."""
+
+
+AT_REST: Final = frozenset((Phase.DOCKED, Phase.IDLE))
+"""Phases of a robot that has no errand; its state is called the same then."""
+HELD: Final = frozenset((Phase.PAUSED, Phase.ERROR))
+"""Phases, and states of the same names, in which a robot waits to be told to go on."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,8 +20,8 @@ from roomba.geometry import Pose
 from roomba.headless.body import SimulatedBody
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest
-from roomba.mission.phases.machine import Phase
 from roomba.robot.readings import Readings
+from roomba.vocabulary import Phase
 from roomba.world.random.home import random_home
 
 THING = (1.0, 0.75, 0.10)

@@ -14,10 +14,10 @@ from roomba_robot.msg import (
 )
 
 from roomba.mission.cleaning.request import CleanOutcome, MissReason
-from roomba.mission.phases.machine import VACUUM_STATES, Phase
+from roomba.mission.phases.machine import VACUUM_STATES
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.zones import ZoneKind
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, Phase
 from roomba_ros.convert.localization import STATES
 from roomba_ros.convert.mission import CARPETS, EDGES, FANS, KINDS, MODES, OUTCOMES, REASONS
 

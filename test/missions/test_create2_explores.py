@@ -13,8 +13,8 @@ from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import load_robot_config
 from roomba.files.shipped import CONFIGURATION
-from roomba.mission.phases.machine import Phase
 from roomba.robot.brain import Brain
+from roomba.vocabulary import Phase
 
 TICK = 0.05
 LONGEST = 400.0

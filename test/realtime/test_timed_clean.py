@@ -9,7 +9,7 @@ from roomba.commands.trials.runs import mission_config
 from roomba.configuration.robot import load_robot_config
 from roomba.drivers.robots.table import ROBOTS
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
-from roomba.mission.phases.machine import Phase
+from roomba.vocabulary import Phase
 
 LONGEST = 3000.0
 """s of the robot's clock."""

@@ -11,7 +11,7 @@ from fixtures.thoroughness import core_first
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
-from roomba.mission.phases.machine import Phase
+from roomba.vocabulary import Phase
 from roomba.world.layers.layer import load_home
 
 BEGIN = 5.0

@@ -20,7 +20,7 @@ from fixtures.robots.missions import HOME
 from roomba.headless.live.robot import LiveRobot
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest, CleanResult
-from roomba.mission.phases.machine import Phase
+from roomba.vocabulary import Phase
 
 MOST_GROWTH: Final = 1.0
 """MB an hour of the robot's clock."""

@@ -1,12 +1,14 @@
-"""What a name may be made of."""
+"""What a name may be made of, and the words for what a robot does."""
 
 from __future__ import annotations
+
+import json
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.vocabulary import fault_of_name, places_told
+from roomba.vocabulary import AT_REST, HELD, Phase, fault_of_name, places_told
 
 JOINERS = ("\u200c", "\u200d")
 LETTERS = st.characters(categories=("L", "M", "N", "P", "S"))
@@ -36,3 +38,18 @@ def test_what_is_invisible_or_turns_the_text_is_in_no_name(
 
 def test_one_place_is_no_places() -> None:
     assert [places_told(count) for count in (0, 1, 2)] == ["0 places", "1 place", "2 places"]
+
+
+@pytest.mark.parametrize("phase", Phase)
+def test_a_phase_is_found_by_its_word_as_programs_hear_it(phase: Phase) -> None:
+    word = json.loads(json.dumps(phase.value))
+    assert type(word) is str
+    assert phase == word
+    assert word in frozenset(Phase)
+    assert (word in AT_REST) == (word in ("docked", "idle"))
+    assert (word in HELD) == (word in ("paused", "error"))
+
+
+def test_a_word_that_is_no_phase_is_in_no_group_of_them() -> None:
+    assert "starting" not in frozenset(Phase)
+    assert "starting" not in AT_REST | HELD

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from roomba.client.plain import known, report_of
-from roomba.client.protocol import AT_REST, CleanReport
+from roomba.client.protocol import CleanReport
 from roomba.client.view import RobotView
+from roomba.vocabulary import AT_REST
 
 EVENT_KINDS: Final = ("state", "begun", "ended", "trouble")
 """``state``: what it does changed; ``begun`` and ``ended``: a run; ``trouble``: what is wrong, in

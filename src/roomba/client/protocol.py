@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Final, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -227,10 +227,6 @@ class ExploringHandle(Protocol):
 
     def cancel(self) -> None:
         """Ask the robot to stop and stay, without waiting; the report follows."""
-
-
-AT_REST: Final = ("docked", "idle")
-"""States of a robot that has no errand; its phase is called the same then."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,7 +32,6 @@ from roomba.headless.records import (
 from roomba.headless.tick_rows import BELIEVED, POSES, TIME
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.at_station import why_not_emptied
-from roomba.mission.phases.machine import Phase
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.rooms.rooms import Rooms
@@ -43,6 +42,7 @@ from roomba.perception.things.layer import ThingLayer
 from roomba.planning.coverage.floor.floor import fine_frame
 from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 from roomba.robot.brain import Brain
+from roomba.vocabulary import Phase
 from roomba.world.home.home import Home
 from roomba.world.observation import Observation
 from roomba.world.simulator import Simulator

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from roomba.client.household import TotalsView
 from roomba.client.plain import home_of, report_of
-from roomba.client.protocol import AT_REST, CleanReport, ErrandOutcome
+from roomba.client.protocol import CleanReport, ErrandOutcome
 from roomba.client.told_once import ToldOnce
 from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
 from roomba.errors import RoombaError
@@ -30,14 +30,23 @@ from roomba.history.run import (
     untold,
 )
 from roomba.history.unfinished import INTERRUPTED, RunSoFar, UnfinishedFile, interrupted_runs
+from roomba.vocabulary import AT_REST, Phase
 
 _LOOKED_THROUGH: Final = 100
 """Runs of a home among which the newest one of this program is looked for."""
-BEGINS: Final = ("undocking", "cleaning", "exploring")
+BEGINS: Final = (Phase.UNDOCKING, Phase.CLEANING, Phase.EXPLORING)
 """Phases in which a run has begun."""
-_SWEEPS: Final = ("undocking", "cleaning", "returning", "docking")
+_SWEEPS: Final = (Phase.UNDOCKING, Phase.CLEANING, Phase.RETURNING, Phase.DOCKING)
 """Phases of a clean in which what is driven over counts."""
-_UNDER_WAY: Final = (*BEGINS, "returning", "docking", "charging", "paused", "bin full", "emptying")
+_UNDER_WAY: Final = (
+    *BEGINS,
+    Phase.RETURNING,
+    Phase.DOCKING,
+    Phase.CHARGING,
+    Phase.PAUSED,
+    Phase.BIN_FULL,
+    Phase.EMPTYING,
+)
 """Phases in which a run may go on."""
 _GIVEN_UP: Final = 10.0
 """s of the robot's clock at rest without a report after which it was no run."""

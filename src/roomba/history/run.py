@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor
 from roomba.shares import share_of
 from roomba.time_spent import NOT_COUNTED, TimeSpent, square_metres_a_minute
+from roomba.vocabulary import Phase
 
 TRACE: Final = (
     "time", "x", "y", "theta", "speed", "battery", "dirt", "covered", "wanted", "to_go", "sweeps",
@@ -148,7 +149,7 @@ class RunRecording:
 
 def kind_of(words: Sequence[Word]) -> str:
     """Return what kind of run it was, by what the robot said meanwhile."""
-    return "explore" if any(word.phase == "exploring" for word in words) else "clean"
+    return "explore" if any(word.phase == Phase.EXPLORING for word in words) else "clean"
 
 
 def turning_of(trace: Floats) -> float:

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
 from roomba.client.view import RobotView
 from roomba.configuration.household import EmptyingConfig
 from roomba.plans.plan import Emptying
-
-_FULL: Final = "bin full"
-_DOCKED: Final = "docked"
+from roomba.vocabulary import Phase
 
 
 def is_to_be_emptied(
@@ -29,7 +26,7 @@ def is_to_be_emptied(
     if not can or is_quiet or wanted is Emptying.NEVER:
         return False
     phase, dirt = view.vacuum.phase, view.dirt if math.isfinite(view.dirt) else 0.0
-    if phase == _FULL:
+    if phase == Phase.BIN_FULL:
         return True
     least = config.least if wanted is Emptying.EACH_RUN else config.level * capacity
-    return phase == _DOCKED and dirt >= least
+    return phase == Phase.DOCKED and dirt >= least

@@ -13,7 +13,6 @@ from pydantic import ValidationError
 from roomba.client.household import PlansView, PlanView
 from roomba.client.observed import ObservedRobot
 from roomba.client.protocol import (
-    AT_REST,
     CleanReport,
     ErrandOutcome,
     RequestRefusedError,
@@ -30,7 +29,7 @@ from roomba.plans.memory import Memory, Note
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder
 from roomba.plans.scheduler import Act, Deed, PlanEnd, Scheduler, Situation, next_of
 from roomba.plans.times import next_after, quiet_until
-from roomba.vocabulary import CleanMode, listed
+from roomba.vocabulary import AT_REST, CleanMode, Phase, listed
 
 _DONE: Final = (ErrandOutcome.COMPLETED, ErrandOutcome.NOT_DOCKED)
 
@@ -125,7 +124,8 @@ class PlanKeeper:
             return Situation(unfit="the robot does not answer")
         ended, message = self._ending(view.last)
         phase = view.vacuum.phase
-        return Situation(self._unfit(view), phase not in AT_REST, phase == "paused", ended, message)
+        is_busy, is_paused = phase not in AT_REST, phase == Phase.PAUSED
+        return Situation(self._unfit(view), is_busy, is_paused, ended, message)
 
     def _ending(self, last: CleanReport | None) -> tuple[PlanEnd | None, str]:
         """Return how an errand ended since the last look, and what is said of it."""

@@ -14,8 +14,9 @@ from roomba.configuration.frozen import Frozen, NotNegative
 from roomba.configuration.household import UpkeepConfig
 from roomba.household.folder import KeptValues
 from roomba.upkeep.parts import Part, PartState, Wear, states_of
+from roomba.vocabulary import Phase
 
-WORKS: Final = ("cleaning",)
+WORKS: Final = (Phase.CLEANING,)
 """Phases in which brush and fan are on."""
 _LONGEST_LOOK: Final = 600.0
 """s of the robot's clock; what lies farther apart than this is not one stretch of work."""

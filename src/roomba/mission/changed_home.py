@@ -8,10 +8,10 @@ from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.phases.job import Job
-from roomba.mission.phases.machine import Phase
 from roomba.mission.transitions import Transitions
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
+from roomba.vocabulary import Phase
 
 _LOOKING = (Phase.EXPLORING, Phase.CLEANING)
 

@@ -14,7 +14,8 @@ from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
-from roomba.mission.phases.machine import Errand, MissionState, Phase
+from roomba.mission.phases.machine import Errand, MissionState
+from roomba.vocabulary import Phase
 
 
 @dataclass(frozen=True, slots=True, eq=False)

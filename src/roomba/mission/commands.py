@@ -13,9 +13,9 @@ from roomba.mission.driving.retry_policy import RetryPolicy
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.at_station import why_not_emptied
 from roomba.mission.phases.job import Job
-from roomba.mission.phases.machine import Event, Phase, next_state
+from roomba.mission.phases.machine import Event, next_state
 from roomba.mission.transitions import BIN_FULL, Transitions
-from roomba.vocabulary import RoomWay
+from roomba.vocabulary import Phase, RoomWay
 
 
 class CommandRefusedError(RoombaError):

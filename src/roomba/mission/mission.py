@@ -33,7 +33,7 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.carpet import CarpetSense
 from roomba.mission.phases.job import Job
-from roomba.mission.phases.machine import Event, MissionState, Phase
+from roomba.mission.phases.machine import Event, MissionState
 from roomba.mission.phases.monitor import Monitor
 from roomba.mission.steady import Steady
 from roomba.mission.ticks import MissionStep, MissionTicks
@@ -41,7 +41,7 @@ from roomba.mission.transitions import Transitions
 from roomba.perception.rooms.felt_carpets import CarpetVotes
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
-from roomba.vocabulary import RoomWay
+from roomba.vocabulary import Phase, RoomWay
 
 
 class Mission:

@@ -16,8 +16,8 @@ from roomba.mission.driving.retry_policy import RetryPolicy
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.job import Job
-from roomba.mission.phases.machine import Phase
 from roomba.mission.phases.monitor import Monitor
+from roomba.vocabulary import Phase
 
 _ALONG_PATHS: Final = (Phase.CLEANING, Phase.EXPLORING, Phase.RETURNING)
 

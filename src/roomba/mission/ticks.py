@@ -24,13 +24,14 @@ from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.carpet import CarpetSense
 from roomba.mission.phases.cleaning import CleanPhase
 from roomba.mission.phases.job import Job
-from roomba.mission.phases.machine import Event, Phase
+from roomba.mission.phases.machine import Event
 from roomba.mission.phases.monitor import Monitor
 from roomba.mission.phases.step import PhaseStep
 from roomba.mission.steady import Steady, SteadyTicks
 from roomba.mission.transitions import Transitions
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.felt_carpets import CarpetVotes
+from roomba.vocabulary import Phase
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,8 @@ from roomba.mission.driving.retry_policy import RetryPolicy
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.job import Job
-from roomba.mission.phases.machine import Errand, Event, MissionState, Phase, next_state
+from roomba.mission.phases.machine import Errand, Event, MissionState, next_state
+from roomba.vocabulary import Phase
 
 BIN_FULL: Final = "bin full: empty the dust bin, and tell the robot (empty_bin)"
 

@@ -21,7 +21,7 @@ from roomba.grid import OccupancyMap
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
-from roomba.mission.phases.machine import Event, Phase, next_state
+from roomba.mission.phases.machine import Event, next_state
 from roomba.mission.walking.walk import Walk
 from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.localization.localizer import Localizer
@@ -41,6 +41,7 @@ from roomba.robot.mapped_mission import MappedMission, fan_of
 from roomba.robot.place import Place, PlaceKeeper
 from roomba.robot.readings import Readings, senses_of
 from roomba.robot.walking import Walking
+from roomba.vocabulary import Phase
 
 _BESIDE_SURFACES: Final = 0.3
 """m; what is farther from all that a growing map shows is a thing wherever it is seen."""

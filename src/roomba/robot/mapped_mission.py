@@ -9,11 +9,10 @@ from roomba.configuration.things import ThingConfig
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
-from roomba.mission.phases.machine import Phase
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.robot.lookout import Lookout
-from roomba.vocabulary import CarpetWay, FanLevel
+from roomba.vocabulary import CarpetWay, FanLevel, Phase
 
 
 class MappedMission:

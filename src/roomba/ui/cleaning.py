@@ -26,13 +26,10 @@ from roomba.ui.errand_progress import (
 )
 from roomba.ui.menu import Menu, Option, place
 from roomba.ui.progress import quantity
-from roomba.vocabulary import CleanMode
+from roomba.vocabulary import HELD, CleanMode
 
 MOST_MISSED = 10
 """Areas that a report names; the largest come first."""
-
-_HELD = ("paused", "error")
-"""States in which the robot waits to be told to go on."""
 
 _ENDS = {
     ErrandOutcome.COMPLETED: "The clean is done, and the robot is back on its station",
@@ -65,7 +62,7 @@ def clean(menu: Menu) -> None:
 
 def pause_or_go_on(menu: Menu) -> None:
     """Pause the robot, or let it go on if it stands and waits for that."""
-    if menu.robot.vacuum().state in _HELD:
+    if menu.robot.vacuum().state in HELD:
         menu.robot.resume()
         menu.say("The robot goes on.")
     else:

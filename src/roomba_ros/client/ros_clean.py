@@ -27,7 +27,6 @@ from roomba_robot.srv import ChangeRooms
 from std_srvs.srv import Trigger
 
 from roomba.client.protocol import (
-    AT_REST,
     CleanHandle,
     DockingHandle,
     ExploringHandle,
@@ -35,7 +34,16 @@ from roomba.client.protocol import (
     RobotUnavailableError,
     VacuumSnapshot,
 )
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
+from roomba.vocabulary import (
+    AT_REST,
+    HELD,
+    CarpetWay,
+    CleanMode,
+    EdgeOrder,
+    FanLevel,
+    Phase,
+    RoomWay,
+)
 from roomba_ros.client.ros_errands import RosClean, RosDocking, RosExploring, Server
 from roomba_ros.convert.client import room_names_of, vacuum_of
 from roomba_ros.runtime.calls import call_service
@@ -45,10 +53,9 @@ OLDEST_VACUUM_STATE: Final = 6.0
 """s of wall time; it is told every second, but a long plan may hold it up for some."""
 _SIMULATION_DEADLINE: Final = 1.0
 """s of wall time in which a simulation's service is found; a real robot has none."""
-_HELD: Final = ("paused", "error")
 _IS_OBEYED: Final[dict[str, Callable[[str], bool]]] = {
-    "pause": lambda phase: phase == "paused",
-    "resume": lambda phase: phase not in _HELD,
+    "pause": lambda phase: phase == Phase.PAUSED,
+    "resume": lambda phase: phase not in HELD,
     "stop": lambda phase: phase in AT_REST,
 }
 """By an order whether a phase may come after it; in any other the state is from before."""

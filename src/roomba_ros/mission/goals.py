@@ -31,7 +31,8 @@ from roomba.mission.commands import CommandRefusedError
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
-from roomba.mission.phases.machine import Errand, Event, Phase
+from roomba.mission.phases.machine import Errand, Event
+from roomba.vocabulary import Phase
 from roomba_ros.convert.mission import (
     explored_message,
     feedback_message,

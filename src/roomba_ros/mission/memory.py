@@ -11,7 +11,6 @@ from roomba.configuration.nodes import MemoryConfig
 from roomba.mission.cleaning.checkpoint import CheckpointError
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
-from roomba.mission.phases.machine import Phase
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.storage.checkpoint import (
     Checkpoint,
@@ -24,6 +23,7 @@ from roomba.storage.checkpoint import (
     save_dirt,
 )
 from roomba.storage.map_bound import map_file_name
+from roomba.vocabulary import Phase
 from roomba_ros.runtime.background import Background
 
 

@@ -12,13 +12,12 @@ from std_srvs.srv import Trigger
 from roomba.geometry import STANDSTILL
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
-from roomba.mission.phases.machine import Phase
 from roomba.mission.ticks import MissionStep
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.mapped_mission import MappedMission
 from roomba.storage.checkpoint import Checkpoint
 from roomba.storage.free_space import require_free_space
-from roomba.vocabulary import listed
+from roomba.vocabulary import Phase, listed
 from roomba_ros.mission.carpets import CarpetTopics
 from roomba_ros.mission.drive import MissionDrive
 from roomba_ros.mission.goals import Ended

@@ -20,9 +20,9 @@ from roomba.configuration.nodes import DeadlinesConfig
 from roomba.errors import RoombaError
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
-from roomba.mission.phases.machine import Event, Phase
+from roomba.mission.phases.machine import Event
 from roomba.storage.checkpoint import Goal
-from roomba.vocabulary import OVERTAKEN, RoomWay, listed
+from roomba.vocabulary import OVERTAKEN, Phase, RoomWay, listed
 from roomba_ros.convert.mission import ways_of
 from roomba_ros.convert.values import data_of
 from roomba_ros.mission.goals import GOALS, Ended, MissionGoal

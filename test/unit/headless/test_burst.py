@@ -21,9 +21,10 @@ from roomba.headless.burst import Burst
 from roomba.headless.mission import HeadlessMission
 from roomba.headless.tick_rows import BELIEVED, GYRO, ODOMETRY, PASSED, TIME, TRUE
 from roomba.mission.cleaning.request import CleanRequest
-from roomba.mission.phases.machine import Event, Phase
+from roomba.mission.phases.machine import Event
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.readings import CliffReading
+from roomba.vocabulary import Phase
 from roomba.world.engine.state.arrays import Fault
 from roomba.world.home.turned import turned_home
 

@@ -14,9 +14,9 @@ from roomba.mission.cleaning.request import (
     CleanRequest,
 )
 from roomba.mission.commands import CommandRefusedError
-from roomba.mission.phases.machine import Errand, Event, Phase
+from roomba.mission.phases.machine import Errand, Event
 from roomba.perception.localization.estimate import Knowledge
-from roomba.vocabulary import CleanMode
+from roomba.vocabulary import CleanMode, Phase
 from roomba.world.engine.state.arrays import Fault
 
 

@@ -14,8 +14,8 @@ from roomba.mission.cleaning.request import (
     MissReason,
 )
 from roomba.mission.commands import CommandRefusedError
-from roomba.mission.phases.machine import Event, Phase
-from roomba.vocabulary import CleanMode
+from roomba.mission.phases.machine import Event
+from roomba.vocabulary import CleanMode, Phase
 from roomba.world.engine.state.arrays import Fault
 
 

@@ -14,8 +14,8 @@ from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.commands import CommandRefusedError
-from roomba.mission.phases.machine import Phase
 from roomba.robot.readings import Readings
+from roomba.vocabulary import Phase
 from roomba.world.home.home import DirtSource
 
 DUST = DirtSource("dust", 1.5, 1.25, 2.2, 4.0, 0.0)

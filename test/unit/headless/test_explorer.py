@@ -23,8 +23,9 @@ from roomba.headless.mission import HeadlessMission
 from roomba.headless.records import ExploreRecord
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.commands import CommandRefusedError
-from roomba.mission.phases.machine import Event, Phase
+from roomba.mission.phases.machine import Event
 from roomba.perception.localization.estimate import Knowledge
+from roomba.vocabulary import Phase
 from roomba.world.engine.state.arrays import Fault
 from roomba.world.home.home import Home
 

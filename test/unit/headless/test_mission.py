@@ -40,10 +40,10 @@ from roomba.mission.cleaning.request import (
     CleanRequest,
     MissReason,
 )
-from roomba.mission.phases.machine import Event, Phase
+from roomba.mission.phases.machine import Event
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.coverage.planner import CoveragePlanner
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CleanMode, FanLevel, Phase
 from roomba.world.engine.state.arrays import Fault
 
 

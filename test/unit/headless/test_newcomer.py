@@ -16,9 +16,8 @@ from roomba.configuration.robot import RobotConfig
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRefusedError, CleanRequest
 from roomba.mission.inputs.planning_context import PlanningContext
-from roomba.mission.phases.machine import Phase
 from roomba.perception.swept.coverage_map import CoverageMap
-from roomba.vocabulary import CleanMode
+from roomba.vocabulary import CleanMode, Phase
 from roomba.world.home.home import Home
 
 

@@ -19,8 +19,9 @@ from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
-from roomba.mission.phases.machine import Errand, MissionState, Phase
+from roomba.mission.phases.machine import Errand, MissionState
 from roomba.perception.swept.dirt_map import DirtMap
+from roomba.vocabulary import Phase
 
 SITE = PlanningContext(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
 SENSES = Senses(100.0, Pose(1.0, 0.6, 0.0))

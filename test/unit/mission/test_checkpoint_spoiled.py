@@ -24,8 +24,8 @@ from roomba.mission.cleaning.checkpoint import CheckpointError
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.mission import Mission
-from roomba.mission.phases.machine import Event, Phase
-from roomba.vocabulary import CleanMode
+from roomba.mission.phases.machine import Event
+from roomba.vocabulary import CleanMode, Phase
 
 MORE: Final = int(os.environ.get("ROOMBA_EXAMPLES", "0"))
 FUZZ: Final = settings(

@@ -19,12 +19,13 @@ from roomba.mission.commands import CommandRefusedError
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.mission import Mission
-from roomba.mission.phases.machine import Errand, Event, Phase
+from roomba.mission.phases.machine import Errand, Event
 from roomba.mission.ticks import MissionStep
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
+from roomba.vocabulary import Phase
 
 CONFIG = RobotConfig()
 SITE = PlanningContext(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())

@@ -28,8 +28,9 @@ from roomba.mission.commands import CommandRefusedError
 from roomba.mission.driving.path_driver import DriveState, DriveStep, PathDriver
 from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.senses import Battery
-from roomba.mission.phases.machine import Errand, Event, Phase
+from roomba.mission.phases.machine import Errand, Event
 from roomba.perception.localization.estimate import Knowledge
+from roomba.vocabulary import Phase
 
 
 def stuck(rig: Rig, monkeypatch: pytest.MonkeyPatch, state: DriveState) -> None:

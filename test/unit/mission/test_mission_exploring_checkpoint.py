@@ -12,7 +12,8 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.checkpoint import CheckpointError, Values
 from roomba.mission.inputs.senses import Senses
-from roomba.mission.phases.machine import Errand, Event, Phase
+from roomba.mission.phases.machine import Errand, Event
+from roomba.vocabulary import Phase
 
 
 def taken_up(values: Values, senses: Senses, known: OccupancyMap = HALL) -> Rig:

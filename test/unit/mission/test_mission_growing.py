@@ -29,10 +29,10 @@ from roomba.mission.cleaning.request import (
     CleanRequest,
     CleanResult,
 )
-from roomba.mission.phases.machine import Event, Phase
+from roomba.mission.phases.machine import Event
 from roomba.mission.ticks import MissionStep
 from roomba.perception.swept.coverage_bits import SWEPT, TRIED
-from roomba.vocabulary import CleanMode
+from roomba.vocabulary import CleanMode, Phase
 
 CORNER = CleanRequest(CleanMode.ZONES, zones=((0.6, 0.2, 1.4, 0.9),))
 

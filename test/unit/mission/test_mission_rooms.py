@@ -20,9 +20,9 @@ from fixtures.robots.missions import (
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRefusedError, CleanRequest
 from roomba.mission.commands import CommandRefusedError
-from roomba.mission.phases.machine import Event, Phase
+from roomba.mission.phases.machine import Event
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
-from roomba.vocabulary import CleanMode, EdgeOrder, RoomWay
+from roomba.vocabulary import CleanMode, EdgeOrder, Phase, RoomWay
 
 
 def begun(*rooms: str, passes: int = 1, edges: EdgeOrder = EdgeOrder.ANY) -> HeadlessMission:

@@ -19,13 +19,13 @@ from roomba.grid import OccupancyMap
 from roomba.headless.body import SimulatedBody
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.inputs.senses import Battery
-from roomba.mission.phases.machine import Errand, MissionState, Phase
+from roomba.mission.phases.machine import Errand, MissionState
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.planning.path.planner import NoPathError
 from roomba.robot.brain import Brain
 from roomba.robot.command import Command
 from roomba.robot.readings import CliffReading, Readings
-from roomba.vocabulary import CleanMode, FanLevel, RoomWay
+from roomba.vocabulary import CleanMode, FanLevel, Phase, RoomWay
 
 ON_FLOOR = Pose(0.9, 0.5, 0.0)
 DOCKED = Readings(0.0, Pose(), battery=Battery(1.0, 26.0, is_docked=True))

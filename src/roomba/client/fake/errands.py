@@ -16,6 +16,7 @@ from roomba.client.protocol import (
     MissedFloor,
 )
 from roomba.time_spent import NOT_COUNTED, TimeSpent
+from roomba.vocabulary import Phase
 
 if TYPE_CHECKING:
     from roomba.client.clock import Clock
@@ -55,7 +56,7 @@ class FakeErrand:
     """What the robot works on: ``cleans`` s of cleaning, then ``drives`` s of driving."""
 
     def __init__(
-        self, script: ErrandScript, clock: Clock, cleans: float, drives: float, driving: str
+        self, script: ErrandScript, clock: Clock, cleans: float, drives: float, driving: Phase
     ) -> None:
         self.cancels = 0
         """How often it was asked to stop."""
@@ -89,11 +90,11 @@ class FakeErrand:
         return self.is_over and not self._stopped_by and self._outcome in _KEPT
 
     @property
-    def phase(self) -> str:
+    def phase(self) -> Phase:
         """What the robot does for it now."""
         if self.is_paused:
-            return "paused"
-        return "cleaning" if self.worked < self._cleans - _INSTANT else self._driving
+            return Phase.PAUSED
+        return Phase.CLEANING if self.worked < self._cleans - _INSTANT else self._driving
 
     @property
     def cleaned(self) -> float:
@@ -203,7 +204,7 @@ class FakeClean(FakeErrand):
         rooms: Sequence[str],
         battery: float,
     ) -> None:
-        super().__init__(script, clock, wanted / CLEANING_RATE, HOMING_TIME, "returning")
+        super().__init__(script, clock, wanted / CLEANING_RATE, HOMING_TIME, Phase.RETURNING)
         self._wanted, self._rooms, self._battery = wanted, tuple(rooms), battery
         self._of_room = wanted / max(len(self._rooms), 1)
 
@@ -211,7 +212,7 @@ class FakeClean(FakeErrand):
         """Return how far it is."""
         share = self.cleaned / self._cleans
         index = self._index
-        phase = self.phase
+        phase = self.phase.value
         return CleanProgress(
             state=phase,
             room=self._rooms[index] if self._rooms else "",
@@ -295,7 +296,7 @@ class FakeDocking(FakeErrand):
 
     def next_feedback(self, timeout: float) -> str | None:
         """Let time pass until the next feedback or the end, at most ``timeout`` s."""
-        return self.phase if self.waits_for_news(timeout) else None
+        return self.phase.value if self.waits_for_news(timeout) else None
 
     def report(self) -> DockReport | None:
         """Return the scripted end once its time has come."""

@@ -21,7 +21,7 @@ from roomba.client.protocol import (
     RobotUnavailableError,
     VacuumSnapshot,
 )
-from roomba.vocabulary import OVERTAKEN, CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
+from roomba.vocabulary import OVERTAKEN, CarpetWay, CleanMode, EdgeOrder, FanLevel, Phase, RoomWay
 
 if TYPE_CHECKING:
     from roomba.client.clock import Clock
@@ -105,16 +105,16 @@ class FakeVacuum:
 
     def dock(self) -> FakeDocking:
         """Start for the station."""
-        return self._move("returning", HOMING_TIME, is_done=self._stands_docked)
+        return self._move(Phase.RETURNING, HOMING_TIME, is_done=self._stands_docked)
 
     def undock(self) -> FakeDocking:
         """Start backing out of the station."""
-        return self._move("undocking", UNDOCKING_TIME, is_done=not self._stands_docked)
+        return self._move(Phase.UNDOCKING, UNDOCKING_TIME, is_done=not self._stands_docked)
 
     def explore(self) -> FakeExploring:
         """Start exploring by the next script; what was under way ends."""
         script = self._next_script()
-        exploring = FakeExploring(script, self.clock, 0.0, EXPLORING_TIME, "exploring")
+        exploring = FakeExploring(script, self.clock, 0.0, EXPLORING_TIME, Phase.EXPLORING)
         return self._begin(exploring, script)
 
     def pause(self) -> None:
@@ -151,11 +151,12 @@ class FakeVacuum:
         """Return what it does now; a silent robot uses up the ``timeout`` and raises."""
         self._require_answers(timeout)
         errand = self._errand if self._errand is not None and not self._errand.is_over else None
-        phase = "docked" if self._stands_docked else "idle" if errand is None else errand.phase
+        at_rest = Phase.DOCKED if self._stands_docked else Phase.IDLE
+        phase = at_rest if self._stands_docked or errand is None else errand.phase
         progress = errand.progress() if isinstance(errand, FakeClean) else None
         return VacuumSnapshot(
-            state="cleaning" if phase == "undocking" else phase,
-            phase=phase,
+            state=Phase.CLEANING.value if phase is Phase.UNDOCKING else phase.value,
+            phase=phase.value,
             message="bin full: empty the dust bin" if self.is_bin_full else "",
             room="" if progress is None else progress.room,
             covered=0.0 if progress is None else progress.covered,
@@ -183,7 +184,8 @@ class FakeVacuum:
         if not self._errand.is_fulfilled:
             return False
         return (
-            isinstance(self._errand, FakeClean | FakeExploring) or self._errand.phase == "returning"
+            isinstance(self._errand, FakeClean | FakeExploring)
+            or self._errand.phase is Phase.RETURNING
         )
 
     def _answering_errand(self) -> FakeClean | FakeDocking | FakeExploring | None:
@@ -200,7 +202,7 @@ class FakeVacuum:
         self._require_answers(5.0)
         return self._scripts.pop(0) if self._scripts else ErrandScript()
 
-    def _move(self, driving: str, duration: float, *, is_done: bool) -> FakeDocking:
+    def _move(self, driving: Phase, duration: float, *, is_done: bool) -> FakeDocking:
         script = self._next_script()
         docking = FakeDocking(script, self.clock, 0.0, 0.0 if is_done else duration, driving)
         return self._begin(docking, script)

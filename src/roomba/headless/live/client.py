@@ -25,11 +25,11 @@ from roomba.headless.live.live_home import LiveHome
 from roomba.headless.live.robot import LiveRobot
 from roomba.headless.live.snapshots import ErrandsEnded, Snapshots
 from roomba.mission.cleaning.request import CleanRequest
-from roomba.mission.phases.machine import Event, Phase
+from roomba.mission.phases.machine import Event
 from roomba.perception.floors.recognition import FloorRecord
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, Phase, RoomWay
 from roomba.world.simulator import Simulator
 
 _Answer = TypeVar("_Answer")

@@ -21,9 +21,9 @@ from roomba.headless.live.snapshots import ErrandsEnded
 from roomba.headless.live.views import vacuum_snapshot
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.commands import CommandRefusedError
-from roomba.mission.phases.machine import Errand, Event, Phase
+from roomba.mission.phases.machine import Errand, Event
 from roomba.mission.walking.walk import WalkState, expected_duration, feedback_period
-from roomba.vocabulary import OVERTAKEN
+from roomba.vocabulary import OVERTAKEN, Phase
 
 
 class LiveWalk(LiveErrand[float, WalkReport]):

@@ -38,12 +38,13 @@ from roomba.headless.live.live_home import LiveHome
 from roomba.mission.cleaning.request import CleanResult
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.mission import Mission
-from roomba.mission.phases.machine import VACUUM_STATES, Phase
+from roomba.mission.phases.machine import VACUUM_STATES
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.shares import share_of
+from roomba.vocabulary import Phase
 from roomba.world.home.home import Home
 from roomba.world.home.materials import MATERIALS
 from roomba.world.home.raster import footprint, outline

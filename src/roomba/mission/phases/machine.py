@@ -11,34 +11,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Final
 
-
-class Phase(Enum):
-    """What the robot does now."""
-
-    IDLE = "idle"
-    """Stands somewhere and has nothing to do."""
-    DOCKED = "docked"
-    """Stands on its station and has nothing to do."""
-    UNDOCKING = "undocking"
-    CLEANING = "cleaning"
-    EXPLORING = "exploring"
-    """On its way to where its map ends."""
-    RETURNING = "returning"
-    """On its way to a place before its station."""
-    DOCKING = "docking"
-    """Into the station, by its beams."""
-    CHARGING = "charging"
-    """On its station, to go on with its errand afterwards."""
-    BIN_FULL = "bin full"
-    """Stands, to go on with its errand when its dust bin was emptied."""
-    EMPTYING = "emptying"
-    """On its station, which takes the dirt out of its bin."""
-    PAUSED = "paused"
-    """Stands until it is told to go on."""
-    ERROR = "error"
-    """Stands until the operator helped and tells it to resume."""
-    EMERGENCY = "emergency stop"
-    """Stands until the emergency stop is released."""
+from roomba.vocabulary import HELD, Phase
 
 
 class Errand(Enum):
@@ -118,7 +91,6 @@ class MissionState:
 _WORKING: Final = frozenset((Phase.CLEANING, Phase.EXPLORING))
 _DRIVING: Final = _WORKING | {Phase.UNDOCKING, Phase.RETURNING, Phase.DOCKING}
 _ON_STATION: Final = frozenset((Phase.DOCKED, Phase.CHARGING, Phase.EMPTYING))
-_HELD: Final = frozenset((Phase.PAUSED, Phase.ERROR))
 _GOES_ON: Final = frozenset((Errand.CLEAN, Errand.EXPLORE))
 """Errands that a charge on the station only interrupts."""
 
@@ -157,7 +129,7 @@ def _commanded(state: MissionState, event: Event) -> MissionState | None:
             return replace(state, phase=Phase.PAUSED, resumes=Phase.UNDOCKING)
         return None
     if event is Event.RESUME:
-        if state.phase in _HELD and state.resumes is not None:
+        if state.phase in HELD and state.resumes is not None:
             return MissionState(state.resumes, state.errand)
         return None
     if event is Event.EMPTY:
@@ -197,7 +169,7 @@ def _standing(state: MissionState, event: Event) -> MissionState | None:
     if event is Event.CONTACT:
         if phase is Phase.IDLE:
             return MissionState(Phase.DOCKED)
-        if phase in _HELD:
+        if phase in HELD:
             # It was carried home. With an errand it resumes from there when it is told to.
             if state.errand in _GOES_ON:
                 return replace(state, phase=Phase.PAUSED, resumes=Phase.UNDOCKING)

@@ -8,9 +8,10 @@ from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.energy import EnergyLedger
-from roomba.mission.phases.machine import MissionState, Phase
+from roomba.mission.phases.machine import MissionState
 from roomba.mission.phases.step import Failure
 from roomba.perception.localization.estimate import Knowledge
+from roomba.vocabulary import Phase
 
 
 class Monitor:

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.mission.phases.machine import Phase
 from roomba.time_spent import TimeSpent
+from roomba.vocabulary import Phase
 
 _STANDS: Final = 0.1
 """Share of the top speed; slower than that it turns on the spot, and does not go."""

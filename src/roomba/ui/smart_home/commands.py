@@ -14,11 +14,9 @@ from roomba.client.view import CleanOrder
 from roomba.files.plain_json import load_json
 from roomba.ui.smart_home.told_state import shortened
 from roomba.ui.web.routes.wishes import CleanWish, PlaceWish, order_of
-from roomba.vocabulary import FanLevel
+from roomba.vocabulary import HELD, FanLevel, Phase
 
-_GOES_ON: Final = ("paused", "error")
-"""Phases after which a start goes on with what was begun."""
-_UNDER_WAY: Final = ("undocking", "cleaning")
+_UNDER_WAY: Final = (Phase.UNDOCKING, Phase.CLEANING)
 _Model = TypeVar("_Model", bound=BaseModel)
 _FANS: Final = tuple(level.value for level in FanLevel)
 
@@ -98,7 +96,7 @@ class SmartCommands:
     def _start(self) -> None:
         """Go on with what is paused, else clean all; while it cleans that is so already."""
         phase = self._robot.robot().vacuum.phase
-        if phase in _GOES_ON:
+        if phase in HELD:
             self._robot.resume()
         elif phase not in _UNDER_WAY:
             self._robot.clean(CleanOrder(fan=self.fan))

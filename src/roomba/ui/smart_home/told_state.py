@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-from roomba.client.protocol import AT_REST
 from roomba.client.view import HomeView, RobotView
+from roomba.vocabulary import AT_REST, Phase
 
 _LONGEST: Final = 255
 """Characters of a state in Home Assistant."""
 _STEP: Final = 5
 """s; a time in steps of that changes less often than the robot is looked at."""
-_BIN_FULL: Final = "bin full"
 
 
 class StateTeller:
@@ -47,7 +46,7 @@ class StateTeller:
             "to_go": _in_steps(vacuum.seconds_to_go),
             "bin": _rounded(view.dirt, 1),
             "bag": _rounded(100.0 * view.bag, 0),
-            "bin_full": vacuum.phase == _BIN_FULL,
+            "bin_full": vacuum.phase == Phase.BIN_FULL,
             "room": vacuum.room[:_LONGEST] or "none",
             "error": shortened(vacuum.message or view.held or view.doubt) or "none",
         }

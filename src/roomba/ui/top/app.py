@@ -19,6 +19,7 @@ from roomba.ui.state_words import lines_of
 from roomba.ui.top.link import PageLink
 from roomba.ui.top.map_text import LEGEND, map_text
 from roomba.ui.top.rates import Rate, TopicRates
+from roomba.vocabulary import HELD
 
 _LOOK: Final = 0.25
 """s of wall time between two looks at what the link has."""
@@ -28,8 +29,6 @@ _FORWARD, _TURN = 0.5, 0.3
 """Shares of the limits of speed and of turning at which keys drive."""
 _MOST_LINES: Final = 500
 """Lines that the log keeps."""
-_HELD: Final = ("paused", "error")
-"""States in which the robot waits to be told to go on."""
 _LINKS: Final = {
     "connecting": "connecting to the robot …",
     "gone": "the robot does not answer; this is what was seen last",
@@ -178,7 +177,7 @@ class TopApp(App[int]):
 
     async def action_pause(self) -> None:
         """Let the robot stand, or go on if it waits for that."""
-        is_held = self.link.state.get("vacuum", {}).get("state") in _HELD
+        is_held = self.link.state.get("vacuum", {}).get("state") in HELD
         await self._obeyed("resume" if is_held else "pause")
 
     async def action_dock(self) -> None:

@@ -10,9 +10,8 @@ from fixtures.robots.missions import STATION, until
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.cleaning.stages import edges_of
-from roomba.mission.phases.machine import Phase
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
-from roomba.vocabulary import CarpetWay, EdgeOrder, FanLevel
+from roomba.vocabulary import CarpetWay, EdgeOrder, FanLevel, Phase
 from roomba.world.home.home import DirtSource
 
 CARPET = (1.4, 0.4, 2.6, 2.1)

@@ -9,14 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.mission.phases.machine import (
-    VACUUM_STATES,
-    Errand,
-    Event,
-    MissionState,
-    Phase,
-    next_state,
-)
+from roomba.mission.phases.machine import VACUUM_STATES, Errand, Event, MissionState, next_state
+from roomba.vocabulary import Phase
 
 DRIVING = (
     Phase.UNDOCKING,

@@ -18,12 +18,13 @@ from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.phases.energy import EnergyLedger
-from roomba.mission.phases.machine import Errand, MissionState, Phase
+from roomba.mission.phases.machine import Errand, MissionState
 from roomba.mission.phases.monitor import Monitor
 from roomba.mission.phases.step import Failure
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.things.layer import ThingLayer
+from roomba.vocabulary import Phase
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
 SITE = PlanningContext(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())

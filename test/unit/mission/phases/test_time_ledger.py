@@ -11,9 +11,9 @@ from fixtures.robots.missions import HOME
 
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanRequest, CleanResult
-from roomba.mission.phases.machine import Phase
 from roomba.mission.phases.time_ledger import TimeLedger
 from roomba.time_spent import TimeSpent
+from roomba.vocabulary import Phase
 
 TICK, LIMIT = 0.05, 0.3
 FULL = LIMIT * TICK

@@ -15,7 +15,8 @@ from roomba.client.protocol import CleanReport, VacuumSnapshot
 from roomba.client.view import NO_POINTS, GridLayer, HomeView, LayerName, RobotView, battery_fills
 from roomba.geometry import Pose
 from roomba.headless.live.bumping.robot import BumpingRobot
-from roomba.mission.phases.machine import VACUUM_STATES, Phase
+from roomba.mission.phases.machine import VACUUM_STATES
+from roomba.vocabulary import Phase
 
 BY_WHEELS: Final = "it has no lidar: where it is, and what it swept, is by wheels and walls"
 _MARGIN: Final = 20
