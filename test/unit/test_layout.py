@@ -208,10 +208,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     ),
     "roomba/perception/matching/beams": ("unit/perception/matching/test_match_kernels.py", VALUES),
     "roomba/perception/matching/mounts": ("ros/convert/test_scan.py", "made of messages there"),
-    "roomba/perception/slam/following/follow_kernels": (
-        "unit/perception/slam/test_mapper.py",
-        PART,
-    ),
     "roomba/perception/slam/mapper_state": (
         "unit/perception/slam/test_mapper_taken_up.py",
         VALUES,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from roomba.clock import LONGEST_TICK
 from roomba.configuration.mission import MissionConfig
@@ -18,7 +19,11 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.dust_bin import DustBin
 from roomba.mission.phases.energy import EnergyLedger
 from roomba.mission.phases.time_ledger import TimeLedger
+from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.swept.dirt_map import DirtMap
+
+_DOUBTFUL: Final = 0.05
+"""Share of the wanted floor; from so much on it is told that its place was known roughly."""
 
 
 class Job:
@@ -46,6 +51,8 @@ class Job:
         self._explored: ExploreResult | None = None
         self._not_seen = ""
         """Where the map was still open when there was nothing left to look for, and why."""
+        self._swept_roughly = 0
+        """Cells that count as swept, though its place was known roughly."""
 
     def cleaning_of(
         self, request: CleanRequest, context: PlanningContext, senses: Senses
@@ -66,6 +73,7 @@ class Job:
 
     def _begin(self, senses: Senses) -> None:
         self.outcome, self._is_told, self._not_seen = None, False, ""
+        self._swept_roughly = 0
         self.ledger.begin(senses)
         self.times.begin()
         self._started = senses.now
@@ -111,7 +119,9 @@ class Job:
         coverage = self.cleaning.ledger.coverage
         swept = coverage.swept_cells
         coverage.sweep(pose.x, pose.y)
-        self.bin.note(pose.x, pose.y, senses.grains, way, coverage.swept_cells - swept)
+        newly = coverage.swept_cells - swept
+        self._swept_roughly += newly if senses.knowledge is Knowledge.ROUGH else 0
+        self.bin.note(pose.x, pose.y, senses.grains, way, newly)
         self.dirt.note(pose.x, pose.y, senses.grains * elapsed, way)
 
     def look_at_bin(self, senses: Senses) -> None:
@@ -186,7 +196,11 @@ class Job:
         )
         wanted, covered = cleaning.ledger.coverage.wanted_area, cleaning.ledger.clean_area
         if outcome is CleanOutcome.COMPLETED:
-            reasons = (message or what_is_not_clean(wanted, covered, missed), self._not_seen)
+            reasons = (
+                message or what_is_not_clean(wanted, covered, missed),
+                self._not_seen,
+                self._what_is_doubtful(cleaning.ledger.coverage.cell_area, wanted),
+            )
             message = "; ".join(filter(None, reasons))
         return CleanResult(
             outcome,
@@ -200,6 +214,16 @@ class Job:
             missed=missed,
             times=self.times.spent(cleaning.mean_passes * covered, context.tool_width),
             rooms=dirt_of_rooms(cleaning.ledger.clean, context, self.dirt),
+        )
+
+    def _what_is_doubtful(self, cell_area: float, wanted: float) -> str:
+        """Return how much floor counts as clean by a place that was not well known."""
+        area = self._swept_roughly * cell_area
+        if area < _DOUBTFUL * wanted:
+            return ""
+        return (
+            f"of {area:.1f} m² that count as clean the place was known roughly: there is next to "
+            "nothing in the lidar's reach, and it may have been other floor"
         )
 
     def forget(self) -> None:

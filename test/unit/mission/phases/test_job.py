@@ -132,6 +132,23 @@ def test_what_it_passes_is_swept_where_its_place_is_known_and_it_drives() -> Non
     assert coverage.swept_cells > 100
 
 
+@pytest.mark.parametrize(
+    ("knowledge", "is_told"), [(Knowledge.KNOWN, False), (Knowledge.ROUGH, True)]
+)
+def test_floor_that_counts_as_clean_by_a_place_hardly_known_is_told(
+    knowledge: Knowledge, is_told: bool
+) -> None:
+    job, last = cleaning_job(), AWAY
+    for step in range(1, 60):
+        senses = Senses(0.1 * step, Pose(1.0 + 0.02 * step, 0.6, 0.0), knowledge=knowledge)
+        job.account(senses, last, sweeps=True)
+        last = senses
+    end(job, CleanOutcome.COMPLETED)
+    result = job.take_result()
+    assert result is not None
+    assert ("the place was known roughly" in result.message) == is_told
+
+
 def test_time_that_a_clock_jumps_does_not_count() -> None:
     job = cleaning_job()
     job.account(replace(AWAY, now=1.0), AWAY, sweeps=True)
