@@ -6,6 +6,7 @@ import bisect
 import heapq
 import operator
 import shlex
+import struct
 import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -15,6 +16,7 @@ import numpy as np
 from rosbags.rosbag1 import Reader as Reader1
 from rosbags.rosbag2 import Reader as Reader2
 
+from roomba.recordings.bag_format.index_sizes import has_wrong_sizes, mend_sizes
 from roomba.recordings.bag_format.mending import BagError, mend_bag, needs_mending
 from roomba.recordings.packed import Unpacked
 from roomba.recordings.readings import LogError
@@ -28,6 +30,15 @@ _RECOVER: Final = {
     "malformed": ("db3", "sqlite3 {} .recover | sqlite3 whole.db3"),
 }
 """What a reader says of files of ROS 2 that are cut, their form, and its own tool for them."""
+_UNNAMED: Final = (
+    AssertionError,
+    LookupError,
+    ArithmeticError,
+    ValueError,
+    TypeError,
+    struct.error,
+)
+"""What the reader raises where it does not know itself what is wrong."""
 
 _Place = tuple[int, int]
 """Where a message is in a bag: its chunk, and the place in that."""
@@ -63,7 +74,7 @@ class BagFile:
         self._readers: list[Any] = []
         self.is_of_ros_1 = path.is_file() and self._file.path.suffix == ".bag"
         try:
-            self._mend_cut()
+            self._mend_index()
             self._first = self._opened()
         except LogError:
             self.close()
@@ -164,17 +175,32 @@ class BagFile:
             self._note("the recorder's clock was set back on the way: the time goes on there")
         return runs
 
-    def _mend_cut(self) -> None:
-        """Read a copy with an index in place of a bag without one; raises LogError."""
-        if not (self.is_of_ros_1 and needs_mending(self._file.path)):
+    def _mend_index(self) -> None:
+        """Read a copy with a good index in place of a bag with none, or a bad one.
+
+        Raises LogError.
+        """
+        if not self.is_of_ros_1:
             return
+        if has_wrong_sizes(self._file.path):
+            self._take_copy("its index tells wrong sizes")
+            mend_sizes(self._file.path)
+        if needs_mending(self._file.path):
+            self._take_copy("it was cut short")
+            self._mend_cut()
+
+    def _take_copy(self, reason: str) -> None:
+        """Go on with a copy of the bag, for a reason; raises LogError."""
         try:
             self._file.take_copy()
         except OSError as error:
             raise LogError(
-                f"{self.path}: it was cut short, and a copy of it, to read what is whole, cannot "
+                f"{self.path}: {reason}, and a copy of it, to read what is whole, cannot "
                 f"be made in {tempfile.gettempdir()}: {error.strerror}; TMPDIR names another place"
             ) from None
+
+    def _mend_cut(self) -> None:
+        """Give the copy of a bag without an index one; raises LogError."""
         try:
             mended = mend_bag(self._file.path, self.path)
         except BagError as error:
@@ -207,9 +233,11 @@ def _index(reader: Any, connections: Sequence[Any]) -> list[tuple[int, _Place]]:
 
 def _told(path: Path, error: Exception) -> str:
     """Return why a bag cannot be opened, and what to do about it."""
-    reason = str(error) or type(error).__name__
     if isinstance(error, PermissionError):
         return f"{path}: cannot be read: {error.strerror}"
+    if isinstance(error, _UNNAMED):
+        return _told_unnamed(path, error)
+    reason = str(error) or type(error).__name__
     told = f"{path}: expected a whole bag, it cannot be opened: {reason.rstrip('.')}"
     for sign, (form, tool) in _RECOVER.items():
         if sign in reason:
@@ -217,3 +245,16 @@ def _told(path: Path, error: Exception) -> str:
             command = tool.format(shlex.quote(str(data)))
             told += f"; if it was cut short, `{command}` saves what is whole"
     return told
+
+
+def _told_unnamed(path: Path, error: Exception) -> str:
+    """Return what to do about a bag in which a reader met what its authors did not foresee."""
+    what = f"{type(error).__name__} {error}".strip()
+    told = f"{path}: expected a bag as ROS writes it, got what its reader cannot follow ({what})"
+    given = shlex.quote(str(path))
+    if path.is_dir() or path.suffix in (".db3", ".mcap"):
+        return f"{told}; `ros2 bag info {given}` tells whether ROS 2 reads it, else copy it again"
+    return (
+        f"{told}; `rosbag reindex {given}` of ROS 1 makes its index anew, `rosbag filter {given} "
+        "new.bag True` writes what is whole into another bag"
+    )

@@ -425,3 +425,28 @@ def test_single_messages_of_long_ago_set_no_clock_back(tmp_path: Path) -> None:
     log = BagLog(write_bag(tmp_path / "made.bag", late))
     assert log.notes == []
     log.close()
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (
+            AssertionError(),
+            r"cannot follow \(AssertionError\); `rosbag reindex .*made.bag` of ROS 1",
+        ),
+        (
+            KeyError("conn"),
+            r"cannot follow \(KeyError 'conn'\); .*`rosbag filter .*made.bag new.bag",
+        ),
+    ],
+)
+def test_what_the_reader_does_not_name_is_told_with_what_to_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception, said: str
+) -> None:
+    def fail(_: Reader) -> None:
+        raise error
+
+    path = write_bag(tmp_path / "made.bag", drive(1.0))
+    monkeypatch.setattr(Reader, "open", fail)
+    with pytest.raises(LogError, match=said):
+        BagFile(path)
