@@ -120,6 +120,7 @@ class CarmenLog:
                 f"{self._first_broken})"
             )
         if not self._lines:
+            self._refuse_numbers(path)
             there = self.notes or [f"it has {_shown(self._other) or 'nothing'}"]
             raise LogError(
                 f"{path}: expected lines {', '.join(WORDS[:-1])} of a CARMEN log, got none; "
@@ -221,6 +222,17 @@ class CarmenLog:
         self._broken += 1
         if not self._first_broken:
             self._first_broken = f"line {number}, {word}: {_cut(reason, _LONGEST_REASON)}"
+
+    def _refuse_numbers(self, path: Path) -> None:
+        """Refuse a text most of whose lines begin with a number; raises LogError."""
+        numbers = [word for word in self._other if _is_number(word)]
+        if 2 * sum(self._other[word] for word in numbers) > self._other.total():
+            raise LogError(
+                f"{path}: expected lines {', '.join(WORDS[:-1])} of a CARMEN log, got lines that "
+                f"begin with numbers, as {_cut(numbers[0], _LONGEST)}: a line of a CARMEN log "
+                "begins with what it tells, as `FLASER 3 1.5 1.6 1.4 0 0 0 0 0 0 12.5 host 12.5`, "
+                "of three ranges, two poses and its time"
+            )
 
     def _go_on(self) -> None:
         """Let times go on where the clock was set back, as between two drives in a file."""
@@ -358,6 +370,14 @@ def _times(words: list[str]) -> tuple[float, float]:
     """Return stamp and arrival, s, of the words that end a line: 0 for a stamp that is missing."""
     stamp = _finite(words[0]) if words else 0.0
     return stamp, _finite(words[2]) if len(words) > 2 else stamp
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
 
 
 def _finite(word: str) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Final
 
@@ -14,6 +15,8 @@ _HEAD: Final = 1 << 16
 """Bytes by which a file is known."""
 _MAGIC: Final = {b"#ROSBAG V": ".bag", b"\x89MCAP": ".mcap", b"SQLite format 3": ".db3"}
 """How bags begin, and what their names must end with."""
+_OLD: Final = (b"#ROSRECORD V", b"#ROSBAG V1.")
+"""How bags begin that are older than version 2.0: those of before 2010."""
 _RELATION: Final = 8
 """Numbers in a line of a file of relations."""
 
@@ -31,6 +34,8 @@ def open_log(path: Path) -> Log:
     head = head_of(path, _HEAD)
     if not head:
         raise LogError(f"{path}: expected a bag or a log, the file is empty")
+    if head.startswith(_OLD):
+        raise LogError(_told_old(path, head))
     for magic, suffix in _MAGIC.items():
         if head.startswith(magic):
             if not plain_name(path).endswith(suffix):
@@ -53,6 +58,16 @@ def is_relations(head: bytes) -> bool:
     words = [line.split() for line in (lines[:-1] or lines) if line.strip()]
     rows = [row for row in words if not row[0].startswith("#")]
     return bool(rows) and all(len(row) == _RELATION and all(map(_is_number, row)) for row in rows)
+
+
+def _told_old(path: Path, head: bytes) -> str:
+    """Return what makes a bag of today of an old one; only ``rosbag`` reads them."""
+    version = head.split(b"\n", 1)[0].rpartition(b"V")[2][:8].decode(errors="replace").strip()
+    return (
+        f"{path}: expected a bag of ROS 1, version 2.0, got an old one of version {version}; "
+        f"`rosbag filter {shlex.quote(str(path))} new.bag True` of ROS 1 writes it anew, and where "
+        "that refuses it `rosbag fix`"
+    )
 
 
 def _bag(path: Path) -> Log:

@@ -71,7 +71,15 @@ def test_relations_are_known_by_their_eight_numbers() -> None:
         ("made.mcap", b"#ROSBAG V2.0\n", "expected a name that ends with .bag"),
         ("picture.png", b"\x89PNG\r\n\x1a\n\0\0", "expected a bag of ROS 1 or 2, or a CARMEN log"),
         ("cut.log.xz", lzma.compress(b"FLASER 1 2\n" * 9000)[:-30], "cannot be"),
-        ("old.bag", b"#ROSBAG V1.2\n", "version 102 is not supported"),
+        ("old.bag", b"#ROSBAG V1.2\n", r"an old one of version 1\.2; `rosbag filter .*old.bag new"),
+        ("old.bag", b"#ROSRECORD V1.2\n\0\0", r"version 1\.2; .*`rosbag fix`"),
+        ("new.bag", b"#ROSBAG V3.0\n", "version 300 is not supported"),
+        (
+            "cells.dat",
+            b"589923412 1 2 3\n589923500 1 2 3\n",
+            "lines that begin with numbers, as 5899",
+        ),
+        ("half.log", b"1.5 2\nTo be\n2.5 1\n", "of a CARMEN log, got lines that begin with num"),
         ("words.log", b"To be or not\n", "of a CARMEN log, got none"),
     ],
 )
