@@ -126,6 +126,7 @@ class CarmenLog:
                 f"{path}: expected lines {', '.join(WORDS[:-1])} of a CARMEN log, got none; "
                 f"{'; '.join(there)}"
             )
+        self._is_by_order = False
         self._go_on()
         self._tell_apart()
         largest = max((_largest(line.ranges) for line in self._lines), default=0.0)
@@ -150,7 +151,7 @@ class CarmenLog:
         for line in self._lines:
             for number, channel in enumerate(channels):
                 if _tells(line, channel):
-                    yield Arrival(number, line.stamp, line.arrival)
+                    yield Arrival(number, line.stamp, line.arrival, self._is_by_order)
 
     def values(
         self, channels: Sequence[Channel], wanted: NDArray[np.bool_], mount_of: MountOf
@@ -256,6 +257,7 @@ class CarmenLog:
         arrivals = np.array([line.arrival for line in self._lines])
         if not (tell_nothing(stamps[is_scan]) and tell_nothing(arrivals[is_scan])):
             return
+        self._is_by_order = bool((arrivals > 0.0).any())
         times = spread_times(arrivals, is_scan).tolist()
         self._lines = [
             line._replace(stamp=0.0, arrival=time)

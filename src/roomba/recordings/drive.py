@@ -30,11 +30,13 @@ from roomba.recordings.times.stamps import (
     CLOCKS,
     Floats,
     Ints,
+    Mask,
     StampCounts,
     delay_of,
     in_order,
     mended,
 )
+from roomba.recordings.times.untimed import times_by_order
 
 _GAP: Final = 1.0
 """s between two logs from which it is told."""
@@ -224,13 +226,20 @@ class LoggedDrive:
         own = np.array([entry.channel for entry in entries], np.int64)
         stamps = np.array([entry.stamp for entry in entries], np.float64)
         arrivals = np.array([entry.arrival for entry in entries], np.float64)
+        is_by_order = np.array([entry.is_by_order for entry in entries], np.bool_)
+        for mask in self._not_told_apart(channels, own, stamps, arrivals):
+            is_by_order[mask] = True
         delays = [delay_of(stamps[own == at], arrivals[own == at]) for at in range(len(channels))]
         reference = self._reference(channels, delays)
         times = np.empty(len(entries))
         numbers = np.empty(len(entries), np.int64)
         for at, channel in enumerate(channels):
             mask, delay = own == at, delays[at]
-            times[mask] = mended(stamps[mask], arrivals[mask], reference, self.counts)
+            if is_by_order[mask].any():
+                times[mask] = arrivals[mask] - reference
+                self.counts.add(StampCounts(len(times[mask]), by_order=len(times[mask])))
+            else:
+                times[mask] = mended(stamps[mask], arrivals[mask], reference, self.counts)
             numbers[mask] = self._number(channel)
             if delay is not None and abs(delay - reference) > CLOCKS:
                 self._remarks.append(
@@ -238,6 +247,21 @@ class LoggedDrive:
                     "odometry: its times are shifted"
                 )
         return times, arrivals, numbers
+
+    def _not_told_apart(
+        self, channels: Sequence[Channel], own: Ints, stamps: Floats, arrivals: Floats
+    ) -> Iterator[Mask]:
+        """Yield masks of channels whose times are coarse; they get ``arrivals`` by their order."""
+        for at, channel in enumerate(channels):
+            mask = own == at
+            spread = times_by_order(stamps[mask], arrivals[mask])
+            if spread is not None:
+                stamps[mask], arrivals[mask] = 0.0, spread
+                self._remarks.append(
+                    f"the times of {channel.name} do not tell its messages apart: they go by "
+                    "their order, evenly between the times that differ"
+                )
+                yield mask
 
     def _number(self, channel: Channel) -> int:
         """Return the number of a log's channel among the chosen ones."""

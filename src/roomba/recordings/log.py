@@ -28,12 +28,14 @@ class Channel(NamedTuple):
 class Arrival(NamedTuple):
     """That something came: the number of its channel, and when, s.
 
-    ``stamp`` is what the message itself says, 0 if nothing; ``arrival`` when it was recorded.
+    ``stamp`` is what the message itself says, 0 if nothing; ``arrival`` when it was recorded, or
+    what its place among the others says, where its own time ``is_by_order``: others have it, too.
     """
 
     channel: int
     stamp: float
     arrival: float
+    is_by_order: bool = False
 
 
 class Frames(NamedTuple):

@@ -229,6 +229,7 @@ def test_without_times_that_differ_the_order_of_lines_counts(
     log = log_of(tmp_path, *lines)
     entries = list(log.entries([channel(log, "FLASER", Kind.SCAN)]))
     assert [entry.stamp for entry in entries] == [0.0] * 5
+    assert [entry.is_by_order for entry in entries] == [stamp != "0"] * 5
     arrivals = np.array([entry.arrival for entry in entries])
     assert np.diff(arrivals) == pytest.approx(np.full(4, 10.0))
     assert log.notes == [

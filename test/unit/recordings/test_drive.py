@@ -121,6 +121,18 @@ def test_a_bag_that_was_written_topic_by_topic_is_in_order(tmp_path: Path) -> No
     assert_whole(readings, items)
 
 
+def test_of_a_bag_of_whole_seconds_the_order_counts(tmp_path: Path) -> None:
+    items = drive(SECONDS)
+    cut = [replace(item, stamp=item.stamp // 1.0, arrival=item.arrival // 1.0) for item in items]
+    readings, recorded = read([write_bag(tmp_path / "made.bag", cut)])
+    assert_whole(readings, items)
+    assert recorded.counts.by_order == recorded.counts.messages == len(items)
+    assert recorded.counts.equal == recorded.counts.without == 0
+    for topic in ("/odom", "/scan"):
+        told = f"the times of {topic} do not tell its messages apart: they go by their order"
+        assert sum(told in note for note in recorded.notes) == 1
+
+
 def test_a_clock_that_was_set_back_on_the_way_goes_on(tmp_path: Path) -> None:
     items = drive(SECONDS)
     half = len(items) // 2

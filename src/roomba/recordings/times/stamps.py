@@ -54,6 +54,8 @@ class StampCounts:
     """Of a clock that had jumped: shifted to where arrivals say."""
     coarse: int = 0
     """Of a clock so coarse that many stamps are equal: the time of recording counts."""
+    by_order: int = 0
+    """Of times, as whole seconds, that most have in common with others: their order counts."""
     out_of_order: int = 0
     """Recorded after a later one of their channel: sorted."""
     equal: int = 0
@@ -71,6 +73,7 @@ class StampCounts:
             (self.without, "without a stamp (by the time of recording)"),
             (self.jumped, "of a clock that had jumped (shifted back)"),
             (self.coarse, "of a coarse clock (by the time of recording)"),
+            (self.by_order, "of times that several have, as of whole seconds (by their order)"),
             (self.out_of_order, "out of order (sorted)"),
             (self.equal, "of a time that another one has (left out)"),
         )

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
 _EQUAL: Final = 0.5
@@ -19,6 +20,8 @@ written twice has no more.
 """
 _TICKS: Final = 0.02
 """Share of the scans that begin another time; with fewer the clock is broken, not just coarse."""
+_FEWEST_TICKS: Final = 3
+"""So many different times of a channel are a coarse clock's, not a broken one's."""
 _STEP: Final = 10.0
 """s from one scan to the next by a broken clock: so slow that turning within a scan is nothing."""
 
@@ -26,6 +29,20 @@ _STEP: Final = 10.0
 def tell_nothing(times: Floats) -> bool:
     """Whether most of the ``times`` of scans, s, in the order of recording, equal the last one."""
     return int(np.count_nonzero(np.diff(times) == 0.0)) > _EQUAL * len(times)
+
+
+def times_by_order(stamps: Floats, arrivals: Floats) -> Floats | None:
+    """Return times of a channel's messages, s, by their order; None where its times tell.
+
+    Both are in the order of recording; where neither tells messages apart, that of more different
+    times counts. With hardly any none does: what other channels came between is not known.
+    """
+    if not (tell_nothing(stamps) and tell_nothing(arrivals)):
+        return None
+    told = max((arrivals, stamps), key=lambda times: len(np.unique(times)))
+    times = np.maximum.accumulate(told)
+    ticks = _ticks(times)
+    return None if len(ticks) < _FEWEST_TICKS else _between(times, ticks)
 
 
 def spread_times(times: Floats, is_scan: Mask) -> Floats:
@@ -41,10 +58,20 @@ def spread_times(times: Floats, is_scan: Mask) -> Floats:
 
 def _by_ticks(times: Floats) -> Floats:
     """Return ``times``, s, that never go back with the equal ones spread up to the next."""
+    ticks = _ticks(times)
+    if len(ticks) < 2 or len(ticks) < _TICKS * len(times):
+        return np.asarray(times[0] + _STEP * np.arange(len(times)), np.float64)
+    return _between(times, ticks)
+
+
+def _ticks(times: Floats) -> Ints:
+    """Return the numbers of the ``times``, s, that differ from the one before, and of the first."""
+    return np.concatenate(([0], 1 + np.flatnonzero(np.diff(times) > 0.0)))
+
+
+def _between(times: Floats, ticks: Ints) -> Floats:
+    """Return ``times``, s, evenly from each of the ``ticks`` up to the next."""
     count = len(times)
-    ticks = np.concatenate(([0], 1 + np.flatnonzero(np.diff(times) > 0.0)))
-    if len(ticks) < 2 or len(ticks) < _TICKS * count:
-        return np.asarray(times[0] + _STEP * np.arange(count), np.float64)
     step = float(np.median(np.diff(times[ticks]) / np.diff(ticks)))
     end = float(times[-1]) + step * (count - int(ticks[-1]))
     known = [*times[ticks].tolist(), end]

@@ -206,11 +206,12 @@ def test_of_a_time_each_channel_counts_once_and_the_lowest_rank_first(
 
 
 def test_counts_are_told_in_a_line() -> None:
-    counts = StampCounts(10, without=1, jumped=2, coarse=3, out_of_order=4, equal=5)
+    counts = StampCounts(10, without=1, jumped=2, coarse=3, by_order=7, out_of_order=4, equal=5)
     counts.add(StampCounts(5, equal=1))
     assert counts.words == (
         "15 messages: 1 without a stamp (by the time of recording), 2 of a clock that had jumped "
-        "(shifted back), 3 of a coarse clock (by the time of recording), 4 out of order (sorted), "
+        "(shifted back), 3 of a coarse clock (by the time of recording), 7 of times that several "
+        "have, as of whole seconds (by their order), 4 out of order (sorted), "
         "6 of a time that another one has (left out)"
     )
 

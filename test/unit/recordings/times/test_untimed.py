@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from roomba.recordings.times.untimed import spread_times, tell_nothing
+from roomba.recordings.times.untimed import spread_times, tell_nothing, times_by_order
 
 
 @pytest.mark.parametrize(
@@ -44,3 +44,31 @@ def test_a_clock_that_breaks_off_counts_as_none() -> None:
     times = np.full(200, 4.29497e9)
     times[0] = 3.0
     assert np.diff(spread_times(times, np.ones(200, np.bool_))) == pytest.approx(np.full(199, 10.0))
+
+
+def test_where_either_time_tells_messages_apart_their_order_does_not_count() -> None:
+    true = 100.0 + 0.1 * np.arange(60)
+    assert times_by_order(true, np.floor(true)) is None
+    assert times_by_order(np.floor(true), true + 0.01) is None
+    assert times_by_order(np.zeros(60), true) is None
+    assert times_by_order(np.array([]), np.array([])) is None
+
+
+def test_of_two_times_that_do_not_tell_apart_the_one_that_tells_more_counts() -> None:
+    true = 100.0 + 0.1 * np.arange(60)
+    whole = np.floor(true)
+    for stamps, arrivals in ((whole, whole), (whole, np.zeros(60)), (np.zeros(60), whole)):
+        assert times_by_order(stamps, arrivals) == pytest.approx(true)
+
+
+@pytest.mark.parametrize("rate", [20.0, 200.0])
+def test_however_many_messages_a_whole_second_has_they_are_spread(rate: float) -> None:
+    true = 100.0 + np.arange(int(5 * rate)) / rate
+    spread = times_by_order(np.floor(true), np.floor(true))
+    assert spread == pytest.approx(true)
+
+
+def test_a_clock_that_stands_tells_nothing_to_spread() -> None:
+    stood = np.full(60, 4.29497e9)
+    stood[0] = 3.0
+    assert times_by_order(stood, stood) is None
