@@ -37,6 +37,10 @@ _MAY_START: Final = {"standing_deviation": 0.05, "standing_heading": 0.05}
 """m, rad; of a guessed step of a robot that stood: it may start at any time."""
 _LONGEST: Final = 1.5
 """s; over a longer time a robot does not go on as it did."""
+_FEWEST: Final = 10
+"""Scans; of a drive with fewer it is not told that most of them fitted nothing."""
+_MOST_UNFITTING: Final = 0.5
+"""Share of the scans that fitted nothing; with more a map is hardly worth anything."""
 _LATEST: Final = 1.0
 """s; a scan that odometry is so far behind is of a time that it knows nothing of."""
 
@@ -109,6 +113,12 @@ class MapReplay:
     def notes(self) -> list[str]:
         """What was left out, and what no scan joined to the map."""
         told = [f"{count} {what}: left out" for what, count in self.left_out.items()]
+        if self.scans >= _FEWEST and self.unconfirmed > _MOST_UNFITTING * self.scans:
+            told.append(
+                f"{self.unconfirmed} of {self.scans} scans fitted nothing seen before: this map is "
+                "hardly worth anything; look whether each scan is a whole turn of one lidar, and "
+                "whether angles, times and ranges are true"
+            )
         apart, laid = self.mapper.ways_apart, self.mapper.parts_laid
         if laid:
             told.append(

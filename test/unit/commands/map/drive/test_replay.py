@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from fixtures.drives.made_logs import BEGAN, Item, changed, drive, held, pose_at, write_bag
+from fixtures.drives.made_logs import BEAMS, BEGAN, Item, changed, drive, held, pose_at, write_bag
 
 from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
 from roomba.recordings.choice import Wanted
@@ -64,3 +65,15 @@ def test_a_plain_drive_has_no_notes(tmp_path: Path) -> None:
     made = mapped(tmp_path, drive(SECONDS))
     assert made.notes == ()
     assert off(made) < 0.03
+
+
+def test_a_drive_whose_scans_fit_nothing_is_told_to_make_no_map(tmp_path: Path) -> None:
+    generator = np.random.default_rng(3)
+
+    def circle(_: int, item: Item) -> Item:
+        return replace(item, value=np.full(BEAMS, generator.uniform(0.5, 9.0)))
+
+    made = mapped(tmp_path, changed(drive(SECONDS), "/scan", circle))
+    assert made.replay.unconfirmed > 100
+    told = f"{made.replay.unconfirmed} of {made.replay.scans} scans fitted nothing seen before"
+    assert any(told in note for note in made.notes)
