@@ -17,7 +17,7 @@ _ENTRY: Final = 12
 """Bytes of each message in an index: its time and where it is."""
 
 
-class _Size(NamedTuple):
+class _ToldSize(NamedTuple):
     """Where a record of an index tells its size, the size that it tells, and the true one."""
 
     at: int
@@ -42,7 +42,7 @@ def mend_sizes(path: Path) -> int:
     return len(wrong)
 
 
-def _sizes(file: BinaryIO) -> Iterator[_Size]:
+def _sizes(file: BinaryIO) -> Iterator[_ToldSize]:
     """Yield the sizes of the indexes of chunks, up to what is not whole."""
     end = os.fstat(file.fileno()).st_size
     if file.read(len(MAGIC)) != MAGIC:
@@ -55,7 +55,7 @@ def _sizes(file: BinaryIO) -> Iterator[_Size]:
             op = fields["op"][0]
             if op == Op.INDEX:
                 true = _ENTRY * int.from_bytes(fields["count"], "little")
-                yield _Size(at, size, true)
+                yield _ToldSize(at, size, true)
                 size = true
         except (ValueError, LookupError):
             return
