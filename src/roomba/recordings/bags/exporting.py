@@ -12,6 +12,7 @@ from typing import Final
 
 from rosbags.convert import convert
 
+from roomba.recordings.bag_format.index_sizes import has_wrong_sizes, mend_sizes
 from roomba.recordings.bag_format.mending import Mended, mend_bag, needs_mending
 from roomba.recordings.bag_format.records import MAGIC
 from roomba.recordings.readings import LogError
@@ -43,10 +44,12 @@ def export_bag(source: Path, target: Path, form: Form) -> Mended | None:
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".export_", dir=target.parent) as folder:
         mended, whole = None, source
-        if source.is_file() and needs_mending(source):
+        is_cut = source.is_file() and needs_mending(source)
+        if is_cut or (source.is_file() and has_wrong_sizes(source)):
             whole = Path(folder) / "copy.bag"
             shutil.copyfile(source, whole)
-            mended = mend_bag(whole, source)
+            mend_sizes(whole)
+            mended = mend_bag(whole, source) if is_cut else None
         # By the name .bag the converter would write one of ROS 1.
         made = Path(folder) / target.stem.replace(".", "_")
         try:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures.drives.old_bags import as_of_2010
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
@@ -182,3 +183,15 @@ def test_what_is_there_is_left_alone(bag: Path, capsys: pytest.CaptureFixture[st
     assert main([str(bag), "--to", "mcap"]) == 2
     assert "there is something already" in capsys.readouterr().err
     assert bag.with_suffix(".mcap").read_text() == "mine"
+
+
+def test_a_bag_of_2010_is_exported_and_left_as_it_is(
+    bag: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    old = as_of_2010(bag.read_bytes())
+    bag.write_bytes(old)
+    out = tmp_path / "out.mcap"
+    assert main([str(bag), "--to", "mcap", "--out", str(out)]) == 0
+    assert capsys.readouterr().out == f"{out}\n"
+    assert out.is_file()
+    assert bag.read_bytes() == old

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 from fixtures.drives.made_logs import drive, write_bag
+from fixtures.drives.old_bags import as_of_2010
 
 from roomba.recordings.bag_file import BagFile, Raw
 from roomba.recordings.bag_format.index_sizes import has_wrong_sizes, mend_sizes
-from roomba.recordings.bag_format.records import Op, parsed_fields, u32
 
 SECONDS = 4.0
 
@@ -17,17 +17,7 @@ SECONDS = 4.0
 def old(path: Path) -> tuple[Path, bytes]:
     """Write a bag as such a program did; return it, and what it would be without the fault."""
     whole = write_bag(path, drive(SECONDS)).read_bytes()
-    data = bytearray(whole)
-    at = data.index(b"\n") + 1
-    while at < len(data):
-        size = int.from_bytes(data[at : at + 4], "little")
-        fields = parsed_fields(bytes(data[at + 4 : at + 4 + size]))
-        at += 4 + size
-        size = int.from_bytes(data[at : at + 4], "little")
-        if fields["op"][0] == Op.INDEX:
-            data[at : at + 4] = u32(20 * int.from_bytes(fields["count"], "little"))
-        at += 4 + size
-    path.write_bytes(data)
+    path.write_bytes(as_of_2010(whole))
     return path, whole
 
 
