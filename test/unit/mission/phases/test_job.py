@@ -140,7 +140,7 @@ def test_floor_that_counts_as_clean_by_a_place_hardly_known_is_told(
 ) -> None:
     job, last = cleaning_job(), AWAY
     for step in range(1, 60):
-        senses = Senses(0.1 * step, Pose(1.0 + 0.02 * step, 0.6, 0.0), knowledge=knowledge)
+        senses = Senses(0.1 * step, Pose(0.4 + 0.04 * step, 0.6, 0.0), knowledge=knowledge)
         job.account(senses, last, sweeps=True)
         last = senses
     end(job, CleanOutcome.COMPLETED)
