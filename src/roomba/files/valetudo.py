@@ -5,8 +5,8 @@ and count. Entities have whole cm from that corner; their angles are degrees, 0 
 source is Valetudo's ``backend/lib/entities/map``, with the schemas in its folder ``doc``.
 
 Files that were written here name the map's own corner (``metaData.origin``, m), so that they come
-back in the same frame. Other maps are cut to what they show, and begin at their station; the seams
-that some robots leave between two segments are floor.
+back in the same frame. Other maps are cut to what they show, and begin at their station; the
+seams and doorways that some robots leave out (:mod:`roomba.raster.seams`) are floor.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from roomba.errors import RoombaError
 from roomba.files.plain_json import load_json
 from roomba.geometry import Pose
 from roomba.grid import FREE, MOST_CELLS, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.raster.seams import without_seams
 
 Mask = NDArray[np.bool_]
 Points = tuple[tuple[float, float], ...]
@@ -33,8 +34,6 @@ VERSION: Final = 2
 _CM: Final = 0.01
 _MARGIN: Final = 2
 """Cells around what a map shows."""
-_WIDEST_SEAM: Final = 2
-"""Cells; lines without any layer between two segments are no wider, and lie in doors as well."""
 _MOST_LAYERS: Final = 100
 """Rooms, floor and walls; each takes a cell's byte of memory for all cells."""
 _FARTHEST: Final = 1_000_000
@@ -140,7 +139,7 @@ def parse(text: str) -> ValetudoHome:
         for name, mask in _named(list(zip(found.layers, layers, strict=True)))
     ]
     if found.metaData.origin is None:
-        values, rooms = _without_seams(values, rooms)
+        values, rooms = _without_seams(values, rooms, found.pixelSize * _CM)
     return _placed(found, values, rooms)
 
 
@@ -215,32 +214,19 @@ def _named(layers: list[tuple[_Layer, Mask]]) -> list[tuple[str, Mask]]:
 
 
 def _without_seams(
-    values: NDArray[np.int8], rooms: list[tuple[str, Mask]]
+    values: NDArray[np.int8], rooms: list[tuple[str, Mask]], resolution: float
 ) -> tuple[NDArray[np.int8], list[tuple[str, Mask]]]:
     """Return cells and rooms without seams: each cell of one is floor of the room beside it."""
     owners = np.zeros(values.shape, np.int16)
     for number, (_, mask) in enumerate(rooms, start=1):
         owners[mask] = number
-    seams = np.zeros_like(owners)
-    _find_seams(owners, values == UNKNOWN, seams)
-    _find_seams(owners.T, values.T == UNKNOWN, seams.T)
-    joined = np.where(seams > 0, np.int8(FREE), values)
+    owners = without_seams(owners, values == UNKNOWN, values == OCCUPIED, resolution)
+    joined = np.where(owners > 0, np.int8(FREE), values)
+    is_new = values != joined
     return joined, [
-        (name, mask | (seams == number)) for number, (name, mask) in enumerate(rooms, start=1)
+        (name, mask | (is_new & (owners == number)))
+        for number, (name, mask) in enumerate(rooms, start=1)
     ]
-
-
-def _find_seams(owners: NDArray[np.int16], unknown: Mask, seams: NDArray[np.int16]) -> None:
-    """Write into ``seams`` which room owns the cells of seams that are crossed along rows."""
-    for width in range(1, _WIDEST_SEAM + 1):
-        before, after = owners[:, : -width - 1], owners[:, width + 1 :]
-        between = [slice(step, step + before.shape[1]) for step in range(1, width + 1)]
-        is_seam = (before > 0) & (after > 0) & (before != after)
-        for columns in between:
-            is_seam &= unknown[:, columns]
-        for number, columns in enumerate(between):
-            nearer = before if 2 * number < width else after
-            seams[:, columns][is_seam] = nearer[is_seam]
 
 
 def _placed(found: _Map, values: NDArray[np.int8], rooms: list[tuple[str, Mask]]) -> ValetudoHome:

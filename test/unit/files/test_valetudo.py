@@ -167,15 +167,16 @@ def test_rooms_of_one_name_are_told_apart() -> None:
 
 
 SEAMS = """
-WWWWWWWWWWWWWW
-Waaa-bbbb--ccW
-Waaa-bbbb--ccW
-WaaaWbbbbW.ccW
-Waa...bbb....W
-Wa...bbbb....W
-WWWWWWWWWWWWWW
+WWWWWWWWWWWWWWWWWWWW
+Waaa-bbbb--ccccccccW
+Waaa-bbbb--cc-----cW
+WaaaWbbbbW.cc-ccc-cW
+Waa..-bbb...c-ccc-cW
+Wa...bbbb...c-----cW
+Wa...bbbb...cccccccW
+WWWWWWWWWWWWWWWWWWWW
 """
-"""Rooms, and no layer between: seams, -, what is wider or at a wall, and spots within a room."""
+"""Rooms, and no layer between: seams and a carpet's outline, -, and what is wider or at a wall."""
 
 
 @pytest.mark.parametrize("turned", [False, True])
