@@ -4,8 +4,8 @@ The meaning of every field is that of map_server's ``image_loader.cpp``, with th
 that keep unknown floor from being taken for free: a transparent pixel of any colour is unknown (in
 map_server's trinary mode the alpha channel is averaged in as if it were a colour), raw values above
 100 are unknown (map_server lets them wrap around), and map_saver's grey of 205 is unknown in a
-picture that has no greys but map_saver's. Nav2's map_saver writes a ``free_thresh`` of 0.25 by
-default, by which that grey would be free (navigation2, issue 5138).
+picture that has hardly any greys but map_saver's and white. Nav2's map_saver writes a
+``free_thresh`` of 0.25 by default, by which that grey would be free (navigation2, issue 5138).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Threshold = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 MAP_SAVER_PIXELS = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}
 """Grey values that map_saver writes, and that the usual thresholds read back."""
 RAW_UNKNOWN = 255
-_NEARLY_ALL: Final = 0.99
+_NEARLY_ALL: Final = 0.95
 _TURNED: Final = 1e-6
 """rad; less is what a program's rounding makes of 0: a map of 1 km is off by a millimetre."""
 
@@ -139,8 +139,11 @@ def _occupancy(image: Image, description: MapDescription) -> NDArray[np.int8]:
 
 
 def _is_of_map_saver(grey: NDArray[np.float64]) -> bool:
-    """Whether nearly all of a picture has greys that map_saver writes; a person may edit some."""
-    return bool(np.isin(grey, list(MAP_SAVER_PIXELS.values())).mean() >= _NEARLY_ALL)
+    """Whether nearly all of a picture has greys that map_saver writes; a person may edit some.
+
+    Programs for pictures make white of its 254.
+    """
+    return bool(np.isin(grey, [*MAP_SAVER_PIXELS.values(), 255]).mean() >= _NEARLY_ALL)
 
 
 def _scaled(share: NDArray[np.float64], description: MapDescription) -> NDArray[np.int8]:

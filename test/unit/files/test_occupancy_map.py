@@ -75,6 +75,10 @@ def test_unknown_of_map_saver_is_unknown_also_by_thresholds_of_nav2(tmp_path: Pa
     pixels = b"\x00\xcd\xfe" * 66 + b"\xcd\x80"
     edited = load_map(written(tmp_path, nav2, b"P5\n200 1\n255\n" + pixels))
     assert edited.values[0, -2:].tolist() == [-1, -1]
+    # A program for pictures made white of free.
+    white = pixels.replace(b"\xfe", b"\xff")
+    edited = load_map(written(tmp_path, nav2, b"P5\n200 1\n255\n" + white))
+    assert edited.values[0, :3].tolist() == [100, -1, 0]
     # Greys of another program mean what the thresholds say.
     drawn = load_map(written(tmp_path, nav2, b"P5\n3 1\n255\n\x0a\xcd\xff"))
     assert drawn.values.tolist() == [[100, 0, 0]]
