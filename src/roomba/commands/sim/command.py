@@ -112,7 +112,8 @@ def _tell_run(options: SimOptions, run: Run, context: PlanningContext) -> None:
 
         write_plot(options.plot, run)
     unreached = unreached_in(context)
-    tell_tables([table_of(run.figures, unreached)], options.json, quiet=options.quiet)
+    table = table_of(run.figures, unreached, run.home.station_place)
+    tell_tables([table], options.json, quiet=options.quiet)
     if options.json is not None:
         write_json(options.json, run_as_json(run, unreached))
 

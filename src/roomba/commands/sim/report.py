@@ -10,13 +10,20 @@ from roomba.commands.output import clock, named_table
 from roomba.commands.sim.percentiles import PERCENTS, ROWS
 from roomba.commands.trials.figures import Figures, MissedShare
 from roomba.commands.trials.unreached import NOTHING, Unreached
+from roomba.world.home.home import StationPlace
 
 _SHOWN: Final = 8
 """The most missed areas or failures that are listed one by one."""
+_ELSEWHERE: Final = "--station X Y THETA puts it elsewhere"
 
 
-def lines_of(figures: Figures, unreached: Unreached = NOTHING) -> list[tuple[str, str]]:
-    """Return the rows of a run's table: a name and a text."""
+def lines_of(
+    figures: Figures, unreached: Unreached = NOTHING, place: StationPlace = StationPlace.TOLD
+) -> list[tuple[str, str]]:
+    """Return the rows of a run's table: a name and a text.
+
+    ``place`` is who said where the station stands: what that leaves out a person can mend.
+    """
     ratio = figures.path_ratio
     lines = [
         ("outcome", _outcome(figures)),
@@ -46,14 +53,19 @@ def lines_of(figures: Figures, unreached: Unreached = NOTHING) -> list[tuple[str
     if rest:
         area = sum(each.area_m2 for each in rest)
         lines.append(("missed", f"and {_count(len(rest), 'smaller patch', 'es')}: {area:.3f} m²"))
+    is_told = place is StationPlace.TOLD
     if unreached.area:
-        lines.append(("unreached", unreached.words))
+        lines.append(("unreached", unreached.words + ("" if is_told else f"; {_ELSEWHERE}")))
+    if place is StationPlace.ON_PAPER:
+        lines.append(("station", f"put on floor that ends with the picture; {_ELSEWHERE}"))
     return lines
 
 
-def table_of(figures: Figures, unreached: Unreached = NOTHING) -> Table:
-    """Return a run's table."""
-    rows = lines_of(figures, unreached)
+def table_of(
+    figures: Figures, unreached: Unreached = NOTHING, place: StationPlace = StationPlace.TOLD
+) -> Table:
+    """Return a run's table, as of :func:`lines_of`."""
+    rows = lines_of(figures, unreached, place)
     return named_table(rows, {"outcome": "green" if figures.is_completed else "red"})
 
 

@@ -207,6 +207,17 @@ class TurnedFrom:
     drop: NDArray[np.bool_]
 
 
+class StationPlace(Enum):
+    """Who said where the station stands."""
+
+    TOLD = "told"
+    """The home's layer, or a person."""
+    FOUND = "found"
+    """Nobody: it was put where there is room."""
+    ON_PAPER = "on paper"
+    """Nobody, and the floor it was put on reaches the end of the picture."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Home:
     """The truth about a home.
@@ -221,7 +232,8 @@ class Home:
     has slanted walls: its grids show them as well as cells can, and ``exact`` is the home without
     their steps, in whose ``solid`` and ``walls`` they are not. ``surfaces``, of ``exact`` too, are
     codes of what the cells' surfaces do to light, uint8 [rows, columns]: see
-    :class:`roomba.world.home.surface.Surface`; None if no material is given.
+    :class:`roomba.world.home.surface.Surface`; None if no material is given. ``station_place`` is
+    who said where the station stands.
     """
 
     name: str
@@ -240,6 +252,7 @@ class Home:
     turned: TurnedFrom | None = None
     free_walls: FreeWalls | None = None
     surfaces: NDArray[np.uint8] | None = None
+    station_place: StationPlace = StationPlace.TOLD
 
     @property
     def blocked(self) -> NDArray[np.bool_]:

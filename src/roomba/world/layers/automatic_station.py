@@ -12,7 +12,8 @@ from roomba.errors import HomeError
 from roomba.geometry import Pose
 from roomba.grid import OCCUPIED, OccupancyMap
 from roomba.world.catalogue.furniture import STATION_GAP, STATION_WIDTH
-from roomba.world.home.raster import Mask, largest_component, where_body_fits, with_neighbours
+from roomba.world.home.raster import Mask, where_body_fits, with_neighbours
+from roomba.world.layers.paper import off_paper
 
 CLEARANCE = 0.03
 """m; wanted around the docked body."""
@@ -29,18 +30,25 @@ _ALL_AROUND: Final = 16
 """Headings from east on that are tried: those along the map's axes first."""
 
 
-def automatic_station(occupancy: OccupancyMap, solid: Mask, body_radius: float) -> Pose:
+def automatic_station(
+    occupancy: OccupancyMap, solid: Mask, body_radius: float, paper: Mask | None = None
+) -> Pose:
     """Return a docked pose in the largest floor on which the body fits, m and rad in the map frame.
 
     Wanted is a straight wall before the nose and a metre of free way behind, best along the map's
     axes; failing that less way, failing that no wall, failing that any place. Among equals the
     nearest to the map's zero is taken, since that is where mapping robots start, and they start
-    from their station. Raises :class:`HomeError` if the body fits nowhere.
+    from their station. Floor that reaches the end of the ``paper``, if any, is taken only for want
+    of other (:mod:`roomba.world.layers.paper`). Raises :class:`HomeError` if the body fits nowhere.
     """
     frame = occupancy.frame
-    floor = largest_component(where_body_fits(frame, solid, body_radius + CLEARANCE))
-    if not floor.any():
-        floor = largest_component(where_body_fits(frame, solid, body_radius))
+    end = np.zeros(frame.shape, np.bool_) if paper is None else paper
+    for clearance in (CLEARANCE, 0.0):
+        around = body_radius + clearance
+        fits = where_body_fits(frame, solid, around)
+        floor = off_paper(fits, end, around + 2.0 * frame.resolution, frame.resolution)
+        if floor.any():
+            break
     if not floor.any():
         raise HomeError(
             f"expected floor on which a body of {body_radius:.3f} m radius fits, got none; "

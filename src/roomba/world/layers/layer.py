@@ -21,7 +21,8 @@ from roomba.files.strict_yaml import YamlFile
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.world.home.dirt import DirtField
-from roomba.world.home.home import DirtSource, Home
+from roomba.world.home.home import DirtSource, Home, StationPlace
+from roomba.world.home.raster import Mask
 from roomba.world.home.turned import with_steps
 from roomba.world.layers.assembly import (
     FurnishedFloor,
@@ -32,6 +33,7 @@ from roomba.world.layers.assembly import (
 )
 from roomba.world.layers.automatic_station import automatic_station
 from roomba.world.layers.definite_map import definite_map
+from roomba.world.layers.paper import is_on_paper, paper_end
 from roomba.world.layers.parts import Parts, parts_of
 
 EVEN_DIRT = 0.5
@@ -53,7 +55,8 @@ def load_home(
     :class:`HomeError`: ``file:line: reason``.
     """
     map_path, layer_path = files_of_home(name_or_path, homes_directory)
-    occupancy = definite_map(load_map(map_path))
+    drawn = load_map(map_path)
+    occupancy = definite_map(drawn)
     if layer_path is None:
         layer, file = Layer(), YamlFile(map_path, {}, None)
     else:
@@ -61,16 +64,22 @@ def load_home(
     parts = parts_of(layer, file, occupancy.frame)
     if station is not None:
         parts = replace(parts, station=station)
-    return _assembled(_name_of(map_path), occupancy, parts, file, body or BodyConfig())
+    end = paper_end(drawn, occupancy.frame)
+    return _assembled(_name_of(map_path), occupancy, end, parts, file, body or BodyConfig())
 
 
 def _assembled(
-    name: str, occupancy: OccupancyMap, parts: Parts, file: YamlFile, body: BodyConfig
+    name: str,
+    occupancy: OccupancyMap,
+    paper: Mask,
+    parts: Parts,
+    file: YamlFile,
+    body: BodyConfig,
 ) -> Home:
     floor = furnished_floor(occupancy, parts, body.height)
-    docked = parts.station
+    docked, place = parts.station, StationPlace.TOLD
     if docked is None:
-        docked = _found_station(floor, file, body)
+        docked, place = _found_station(floor, paper, file, body)
     _check_body_fits(floor, docked, file, body)
     station = station_on(floor, docked, body.radius)
     floor = with_station(floor, station, docked, body.radius)
@@ -91,16 +100,22 @@ def _assembled(
         wall_height=parts.wall_height,
         free_walls=floor.free,
         surfaces=floor.surfaces,
+        station_place=place,
     )
     _check_dirt_fits(home, file)
     return home if floor.free is None else with_steps(home)
 
 
-def _found_station(floor: FurnishedFloor, file: YamlFile, body: BodyConfig) -> Pose:
+def _found_station(
+    floor: FurnishedFloor, paper: Mask, file: YamlFile, body: BodyConfig
+) -> tuple[Pose, StationPlace]:
     try:
-        return automatic_station(floor.map, floor.taken, body.radius)
+        docked = automatic_station(floor.map, floor.taken, body.radius, paper)
     except HomeError as error:
         raise file.error((), str(error)) from error
+    if is_on_paper(floor.map.frame, floor.taken, body.radius, docked, paper):
+        return docked, StationPlace.ON_PAPER
+    return docked, StationPlace.FOUND
 
 
 def _check_body_fits(floor: FurnishedFloor, docked: Pose, file: YamlFile, body: BodyConfig) -> None:

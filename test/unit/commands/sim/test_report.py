@@ -10,7 +10,9 @@ from rich.console import Console
 from roomba.commands.sim.percentiles import percentiles_of
 from roomba.commands.sim.report import failure_lines, lines_of, percentile_table, table_of
 from roomba.commands.trials.figures import Figures, MissedShare
+from roomba.commands.trials.unreached import NOTHING, Unreached
 from roomba.time_spent import TimeSpent
+from roomba.world.home.home import StationPlace
 
 FIGURES = Figures(
     outcome="COMPLETED",
@@ -43,6 +45,18 @@ def test_what_follows_from_the_figures() -> None:
     assert FIGURES.is_completed
     assert not replace(FIGURES, docked=False).is_completed
     assert not replace(FIGURES, outcome="STUCK").is_completed
+
+
+def test_where_the_station_was_put_by_nobody_it_is_told_what_to_do() -> None:
+    left, way_out = Unreached(7.0), "--station X Y THETA puts it elsewhere"
+    told = dict(lines_of(FIGURES, left))
+    assert way_out not in told["unreached"]
+    assert "station" not in told
+    found = dict(lines_of(FIGURES, left, StationPlace.FOUND))
+    assert found["unreached"].endswith(f"; {way_out}")
+    assert "station" not in found
+    on_paper = dict(lines_of(FIGURES, NOTHING, StationPlace.ON_PAPER))
+    assert on_paper["station"] == f"put on floor that ends with the picture; {way_out}"
 
 
 def test_a_home_without_floor_to_reach_has_no_path_ratio() -> None:

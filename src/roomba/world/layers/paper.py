@@ -1,0 +1,77 @@
+"""The paper around a drawn floor plan: floor to the eye of a map, and no part of the home."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from roomba.geometry import Pose
+from roomba.grid import FREE, GridFrame, OccupancyMap
+from roomba.raster.regions import dilated, numbered_regions
+from roomba.world.home.raster import Mask, largest_component, where_body_fits
+from roomba.world.layers.definite_map import FENCE
+
+LEAST_HOME: Final = 3.0
+"""m² on which the middle of a body fits; in front of the paper around it so much is the home."""
+LEAST_SHARE: Final = 0.2
+"""0..1; of the largest floor; so much is the home as well, in a plan of little floor."""
+_MOST: Final = 0.5
+"""0..1; where more than this of a picture's end is floor it is paper: a map that was cut off within
+a home has walls and what is not known there as well."""
+
+
+def paper_end(drawn: OccupancyMap, frame: GridFrame) -> Mask:
+    """Return the end of the paper on which a map was ``drawn``, over the cells of ``frame``.
+
+    That is in the same cells. Nothing where the map does not end in floor for the most part.
+    """
+    # A thin line may frame the paper.
+    wide = math.ceil(FENCE / drawn.frame.resolution - 1e-9)
+    end = np.ones(drawn.frame.shape, np.bool_)
+    end[wide:-wide, wide:-wide] = False
+    is_floor = drawn.values == FREE
+    found = np.zeros(frame.shape, np.bool_)
+    if is_floor[end].mean() <= _MOST:
+        return found
+    rows, columns = np.nonzero(end & is_floor)
+    rows += round((drawn.frame.origin_y - frame.origin_y) / frame.resolution)
+    columns += round((drawn.frame.origin_x - frame.origin_x) / frame.resolution)
+    inside = (rows >= 0) & (rows < frame.rows) & (columns >= 0) & (columns < frame.columns)
+    found[rows[inside], columns[inside]] = True
+    return found
+
+
+def off_paper(floor: Mask, end: Mask, reach: float, resolution: float) -> Mask:
+    """Return the largest part of a floor that does not come within ``reach``, m, of the ``end``.
+
+    Where none is large enough for a home it is the largest of all.
+    """
+    largest = largest_component(floor)
+    if not end.any():
+        return largest
+    away = largest_component(floor & ~_by(floor, end, reach, resolution))
+    cells = np.count_nonzero(largest)
+    least = min(LEAST_HOME / resolution**2, LEAST_SHARE * cells)
+    return away if np.count_nonzero(away) >= max(least, 1.0) else largest
+
+
+def is_on_paper(frame: GridFrame, solid: Mask, radius: float, pose: Pose, end: Mask) -> bool:
+    """Whether a body of ``radius``, m, gets from a pose to the ``end`` of the paper."""
+    if not end.any():
+        return False
+    floor = where_body_fits(frame, solid, radius)
+    row, column = frame.cell_of(pose.x, pose.y)
+    reach = radius + 2.0 * frame.resolution
+    return bool(_by(floor, end, reach, frame.resolution)[row, column])
+
+
+def _by(floor: Mask, end: Mask, reach: float, resolution: float) -> Mask:
+    """Return the parts of a floor that come within ``reach``, m, of the ``end``."""
+    parts = numbered_regions(floor)
+    cells = math.ceil(reach / resolution)
+    away = np.arange(-cells, cells + 1) * resolution
+    near = dilated(end, np.hypot(away[:, None], away[None, :]) <= reach)
+    numbers = np.unique(parts[near & floor])
+    return np.isin(parts, numbers[numbers > 0])
