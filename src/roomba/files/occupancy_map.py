@@ -35,6 +35,8 @@ RAW_UNKNOWN = 255
 _NEARLY_ALL: Final = 0.95
 _TURNED: Final = 1e-6
 """rad; less is what a program's rounding makes of 0: a map of 1 km is off by a millimetre."""
+_SQUARE: Final = 2e-3
+"""rad; a quarter turn is meant within this, as by 1.57 and 3.14."""
 
 
 class MapDescription(BaseModel):
@@ -44,11 +46,23 @@ class MapDescription(BaseModel):
 
     image: Annotated[str, Field(min_length=1)]
     resolution: Resolution
-    origin: Annotated[list[Origin], Field(min_length=3, max_length=3)]
+    origin: list[Origin]
     negate: Annotated[int, Field(ge=0, le=1)] = 0
     occupied_thresh: Threshold = 0.65
     free_thresh: Annotated[Threshold, Field(validate_default=True)] = 0.196
     mode: Literal["trinary", "scale", "raw"] = "trinary"
+
+    @field_validator("origin")
+    @classmethod
+    def _is_a_pose(cls, origin: list[float]) -> list[float]:
+        if len(origin) != 3:
+            raise ValueError("expected three numbers, [x, y, yaw], the last 0.0 for none")
+        return origin
+
+    @field_validator("mode", mode="before")
+    @classmethod
+    def _in_small_letters(cls, mode: object) -> object:
+        return mode.lower() if isinstance(mode, str) else mode
 
     @field_validator("free_thresh")
     @classmethod
@@ -63,22 +77,36 @@ def load_map(path: Path) -> OccupancyMap:
     """Return the map that a map_server YAML file describes.
 
     Row 0 of the values is the lowest y. Raises :class:`HomeError`, which names the file, the line
-    and the reason, for a file that is missing, broken, or turned by an origin's yaw.
+    and the reason, for a file that is missing, broken, or turned off the axes by an origin's yaw.
     """
     file = read_yaml(path)
     description = file.validated(MapDescription)
-    if abs(math.remainder(description.origin[2], math.tau)) > _TURNED:
+    quarters = _quarters(description.origin[2])
+    if quarters is None:
         raise file.error(
             ("origin", 2),
-            f"origin: expected a yaw of 0, got {description.origin[2]}; "
+            f"origin: expected a yaw of 0, or of quarter turns, got {description.origin[2]}; "
             "turn the picture instead, maps of this robot lie along the axes",
         )
     image = _image_of(file, description)
-    values = np.ascontiguousarray(_occupancy(image, description)[::-1])
-    frame = GridFrame(
-        description.resolution, description.origin[0], description.origin[1], *values.shape
-    )
-    return OccupancyMap(frame, values)
+    return _turned(_occupancy(image, description)[::-1], description, quarters)
+
+
+def _quarters(yaw: float) -> int | None:
+    """Return by how many quarters a yaw, rad, turns counter-clockwise, 0..3; None for others."""
+    quarters = round(yaw / (math.pi / 2.0))
+    within = _SQUARE if quarters % 4 else _TURNED
+    return quarters % 4 if abs(yaw - quarters * math.pi / 2.0) <= within else None
+
+
+def _turned(values: NDArray[np.int8], description: MapDescription, quarters: int) -> OccupancyMap:
+    """Return a map turned by quarters about the lower left corner of its picture."""
+    resolution, (x, y, _) = description.resolution, description.origin
+    height, width = (cells * resolution for cells in values.shape)
+    left = (0.0, height, width, 0.0)[quarters]
+    below = (0.0, 0.0, height, width)[quarters]
+    turned = np.ascontiguousarray(np.rot90(values, -quarters))
+    return OccupancyMap(GridFrame(resolution, x - left, y - below, *turned.shape), turned)
 
 
 def save_map(occupancy: OccupancyMap, path: Path) -> None:

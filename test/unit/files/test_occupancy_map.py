@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 from roomba.errors import HomeError
 from roomba.files.occupancy_map import load_map, save_map
+from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap
 
 HEADER = "image: map.pgm\nresolution: 0.05\norigin: [-1.0, 2.0, 0.0]\n"
@@ -89,6 +91,28 @@ def test_a_yaw_that_is_rounding_is_none(tmp_path: Path) -> None:
     assert load_map(path).values.tolist() == load_map(written(tmp_path, USUAL)).values.tolist()
 
 
+@pytest.mark.parametrize(
+    "yaw",
+    ["1.5707963", "1.57", "3.14159", "3.14", "-3.14159", "-1.5708", "4.712389", "6.2831853"],
+)
+def test_quarter_turns_are_turned_about_the_lower_left_corner(tmp_path: Path, yaw: str) -> None:
+    image = b"P5\n3 2\n255\n\x00\xcd\xfe\xfe\xfe\x00"
+    straight = load_map(written(tmp_path, USUAL, image))
+    turned = load_map(written(tmp_path, USUAL.replace("0.0]", f"{yaw}]"), image))
+    assert turned.values.size == straight.values.size
+    corner = Pose(-1.0, 2.0, round(float(yaw) / (math.pi / 2.0)) * math.pi / 2.0)
+    for row, column in np.ndindex(straight.frame.shape):
+        place = corner.compose(Pose((column + 0.5) * 0.05, (row + 0.5) * 0.05, 0.0))
+        assert turned.frame.contains(place.x, place.y)
+        there = turned.frame.cell_of(place.x, place.y)
+        assert turned.values[there] == straight.values[row, column]
+
+
+def test_a_mode_in_capitals_is_read(tmp_path: Path) -> None:
+    path = written(tmp_path, USUAL + "mode: Trinary\n")
+    assert load_map(path).values.tolist() == [[100, -1, 0]]
+
+
 def test_negate_turns_black_into_free(tmp_path: Path) -> None:
     path = written(tmp_path, USUAL.replace("negate: 0", "negate: 1"))
     assert load_map(path).values.tolist() == [[0, 100, 100]]
@@ -128,7 +152,12 @@ def test_png_colours_are_averaged_and_clear_is_unknown(tmp_path: Path) -> None:
         (HEADER.replace("0.05", "1.0e+300"), 2, "1e+300"),
         (HEADER.replace("2.0", "1.0e+300"), 3, "origin"),
         (HEADER.replace("0.05", "small"), 2, "small"),
-        (HEADER.replace("[-1.0, 2.0, 0.0]", "[-1.0, 2.0]"), 3, "origin"),
+        (HEADER.replace("0.0]", "1.5]"), 3, "yaw"),
+        (HEADER.replace("0.0]", "0.001]"), 3, "yaw"),
+        (HEADER.replace("[-1.0, 2.0, 0.0]", "[-1.0, 2.0]"), 3, "expected three numbers"),
+        (HEADER.replace("[-1.0, 2.0, 0.0]", "[]"), 3, "expected three numbers"),
+        (HEADER.replace("[-1.0, 2.0, 0.0]", "7"), 3, "origin"),
+        (HEADER + "mode: 3\n", 4, "mode"),
         (HEADER.replace("image: map.pgm\n", ""), 1, "image"),
         (HEADER.replace("map.pgm", "none.pgm"), 1, "none.pgm"),
         (HEADER + "mode: trinry\n", 4, "trinry"),
