@@ -11,18 +11,24 @@ from roomba.commands.trials.runs import docking_config, mission_config, robot_co
 from roomba.commands.trials.trial import Trial
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.rooms.zones import Zones
-from roomba.raster.regions import large_regions
 from roomba.world.home.home import Home
 
-LEAST_PIECE: Final = 1.0
-"""m²; no room is smaller, and what is lies between or behind furniture: it is not told."""
+LEAST_TOLD: Final = 1.0
+"""m², of all pieces together; no room is smaller, and what is less lies between or behind
+furniture: it is not told."""
+_HARDLY_ANY: Final = 0.05
+"""m²; less is not worth words."""
 
 
 class Unreached(NamedTuple):
-    """How much floor that is, m², and in which rooms, if the home has any."""
+    """How much floor that is, m², in which rooms, if the home has any, and how much elsewhere.
+
+    Rooms in which it is little are not named.
+    """
 
     area: float = 0.0
     rooms: tuple[str, ...] = ()
+    elsewhere: float = 0.0
 
     @property
     def words(self) -> str:
@@ -31,6 +37,8 @@ class Unreached(NamedTuple):
             return ""
         count = len(self.rooms)
         where = f" in {self.rooms[0] if count == 1 else f'{count} rooms'}" if count else ""
+        if count and self.elsewhere >= _HARDLY_ANY:
+            where += " and other places"
         return f"{self.area:.1f} m² of floor{where} cannot be reached from the station"
 
     def as_json(self) -> dict[str, Any]:
@@ -59,11 +67,15 @@ def unreached_in(context: PlanningContext) -> Unreached:
     floor = context.floor
     cell = floor.frame.resolution**2
     left = floor.swept_from(floor.fits) & ~context.coverable()
-    unreached = large_regions(left, floor.frame.resolution, LEAST_PIECE)
-    area = float(np.count_nonzero(unreached)) * cell
-    if context.rooms is None or not area:
+    area = float(np.count_nonzero(left)) * cell
+    if area < LEAST_TOLD:
+        return NOTHING
+    if context.rooms is None:
         return Unreached(area)
     names = np.array(context.rooms.names)
-    labels = context.fine(context.rooms.labels)[unreached]
+    labels = context.fine(context.rooms.labels)[left]
     counts = np.bincount(labels, minlength=len(names) + 1)[1:]
-    return Unreached(area, tuple(names[counts * cell >= LEAST_PIECE].tolist()))
+    is_told = counts * cell >= LEAST_TOLD
+    return Unreached(
+        area, tuple(names[is_told].tolist()), area - float(counts[is_told].sum()) * cell
+    )

@@ -69,9 +69,26 @@ def test_else_nothing_is_told(occupancy: OccupancyMap, zones: tuple[Zone, ...]) 
     assert NOTHING.words == ""
 
 
+def test_pockets_are_told_by_what_they_are_together() -> None:
+    occupancy = two_rooms(2.0)
+    for place in (16, 24):  # nine pieces of 0.3 m² and more
+        occupancy.values[place, 40:] = OCCUPIED
+    for wall in (2.6, 3.2):
+        occupancy.values[:, round(wall / 0.05)] = OCCUPIED
+    found = unreached_in(context_of(occupancy))
+    assert found.rooms == ("bath",)
+    assert 1.0 < found.area < 3.0
+
+
 def test_many_rooms_are_counted() -> None:
     assert Unreached(77.24, ("a", "b")).words == (
         "77.2 m² of floor in 2 rooms cannot be reached from the station"
+    )
+
+
+def test_what_lies_in_rooms_that_are_not_named_is_told() -> None:
+    assert Unreached(3.3, ("bath",), 1.2).words == (
+        "3.3 m² of floor in bath and other places cannot be reached from the station"
     )
 
 
