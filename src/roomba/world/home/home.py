@@ -213,9 +213,9 @@ class StationPlace(Enum):
     TOLD = "told"
     """The home's layer, or a person."""
     FOUND = "found"
-    """Nobody: it was put where there is room."""
+    """The program put it where there is room."""
     ON_PAPER = "on paper"
-    """Nobody, and the floor it was put on reaches the end of the picture."""
+    """The program put it on floor that reaches the end of the picture."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

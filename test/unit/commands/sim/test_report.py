@@ -47,7 +47,7 @@ def test_what_follows_from_the_figures() -> None:
     assert not replace(FIGURES, outcome="STUCK").is_completed
 
 
-def test_where_the_station_was_put_by_nobody_it_is_told_what_to_do() -> None:
+def test_where_the_program_put_the_station_it_is_told_what_to_do() -> None:
     left, way_out = Unreached(7.0), "--station X Y THETA puts it elsewhere"
     told = dict(lines_of(FIGURES, left))
     assert way_out not in told["unreached"]
