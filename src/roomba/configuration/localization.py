@@ -98,7 +98,7 @@ class SearchingConfig(Frozen):
     compare_after: WaitOrNone = 1.0
     """a place of which no better one was found is compared anew."""
     doubted_way: Length = 1.0
-    """m; driven while scans do not fit the map: from then on the place is ROUGH."""
+    """m; driven while scans do not correct the pose: from then on the place is ROUGH."""
     follow_after: Duration = 1.0
     """Driven while places are compared; then particles follow all that may be."""
     near_way: Length = 0.6

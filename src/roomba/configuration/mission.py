@@ -240,7 +240,7 @@ class ExploringConfig(Frozen):
     """m; a shorter frontier comes later: it costs ``small_cost``, m of way, more."""
     small_cost: NotNegative = 1.0
     open_edge: Length = 0.7
-    """m; a frontier that stays unseen and is longer is told at the end: a doorway is wider."""
+    """m; from this length on, hardly a doorway's, a frontier that stays unseen is told."""
     tight_cost: NotNegative = 0.5
     """m of way that a viewpoint nearer to walls than ``clearance`` costs more."""
     least_cells: AtLeastOne = 3

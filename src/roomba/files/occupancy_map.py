@@ -35,8 +35,8 @@ RAW_UNKNOWN = 255
 _NEARLY_ALL: Final = 0.95
 _TURNED: Final = 1e-6
 """rad; less is what a program's rounding makes of 0: a map of 1 km is off by a millimetre."""
-_SQUARE: Final = 2e-3
-"""rad; a quarter turn is meant within this, as by 1.57 and 3.14."""
+_SQUARE: Final = 5e-3
+"""rad; a quarter turn is meant within this, as by 1.57 and 4.71."""
 
 
 class MapDescription(BaseModel):
@@ -95,7 +95,7 @@ def load_map(path: Path) -> OccupancyMap:
 def _quarters(yaw: float) -> int | None:
     """Return by how many quarters a yaw, rad, turns counter-clockwise, 0..3; None for others."""
     quarters = round(yaw / (math.pi / 2.0))
-    within = _SQUARE if quarters % 4 else _TURNED
+    within = _SQUARE if quarters else _TURNED
     return quarters % 4 if abs(yaw - quarters * math.pi / 2.0) <= within else None
 
 

@@ -22,7 +22,7 @@ from roomba.vocabulary import Phase
 class Remembered:
     """A checkpoint's content; ``ledger`` is distance m, energy Wh and dirt g; ``duration`` s.
 
-    ``times`` are those of a time ledger.
+    ``times`` are those of a time ledger; ``not_seen`` and ``rough_way``, m, those of the job.
     """
 
     state: MissionState
@@ -34,6 +34,8 @@ class Remembered:
     duration: float
     is_bin_full: bool
     times: dict[str, float]
+    not_seen: str
+    rough_way: float
 
 
 def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Values | None:
@@ -53,6 +55,8 @@ def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Va
         "duration": job.duration(now),
         "times": job.times.values(),
         "bin_full": job.bin.is_full,
+        "not_seen": job.not_seen,
+        "rough_way": job.rough_way,
     }
 
 
@@ -92,7 +96,9 @@ def _remembered(
     distance, energy, dirt = (float(value) for value in values["ledger"])
     duration = float(values["duration"])
     times = {str(name): float(value) for name, value in values["times"].items()}
-    numbers = (distance, energy, dirt, duration, *times.values())
+    # Older checkpoints have none.
+    rough_way = float(values.get("rough_way", 0.0))
+    numbers = (distance, energy, dirt, duration, rough_way, *times.values())
     if not all(math.isfinite(value) for value in numbers):
         raise CheckpointError("expected finite numbers")
     return Remembered(
@@ -105,6 +111,8 @@ def _remembered(
         duration,
         bool(values["bin_full"]),
         times,
+        str(values.get("not_seen", "")),
+        rough_way,
     )
 
 
@@ -113,6 +121,7 @@ def take_up(found: Remembered, job: Job, senses: Senses) -> None:
     job.cleaning, job.exploration, job.outcome = found.cleaning, found.exploration, found.outcome
     job.goes_on_after(found.duration, senses)
     job.times.restore(found.times)
+    job.not_seen, job.rough_way = found.not_seen, found.rough_way
     job.ledger.distance, job.ledger.energy, job.ledger.dirt = found.ledger
     if found.is_bin_full:
         job.bin.fill(senses.in_bin)

@@ -18,7 +18,7 @@ from rosbags.rosbag2 import Reader as Reader2
 
 from roomba.recordings.bag_format.index_sizes import has_wrong_sizes, mend_sizes
 from roomba.recordings.bag_format.mending import BagError, mend_bag, needs_mending
-from roomba.recordings.packed import Unpacked
+from roomba.recordings.packed import Unpacked, plain_name
 from roomba.recordings.readings import LogError
 from roomba.recordings.times.stamps import clock_shifts
 
@@ -251,8 +251,11 @@ def _told_unnamed(path: Path, error: Exception) -> str:
     """Return what to do about a bag in which a reader met what its authors did not foresee."""
     what = f"{type(error).__name__} {error}".strip()
     told = f"{path}: expected a bag as ROS writes it, got what its reader cannot follow ({what})"
-    given = shlex.quote(str(path))
-    if path.is_dir() or path.suffix in (".db3", ".mcap"):
+    plain = plain_name(path)
+    given = shlex.quote(str(path.with_name(plain)))
+    if plain != path.name:
+        told += "; unpack it first"
+    if path.is_dir() or plain.endswith((".db3", ".mcap")):
         return f"{told}; `ros2 bag info {given}` tells whether ROS 2 reads it, else copy it again"
     return (
         f"{told}; `rosbag reindex {given}` of ROS 1 makes its index anew, `rosbag filter {given} "

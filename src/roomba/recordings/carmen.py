@@ -226,7 +226,7 @@ class CarmenLog:
 
     def _refuse_numbers(self, path: Path) -> None:
         """Refuse a text most of whose lines begin with a number; raises LogError."""
-        numbers = [word for word in self._other if _is_number(word)]
+        numbers = [word for word in self._other if is_number(word)]
         if 2 * sum(self._other[word] for word in numbers) > self._other.total():
             raise LogError(
                 f"{path}: expected lines {', '.join(WORDS[:-1])} of a CARMEN log, got lines that "
@@ -374,7 +374,8 @@ def _times(words: list[str]) -> tuple[float, float]:
     return stamp, _finite(words[2]) if len(words) > 2 else stamp
 
 
-def _is_number(word: str) -> bool:
+def is_number(word: str) -> bool:
+    """Whether a word is that of a number, nan and infinity included."""
     try:
         float(word)
     except ValueError:

@@ -6,7 +6,7 @@ import shlex
 from pathlib import Path
 from typing import Final
 
-from roomba.recordings.carmen import CarmenLog
+from roomba.recordings.carmen import CarmenLog, is_number
 from roomba.recordings.log import Log
 from roomba.recordings.packed import head_of, plain_name
 from roomba.recordings.readings import LogError
@@ -57,7 +57,7 @@ def is_relations(head: bytes) -> bool:
     # The last line may be cut off; of a whole text nothing is left after the last line's end.
     words = [line.split() for line in (lines[:-1] or lines) if line.strip()]
     rows = [row for row in words if not row[0].startswith("#")]
-    return bool(rows) and all(len(row) == _RELATION and all(map(_is_number, row)) for row in rows)
+    return bool(rows) and all(len(row) == _RELATION and all(map(is_number, row)) for row in rows)
 
 
 def _told_old(path: Path, head: bytes) -> str:
@@ -75,11 +75,3 @@ def _bag(path: Path) -> Log:
     from roomba.recordings.bag import BagLog
 
     return BagLog(path)
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True

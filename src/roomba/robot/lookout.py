@@ -17,6 +17,7 @@ class Lookout:
     def __init__(self, robot: RobotConfig, config: ThingConfig | None = None) -> None:
         """Begin without a map: nothing is a thing."""
         self._stride, self._config = robot.scan_stride, config
+        self._known_deviation = robot.localization.known_deviation
         self.things: ThingLayer | None = None
         self._beams: tuple[LidarModel, LidarBeams] | None = None
 
@@ -26,11 +27,15 @@ class Lookout:
         return self.things
 
     def look(self, scan: PlacedScan | None, knowledge: Knowledge, unsure: float) -> None:
-        """Look in a scan, if there is one where it was taken; only if the place is known.
+        """Look in a scan, if there is one where it was taken; only if the place is well known.
 
-        ``unsure`` is the deviation of the place, m.
+        ``unsure`` is the deviation of the place, m. A place that is ROUGH because the home changed
+        is still known that well, and what changed is what is to be seen.
         """
-        if scan is not None and self.things is not None and knowledge is Knowledge.KNOWN:
+        is_known = knowledge is Knowledge.KNOWN or (
+            knowledge.is_usable and unsure <= self._known_deviation
+        )
+        if scan is not None and self.things is not None and is_known:
             beams = self.beams_of(scan.lidar)
             self.things.see(scan.ranges, beams, scan.pose, self._stride, scan.measured, unsure)
 

@@ -93,7 +93,18 @@ def test_a_yaw_that_is_rounding_is_none(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "yaw",
-    ["1.5707963", "1.57", "3.14159", "3.14", "-3.14159", "-1.5708", "4.712389", "6.2831853"],
+    [
+        "1.5707963",
+        "1.57",
+        "3.14159",
+        "3.14",
+        "-3.14159",
+        "-1.5708",
+        "4.712389",
+        "4.71",
+        "-4.71",
+        "6.28",
+    ],
 )
 def test_quarter_turns_are_turned_about_the_lower_left_corner(tmp_path: Path, yaw: str) -> None:
     image = b"P5\n3 2\n255\n\x00\xcd\xfe\xfe\xfe\x00"

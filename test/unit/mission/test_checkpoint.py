@@ -38,6 +38,7 @@ def job() -> Job:
     job.begin_clean(begin(CleanRequest(passes=2)), Senses(40.0, SENSES.pose))
     job.ledger.distance, job.ledger.energy, job.ledger.dirt = 12.0, 0.5, 2.0
     job.times.restore({"turning": 20.0, "fastest": 0.3})
+    job.not_seen, job.rough_way = "the map is open for 2.0 m", 3.0
     return job
 
 
@@ -58,8 +59,16 @@ def test_all_that_matters_comes_back() -> None:
     assert again.outcome is CleanOutcome.COMPLETED
     assert (again.ledger.distance, again.ledger.energy, again.ledger.dirt) == (12.0, 0.5, 2.0)
     assert again.times.values() == job().times.values()
+    assert (again.not_seen, again.rough_way) == ("the map is open for 2.0 m", 3.0)
     # By a clock that began anew.
     assert again.duration(now) == pytest.approx(60.0)
+
+
+def test_a_checkpoint_of_an_older_program_goes_on() -> None:
+    older = values()
+    del older["not_seen"], older["rough_way"]
+    found = remembered(older, begin, MissionConfig().exploring)
+    assert (found.not_seen, found.rough_way) == ("", 0.0)
 
 
 @pytest.mark.parametrize("errand", [Errand.NONE, Errand.UNDOCK])
@@ -79,6 +88,7 @@ def test_without_an_errand_there_is_nothing_to_remember(errand: Errand) -> None:
         {"ledger": [1.0, 2.0]},
         {"ledger": [1.0, 2.0, float("nan")]},
         {"duration": "long"},
+        {"rough_way": float("nan")},
         {"times": {"turning": float("inf")}},
         {"times": {"turning": "long"}},
         {"times": 3},

@@ -450,3 +450,8 @@ def test_what_the_reader_does_not_name_is_told_with_what_to_do(
     monkeypatch.setattr(Reader, "open", fail)
     with pytest.raises(LogError, match=said):
         BagFile(path)
+    packed = tmp_path / "made.bag.gz"
+    packed.write_bytes(gzip.compress(path.read_bytes()))
+    with pytest.raises(LogError, match=r"unpack it first; `rosbag reindex [^`]*made\.bag`") as told:
+        BagFile(packed)
+    assert "reindex made.bag.gz" not in str(told.value)

@@ -9,7 +9,7 @@ grid of about 1 cm. ``path_ratio`` is ``distance_m * tool_width_m / coverable_m2
 ``least`` is what no robot of that width can undercut at that speed, and ``times_least`` what it was
 under way, without charging and waiting, by that. ``missed`` is what the robot itself says that it
 left; ``unreached`` is floor that its map shows, but to which no way leads from its station:
-``area_m2``, in pieces of 1 m2 and more, and the ``rooms`` of which it is so much. ``trajectory``
+``area_m2`` of all pieces, 0 below 1 m2, and the ``rooms`` of which it is as much. ``trajectory``
 has rows t, x, y, theta: true poses, ten a second, the first and the last one included. ``wall_s``
 is what the clean took on the clock, and ``planning_s`` what of it went into ``plans`` of the
 coverage planner, ways through gaps included; all else is the same for the same trial, bit for bit.

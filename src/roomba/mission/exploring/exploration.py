@@ -69,6 +69,8 @@ class Exploration:
         self.unseen: list[Point] = []
         self._seen_from: dict[Point, float] = {}
         """From how far it looked at those last, m; 0 where it shall not look again."""
+        self._looked_at: set[Point] = set()
+        """Those that it looked at from a viewpoint, and that stayed open."""
         self._vanished: list[Point] = []
         self._sought: tuple[Point, float] | None = None
         self.is_as_near_as_it_gets = False
@@ -79,24 +81,30 @@ class Exploration:
 
     def values(self) -> list[list[float]]:
         """Return what must be remembered to go on, as plain values."""
-        return [[x, y, self._seen_from[x, y]] for x, y in self.unseen]
+        return [
+            [x, y, self._seen_from[x, y], float((x, y) in self._looked_at)] for x, y in self.unseen
+        ]
 
     @staticmethod
     def of(values: list[list[float]], config: ExploringConfig) -> Exploration:
         """Return an exploration that goes on; raises ValueError or TypeError for other values.
 
-        Those of older programs do not tell from how far it looked.
+        Those of older programs do not tell from how far it looked, or whether.
         """
         exploration = Exploration(config)
         for x, y, *told in values:
-            (seen_from,) = told or (0.0,)
+            seen_from, was_looked_at = (*told, *(0.0, 0.0)[len(told) :])
             exploration.give_up((float(x), float(y)), float(seen_from))
+            if was_looked_at:
+                exploration._looked_at.add((float(x), float(y)))
         return exploration
 
     def give_up(self, middle: Point, seen_from: float = 0.0) -> None:
         """Go there no more, but to a place that is nearer than that it was ``seen_from``, m."""
         self.unseen.append(middle)
         self._seen_from[middle] = min(seen_from, self._seen_from.get(middle, math.inf))
+        if seen_from > 0.0:
+            self._looked_at.add(middle)
 
     def next_path(
         self,
@@ -191,7 +199,7 @@ class Exploration:
 
     def what_is_not_seen(self, occupancy: OccupancyMap) -> str:
         """Return where this newer map still ends, and why; empty where it ends nowhere."""
-        return what_is_not_seen(open_edges(occupancy, self._seen_from, self._config))
+        return what_is_not_seen(open_edges(occupancy, self.unseen, self._looked_at, self._config))
 
     def wants_another(self, occupancy: OccupancyMap) -> bool:
         """Whether nothing is left of the frontier that it is on its way to, as the map is now."""

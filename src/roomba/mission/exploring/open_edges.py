@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Sequence
 from enum import Enum
 from typing import Final, NamedTuple
 
@@ -18,7 +18,7 @@ _MOST_TOLD: Final = 3
 class EdgeReason(Enum):
     """Why the map goes on no further."""
 
-    NO_WAY = "no way leads to where it could look there"
+    NOT_LOOKED_AT = "it got to no place from which to look there"
     NO_ECHO = "it looked there and the lidar met nothing: too far away, black, or of glass"
 
 
@@ -31,20 +31,22 @@ class OpenEdge(NamedTuple):
 
 
 def open_edges(
-    occupancy: OccupancyMap, seen_from: Mapping[Point, float], config: ExploringConfig
+    occupancy: OccupancyMap,
+    given_up: Sequence[Point],
+    looked_at: Collection[Point],
+    config: ExploringConfig,
 ) -> list[OpenEdge]:
-    """Return the longer frontiers of a map at places that were given up, the longest first.
+    """Return the longer frontiers of a map at places that were ``given_up``, the longest first.
 
-    ``seen_from`` tells of those places from how far the robot looked at them, m; 0: it did not. One
-    frontier is told once. Those shorter than ``config.open_edge`` are left out.
+    Some of the places were ``looked_at``. One frontier is told once. Those shorter than
+    ``config.open_edge`` are left out.
     """
-    nearest_last = sorted(seen_from, key=lambda place: -seen_from[place])
-    lengths = lengths_near(
-        occupancy, nearest_last, config.frontier_radius, config.least_unknown
-    ).tolist()
+    # Of the places of one frontier the first counts.
+    places = sorted(given_up, key=lambda place: place not in looked_at)
+    lengths = lengths_near(occupancy, places, config.frontier_radius, config.least_unknown)
     edges = [
-        OpenEdge(place, length, _reason(seen_from[place]))
-        for place, length in zip(nearest_last, lengths, strict=True)
+        OpenEdge(place, length, _reason(place, looked_at))
+        for place, length in zip(places, lengths.tolist(), strict=True)
         if length >= config.open_edge
     ]
     return sorted(edges, key=lambda edge: -edge.length)
@@ -65,5 +67,5 @@ def what_is_not_seen(edges: Sequence[OpenEdge]) -> str:
     return f"the map is open {', '.join(told)}"
 
 
-def _reason(seen_from: float) -> EdgeReason:
-    return EdgeReason.NO_ECHO if seen_from > 0.0 else EdgeReason.NO_WAY
+def _reason(place: Point, looked_at: Collection[Point]) -> EdgeReason:
+    return EdgeReason.NO_ECHO if place in looked_at else EdgeReason.NOT_LOOKED_AT

@@ -23,7 +23,7 @@ from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.swept.dirt_map import DirtMap
 
 _DOUBTFUL: Final = 0.05
-"""Share of the wanted floor; from so much on it is told that its place was known roughly."""
+"""Share of its way; from more on it is told that its place was known roughly."""
 
 
 class Job:
@@ -49,10 +49,10 @@ class Job:
         self._is_told = False
         self._cleaned: CleanResult | None = None
         self._explored: ExploreResult | None = None
-        self._not_seen = ""
+        self.not_seen = ""
         """Where the map was still open when there was nothing left to look for, and why."""
-        self._swept_roughly = 0
-        """Cells that count as swept, though its place was known roughly."""
+        self.rough_way = 0.0
+        """m; driven while it swept and its place was known roughly."""
 
     def cleaning_of(
         self, request: CleanRequest, context: PlanningContext, senses: Senses
@@ -72,8 +72,8 @@ class Job:
         self._begin(senses)
 
     def _begin(self, senses: Senses) -> None:
-        self.outcome, self._is_told, self._not_seen = None, False, ""
-        self._swept_roughly = 0
+        self.outcome, self._is_told, self.not_seen = None, False, ""
+        self.rough_way = 0.0
         self.ledger.begin(senses)
         self.times.begin()
         self._started = senses.now
@@ -82,7 +82,7 @@ class Job:
         """On the whole map, as it is ``known``, a clean has nothing left to look for."""
         if self.exploration is None or self.cleaning is None or self.cleaning.explores:
             return
-        self._not_seen = self.exploration.what_is_not_seen(known)
+        self.not_seen = self.exploration.what_is_not_seen(known)
         self.exploration = None
 
     def take_up(self) -> None:
@@ -119,9 +119,8 @@ class Job:
         coverage = self.cleaning.ledger.coverage
         swept = coverage.swept_cells
         coverage.sweep(pose.x, pose.y)
-        newly = coverage.swept_cells - swept
-        self._swept_roughly += newly if senses.knowledge is Knowledge.ROUGH else 0
-        self.bin.note(pose.x, pose.y, senses.grains, way, newly)
+        self.rough_way += way if senses.knowledge is Knowledge.ROUGH else 0.0
+        self.bin.note(pose.x, pose.y, senses.grains, way, coverage.swept_cells - swept)
         self.dirt.note(pose.x, pose.y, senses.grains * elapsed, way)
 
     def look_at_bin(self, senses: Senses) -> None:
@@ -198,8 +197,8 @@ class Job:
         if outcome is CleanOutcome.COMPLETED:
             reasons = (
                 message or what_is_not_clean(wanted, covered, missed),
-                self._not_seen,
-                self._what_is_doubtful(cleaning.ledger.coverage.cell_area, wanted),
+                self.not_seen,
+                self._what_is_doubtful(),
             )
             message = "; ".join(filter(None, reasons))
         return CleanResult(
@@ -216,14 +215,14 @@ class Job:
             rooms=dirt_of_rooms(cleaning.ledger.clean, context, self.dirt),
         )
 
-    def _what_is_doubtful(self, cell_area: float, wanted: float) -> str:
-        """Return how much floor counts as clean by a place that was not well known."""
-        area = self._swept_roughly * cell_area
-        if area < _DOUBTFUL * wanted:
+    def _what_is_doubtful(self) -> str:
+        """Return on how much of its way it swept by a place that was not well known."""
+        way = self.ledger.distance
+        if self.rough_way <= _DOUBTFUL * way:
             return ""
         return (
-            f"of {area:.1f} m² that count as clean the place was known roughly: there is next to "
-            "nothing in the lidar's reach, and it may have been other floor"
+            f"on {self.rough_way:.0f} of {way:.0f} m of way its place was known roughly: what "
+            "counts as clean there may be other floor"
         )
 
     def forget(self) -> None:

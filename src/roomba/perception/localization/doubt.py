@@ -48,10 +48,9 @@ class Doubt:
         self.sight = RecentSight(config.recent_sight)
         self._comparison: Relocation | None = None
         self._compared = -math.inf
-        self._began: Pose | None = None
-        self.lasts = False
-        """Whether the robot drove on for so long that dead reckoning alone does not tell its place
-        well any more."""
+        self._last: Pose | None = None
+        self._way = 0.0
+        """m; driven, turns on the spot left out, while scans did not correct the pose."""
 
     def note(self, stamp: float, reckoned: Pose, view: ScanView) -> None:
         """Remember a scan that was taken at a time, s."""
@@ -64,7 +63,21 @@ class Doubt:
 
     def end(self) -> None:
         """Doubt no more: scans fit again."""
-        self._began, self.lasts = None, False
+        self._last, self._way = None, 0.0
+
+    def follow(self, reckoned: Pose, *, fits: bool) -> None:
+        """Take where dead reckoning is at a scan, and whether scans correct the pose."""
+        if fits:
+            self.end()
+            return
+        last = self._last or reckoned
+        self._way += last.distance_to(reckoned.x, reckoned.y)
+        self._last = reckoned
+
+    @property
+    def lasts(self) -> bool:
+        """Whether the robot drove on by dead reckoning for so long that its place is unsure."""
+        return self._way > self._config.searching.doubted_way
 
     def expected(
         self,
@@ -79,9 +92,6 @@ class Doubt:
 
         Comparing takes some scans: meanwhile it is kept. ``now`` and ``stamp`` are in s.
         """
-        self._began = self._began or reckoned
-        way = self._began.distance_to(reckoned.x, reckoned.y)
-        self.lasts = self.lasts or way > self._config.searching.doubted_way
         is_still = self.sight.is_still(stamp, reckoned, view)
         here = where_known(pose, self._config, is_still=is_still)
         if is_still:

@@ -50,6 +50,8 @@ class GlobalSearch:
         self._expectation, self._walls = expectation, walls
         self._config, self._body_radius = config, body_radius
         self._relocation: Relocation | None = None
+        self._told: Relocation | None = None
+        """The newest one that has compared places: one that has just begun has none yet."""
         self._particles: ParticleSearch | None = None
         self._from: Pose | None = None
         self._tried = -math.inf
@@ -57,7 +59,7 @@ class GlobalSearch:
     def use(self, walls: LearnedWalls) -> None:
         """Go on in another map, with the time that is left."""
         self._walls = walls
-        self._relocation = self._particles = None
+        self._relocation = self._told = self._particles = None
 
     def clock_set(self, now: float) -> None:
         """Begin all times anew, by a clock that was set."""
@@ -74,9 +76,8 @@ class GlobalSearch:
         if self._relocation is None:
             here = believed.compose(since.inverse())
             self._relocation = self._begun(now, view, reckoned, here)
-        relocation = self._relocation
-        return self._followed(relocation, view, reckoned, since) or self._compared(
-            relocation, now, view, reckoned, newest
+        return self._followed(view, reckoned, since) or self._compared(
+            self._relocation, now, view, reckoned, newest
         )
 
     def needs_views(self, now: float) -> bool:
@@ -102,13 +103,11 @@ class GlobalSearch:
             self._walls.field, self._config, self._body_radius, view, reckoned, expectation
         )
 
-    def _followed(
-        self, relocation: Relocation, view: ScanView, reckoned: Pose, since: Pose
-    ) -> FoundPlace | None:
+    def _followed(self, view: ScanView, reckoned: Pose, since: Pose) -> FoundPlace | None:
         """Follow all places that may be, once it drove without finding one.
 
         Of places that look the same all the way, particles are left at one by chance: as long as
-        the relocation cannot tell them apart none is believed.
+        relocations cannot tell them apart none is believed.
         """
         start = self._from = self._from or reckoned
         if self._particles is None:
@@ -121,7 +120,7 @@ class GlobalSearch:
             return None
         scan = self._particles.reckoned.inverse().compose(reckoned)
         there = self._walls.find(view, pose.compose(scan), self._config.beam_deviation)
-        if relocation.is_tied(there, reckoned):
+        if self._told is None or self._told.is_tied(there, reckoned):
             return None
         fit = view.fit(self._walls.field, there.as_array())
         return FoundPlace(there.compose(since), fit)
@@ -135,6 +134,7 @@ class GlobalSearch:
         relocation.see(view, reckoned)
         if relocation.verdict is Verdict.SEARCHING:
             return None
+        self._told = relocation
         if was_searching:
             self._tried = now
         self.verdict = relocation.verdict

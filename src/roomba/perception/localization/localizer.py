@@ -39,7 +39,6 @@ from roomba.perception.matching.scan_view import (
 )
 from roomba.perception.matching.surface_field import SurfaceField
 
-"""m2, rad2; of an unknown pose: so large that a reader of the covariance alone does not use it."""
 _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
 """m2, rad2; of a place that was found, before scans narrow it down."""
 
@@ -172,6 +171,7 @@ class Localizer:
         if reckoned is None:
             return
         if len(view) >= self._config.least_beams and self._tracker.is_doubtful:
+            self._doubt.follow(reckoned, fits=self._fits)
             self._reconsider(stamp, view, reckoned)
         self._doubt.note(stamp, reckoned, view)
         self.placed = PlacedScan(
@@ -325,6 +325,11 @@ class Localizer:
         return not self._now - float(self._row["seen"]) <= self._config.scan_timeout
 
     @property
+    def _fits(self) -> bool:
+        """Whether so much of the newest scans agrees with the map that they correct the pose."""
+        return bool(self._row["agree"] >= self._config.fit.doubt_agree)
+
+    @property
     def _tracker(self) -> Tracker:
         return self._followed.tracker
 
@@ -339,6 +344,7 @@ class Localizer:
             self._confirmation.await_at(there, (unsure, followed.heading_deviation))
         fit = followed.correct(view, stamp, reckoned, tells_places_apart=tells_places_apart)
         if fit is not None:
+            self._doubt.follow(reckoned, fits=self._fits)
             self._heed(fit, stamp, view, reckoned)
 
     def _heed(self, fit: Fit, stamp: float, view: ScanView, reckoned: Pose) -> None:
@@ -349,8 +355,6 @@ class Localizer:
                 self._search_for(refuted.why, refuted.expectation)
         elif self._tracker.is_doubtful:
             self._reconsider(stamp, view, reckoned)
-        else:
-            self._doubt.end()
 
     def _reconsider(self, stamp: float, view: ScanView, reckoned: Pose) -> None:
         """Forget the pose, unless what is in sight says that the home changed, and not the pose."""
@@ -389,5 +393,6 @@ class Localizer:
     def _go_on_at(self, found: FoundPlace) -> None:
         """Follow the robot from where it was found."""
         self._search = None
+        self._doubt.end()
         self._followed.begin_at(found.pose, _FOUND_SPREAD)
         self._tracker.trust(found.fit)

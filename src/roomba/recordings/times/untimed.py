@@ -35,14 +35,18 @@ def times_by_order(stamps: Floats, arrivals: Floats) -> Floats | None:
     """Return times of a channel's messages, s, by their order; None where its times tell.
 
     Both are in the order of recording; where neither tells messages apart, that of more different
-    times counts. With hardly any none does: what other channels came between is not known.
+    times counts. With hardly any none does: what other channels came between is not known. What is
+    returned is by the clock of the ``arrivals``.
     """
     if not (tell_nothing(stamps) and tell_nothing(arrivals)):
         return None
     told = max((arrivals, stamps), key=lambda times: len(np.unique(times)))
     times = np.maximum.accumulate(told)
     ticks = _ticks(times)
-    return None if len(ticks) < _FEWEST_TICKS else _between(times, ticks)
+    if len(ticks) < _FEWEST_TICKS:
+        return None
+    late = float(np.median(arrivals - told))
+    return np.asarray(_between(times, ticks) + late, np.float64)
 
 
 def spread_times(times: Floats, is_scan: Mask) -> Floats:

@@ -252,7 +252,7 @@ def test_it_comes_back_from_plain_values() -> None:
 
 
 @pytest.mark.parametrize(
-    "junk", [[[1.0]], [["a", 2.0]], 5, [[1.0, 2.0, 3.0, 4.0]], [[1.0, 2.0, "a"]], [None]]
+    "junk", [[[1.0]], [["a", 2.0]], 5, [[1.0, 2.0, 3.0, 0.0, 5.0]], [[1.0, 2.0, "a"]], [None]]
 )
 def test_junk_is_refused(junk: Any) -> None:
     with pytest.raises((ValueError, TypeError)):

@@ -119,15 +119,24 @@ def test_without_another_place_it_compares_again_after_a_second(
     assert Slow.begun == 2
 
 
-def test_driven_on_in_doubt_the_place_is_known_roughly_until_scans_fit_again() -> None:
-    rig = Rig(HERE, HERE)
-    view = LIDAR.view(rig.eye.scan(HERE))
+def test_driven_on_without_a_scan_that_fits_the_place_is_unsure_until_one_does() -> None:
+    """By the way, not by how far it came: it may go in circles."""
+    doubt = Doubt(CONFIG.localization, CONFIG.body.radius)
     way = CONFIG.localization.searching.doubted_way
-    for driven, lasts in ((0.0, False), (0.9 * way, False), (1.1 * way, True), (0.0, True)):
-        reckoned = RECKONED.compose(Pose(driven, 0.0, 0.0))
-        rig.doubt.expected(12.0, 12.0, view, reckoned, HERE, FIELD)
-        assert rig.doubt.lasts == lasts
-    rig.doubt.end()
-    assert not rig.doubt.lasts
-    rig.doubt.expected(13.0, 13.0, view, RECKONED.compose(Pose(5.0, 0.0, 0.0)), HERE, FIELD)
-    assert not rig.doubt.lasts
+    there, back = Pose(0.4 * way, 0.0, 0.0), Pose(0.0, 0.0, 0.0)
+    for reckoned, lasts in ((back, False), (there, False), (back, False), (there, True)):
+        doubt.follow(reckoned, fits=False)
+        assert doubt.lasts == lasts
+    doubt.follow(back, fits=True)
+    assert not doubt.lasts
+    doubt.follow(Pose(5.0, 0.0, 0.0), fits=False)
+    assert not doubt.lasts
+
+
+def test_a_place_that_is_told_or_found_is_doubted_no_more() -> None:
+    doubt = Doubt(CONFIG.localization, CONFIG.body.radius)
+    for number in range(5):
+        doubt.follow(Pose(float(number), 0.0, 0.0), fits=False)
+    assert doubt.lasts
+    doubt.drop()
+    assert not doubt.lasts

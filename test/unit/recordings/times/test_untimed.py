@@ -57,8 +57,17 @@ def test_where_either_time_tells_messages_apart_their_order_does_not_count() -> 
 def test_of_two_times_that_do_not_tell_apart_the_one_that_tells_more_counts() -> None:
     true = 100.0 + 0.1 * np.arange(60)
     whole = np.floor(true)
-    for stamps, arrivals in ((whole, whole), (whole, np.zeros(60)), (np.zeros(60), whole)):
+    for stamps, arrivals in ((whole, whole), (np.zeros(60), whole)):
         assert times_by_order(stamps, arrivals) == pytest.approx(true)
+
+
+def test_times_by_the_order_of_stamps_are_by_the_clock_of_the_arrivals() -> None:
+    true = 100.0 + 0.1 * np.arange(60)
+    ahead = 4.0 * np.floor(true / 4.0) + 1000.0
+    found = times_by_order(np.floor(true), ahead)
+    assert found is not None
+    assert found == pytest.approx(true + 1000.0, abs=2.0)
+    assert np.diff(found) == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize("rate", [20.0, 200.0])

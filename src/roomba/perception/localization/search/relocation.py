@@ -145,7 +145,9 @@ class Relocation:
         self._sort()
 
     def is_tied(self, pose: Pose, reckoned: Pose) -> bool:
-        """Whether all that was seen fits another of the places about as well as this one.
+        """Whether all that was seen fits another possible place about as well as this one.
+
+        Not before places are compared, and not where this is none of them.
 
         ``pose`` is where the robot would be, map frame, when dead reckoning is at ``reckoned``.
         """

@@ -139,31 +139,6 @@ def brought_to_agree(poses: Floats, measured: Measurements, known: int = 0) -> F
     return result
 
 
-def covariance_of(poses: Floats, links: list[Link], index: int) -> Floats:
-    """Return the covariance of one of ``poses``, float64 [n, 3], against the first one, [3, 3].
-
-    m2 and rad2, map frame, as the links tell it that the others do not contradict. Raises
-    ValueError if no link holds it.
-    """
-    if not index:
-        return np.zeros((3, 3))
-    if not links:
-        raise ValueError("expected links that hold the pose, got none")
-    measured = Measurements.of(links)
-    errors = _errors(poses, measured)
-    slopes = _slopes(poses, measured, errors.predicted)
-    matrix = _normal_equations(measured, slopes, _weighted(measured, errors, _DOUBTED))
-    columns = []
-    for axis in range(3):
-        unit = np.zeros(poses.size)
-        unit[3 * index + axis] = 1.0
-        columns.append(_solved(matrix, unit)[3 * index : 3 * index + 3])
-    covariance: Floats = np.array(columns)
-    if not covariance.max() < 0.1 / _HELD:
-        raise ValueError("expected links that hold the pose, got none")
-    return 0.5 * (covariance + covariance.T)
-
-
 class _Errors(NamedTuple):
     """By how much each link is off, [m, 3], what the poses ``predicted`` that it measures, [m, 3],
     and the ``square`` of the error in deviations, [m].

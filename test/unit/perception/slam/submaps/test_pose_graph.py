@@ -18,7 +18,6 @@ from roomba.geometry import Pose
 from roomba.perception.slam.submaps.pose_graph import (
     Link,
     composed,
-    covariance_of,
     optimised,
     relative_to,
 )
@@ -184,29 +183,3 @@ def test_thousands_of_poses_take_few_sparse_rounds(monkeypatch: pytest.MonkeyPat
         per_pose.append(max(solved) / len(truth))
     # Numbers other than zero, for each pose: no more in the large graph than in the small one.
     assert per_pose[1] < 1.1 * per_pose[0] < 100.0
-
-
-def test_how_sure_a_pose_is_grows_along_the_way_and_shrinks_where_a_loop_closes() -> None:
-    truth = np.column_stack((np.arange(11.0), np.zeros(11), np.zeros(11)))
-    deviation, turn = 0.02, 0.01
-    information = np.diag([deviation**-2, deviation**-2, turn**-2])
-    drive = [
-        Link(at.parent, at.child, at.relative, information, False)
-        for at in (link(truth, number, number + 1) for number in range(10))
-    ]
-    there = covariance_of(truth, drive, 10)
-    assert there[0, 0] == pytest.approx(10 * deviation**2, rel=0.01)
-    assert there[2, 2] == pytest.approx(10 * turn**2, rel=0.01)
-    # Each heading moves all that comes after it.
-    across = sum(deviation**2 + (turn * ahead) ** 2 for ahead in range(10))
-    assert there[1, 1] == pytest.approx(across, rel=0.01)
-    closed = covariance_of(truth, [*drive, link(truth, 0, 10)], 10)
-    assert np.trace(closed) < 0.1 * np.trace(there)
-    # A loop that all others contradict says nothing.
-    wrong = Link(0, 10, link(truth, 0, 10).relative + np.array([3.0, 0.0, 0.0]), SURE)
-    assert covariance_of(truth, [*drive, wrong], 10) == pytest.approx(there, rel=0.02)
-    assert (covariance_of(truth, drive, 0) == 0.0).all()
-    with pytest.raises(ValueError, match="links that hold"):
-        covariance_of(truth, [], 3)
-    with pytest.raises(ValueError, match="links that hold"):
-        covariance_of(truth, drive[:2], 9)
