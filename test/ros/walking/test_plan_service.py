@@ -108,7 +108,10 @@ def test_a_path_is_answered_from_here_or_from_where_it_was_asked_for(plans: Plan
     [
         (place(2.6, 1.0), r"\(2.60, 1.00\) is outside the limits: .* from 0 to 2.5 m"),
         (place(float("nan"), 1.0), "finite"),
-        (place((TABLE[0] + TABLE[2]) / 2.0, (TABLE[1] + TABLE[3]) / 2.0), "goal"),
+        (
+            place((TABLE[0] + TABLE[2]) / 2.0, (TABLE[1] + TABLE[3]) / 2.0),
+            "the body does not fit there",
+        ),
     ],
 )
 def test_a_path_that_there_is_not_is_refused_with_the_reason(
