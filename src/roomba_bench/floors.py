@@ -13,11 +13,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES
 from roomba.grid import GridFrame
 
-Mask = NDArray[np.bool_]
 Cell = tuple[int, int]
 
 _ROOM = 100

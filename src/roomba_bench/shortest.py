@@ -12,9 +12,9 @@ import math
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry.polygon import orient
 
+from roomba.arrays import Floats, Mask
 from roomba.grid import GridFrame
 
 _CHORDS = 8
@@ -26,8 +26,6 @@ _TOUCH = 1e-6
 _ROUNDING = 1e-12
 
 Point = tuple[float, float]
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 class ShortestWays:

@@ -61,6 +61,7 @@ TESTED_BY: dict[str, tuple[str, str]] = {
         "unit/planning/coverage/tour/test_rounding.py",
         PART,
     ),
+    "roomba/arrays": ("unit/raster/test_regions.py", "types alone"),
     "roomba/plans/memory": ("unit/plans/test_scheduler.py", VALUES),
     "roomba/client/plain": ("unit/ui/web/test_app.py", VALUES),
     "roomba/client/ports": ("unit/commands/status/test_command.py", VALUES),

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrap_angles
+from roomba.arrays import Floats
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import TrackingConfig
 from roomba.control.curve_kernels import BENDING, SAMPLE, SECTION, Course, round_off
 
-Floats = NDArray[np.float64]
 Rows = NDArray[np.void]
 
 SHORTEST_LEG: Final = 1e-4

@@ -12,13 +12,11 @@ import math
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.arrays import Floats
 from roomba.compilation import entry, inner_part
 from roomba.control.curve_speed_kernels import Row, limit_speeds
-
-Floats = NDArray[np.float64]
 
 SAMPLE: Final = np.dtype(
     [

@@ -21,13 +21,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from roomba.arrays import Mask
 from roomba.errors import RoombaError
 from roomba.files.plain_json import load_json
 from roomba.geometry import Pose
 from roomba.grid import FREE, MOST_CELLS, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.raster.seams import without_seams
 
-Mask = NDArray[np.bool_]
 Points = tuple[tuple[float, float], ...]
 
 VERSION: Final = 2

@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.errors import HomeError
 from roomba.geometry import Pose
 from roomba.gym.floor import Coverage, FloorDistances
@@ -22,7 +23,6 @@ from roomba.gym.task import Task
 from roomba.world.fleet import Fleet
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
 
-Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 CLEAN: Final = 0.99

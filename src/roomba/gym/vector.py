@@ -11,7 +11,8 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from roomba.gym.cleaning import CleaningTask, Flags, Floats, Outcome
+from roomba.arrays import Floats
+from roomba.gym.cleaning import CleaningTask, Flags, Outcome
 from roomba.gym.single import RENDER_MODES, action_space, metadata_of
 from roomba.gym.task import Task
 

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.control.path_tracker import PathTracker
 from roomba.control.tracking_kernels import TRACK
 from roomba.geometry import Pose
@@ -27,8 +28,6 @@ from roomba.perception.slam.mapper import Mapper
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.robot.brain import Brain
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
-
-Floats = NDArray[np.float64]
 
 LONGEST_BURST: Final = 1200
 """Ticks, a minute."""

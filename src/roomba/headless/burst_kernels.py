@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 
 from roomba.angles import wrapped
+from roomba.arrays import Floats
 from roomba.compilation import entry, inner_part
 from roomba.control.tracking_kernels import along_of, off_path, track
 from roomba.headless.burst_place_kernels import believed, follow
-from roomba.headless.burst_state import Drive, Floats, Floor, PlaceParts, Rows, Sight, World
+from roomba.headless.burst_state import Drive, Floor, PlaceParts, Rows, Sight, World
 from roomba.headless.tick_rows import BELIEVED, GYRO, ODOMETRY, TIME, TRUE
 from roomba.mission.cleaning.dirty.watch_kernels import may_be_dirty
 from roomba.mission.driving.progress_kernels import mark_progress

@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.control.curve_kernels import Course
 from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.matching.beams import LidarBeams
@@ -16,7 +17,6 @@ from roomba.perception.things.state import Things
 from roomba.world.engine.lidar.projection import ScanBuffers
 from roomba.world.engine.state.arrays import State
 
-Floats = NDArray[np.float64]
 Rows = NDArray[np.void]
 
 BURST: Final = np.dtype(

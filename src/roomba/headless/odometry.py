@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.robot import RobotConfig
 from roomba.headless.odometry_kernels import reckon_rows
 from roomba.headless.tick_rows import GYRO, ODOMETRY, TIME, TRUE
 from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.localization.dead_reckoning import DeadReckoning
-
-Floats = NDArray[np.float64]
 
 PIECE: Final = 5.0
 """m; the way over which errors gather."""

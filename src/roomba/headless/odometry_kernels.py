@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from roomba.arrays import Floats
 from roomba.compilation import entry
 from roomba.perception.localization.belief.belief import Rows
 from roomba.perception.localization.belief.reckon_kernels import reckon
-
-Floats = NDArray[np.float64]
 
 
 @entry

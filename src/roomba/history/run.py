@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats32
 from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor
 from roomba.shares import share_of
 from roomba.time_spent import NOT_COUNTED, TimeSpent, square_metres_a_minute
@@ -27,8 +28,6 @@ TRACE_STEP: Final = 0.5
 REQUEST: Final = "request"
 """In a configuration: what was asked for, as the API of a page takes it, or as sim has it."""
 CELL_LAYERS: Final = ("map", "coverage")
-
-Floats = NDArray[np.float32]
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,14 +130,14 @@ class RunRecording:
     CELL_LAYERS that there were, at the end.
     """
 
-    trace: Floats
+    trace: Floats32
     words: tuple[Word, ...]
     home: Mapping[str, Any]
     layers: Mapping[str, CellLayer]
 
-    def column(self, name: str) -> Floats:
+    def column(self, name: str) -> Floats32:
         """Return a column of the trace, float32 [n]."""
-        column: Floats = self.trace[:, TRACE.index(name)]
+        column: Floats32 = self.trace[:, TRACE.index(name)]
         return column
 
     @property
@@ -152,7 +151,7 @@ def kind_of(words: Sequence[Word]) -> str:
     return "explore" if any(word.phase == Phase.EXPLORING for word in words) else "clean"
 
 
-def turning_of(trace: Floats) -> float:
+def turning_of(trace: Floats32) -> float:
     """Return how much the robot turned between the rows of a trace, rad."""
     turns = np.diff(trace[:, TRACE.index("theta")].astype(np.float64))
     return float(np.abs((turns + math.pi) % math.tau - math.pi).sum())

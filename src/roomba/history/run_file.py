@@ -17,14 +17,7 @@ from roomba.files.arrays import read_arrays
 from roomba.files.atomic import UNREADABLE, write_whole
 from roomba.files.bounded import read_bytes
 from roomba.files.plain_json import load_json
-from roomba.history.run import (
-    CELL_LAYERS,
-    TRACE,
-    CellLayer,
-    RunFigures,
-    RunRecording,
-    Word,
-)
+from roomba.history.run import CELL_LAYERS, TRACE, CellLayer, RunFigures, RunRecording, Word
 
 VERSION: Final = 1
 _WORDS: Final = TypeAdapter(tuple[Word, ...])

@@ -21,13 +21,13 @@ from typing import Any, Final
 
 import numpy as np
 
+from roomba.arrays import Floats32
 from roomba.files.atomic import make_private
 from roomba.files.journal import append_line, read_lines
 from roomba.history.run import (
     CELL_LAYERS,
     TRACE,
     CellLayer,
-    Floats,
     RunFigures,
     RunRecording,
     RunSource,
@@ -73,7 +73,7 @@ class RunSoFar:
         return is_same and 0.0 <= now - self.clock - self.rows[-1][0] <= _GAP
 
     @property
-    def trace(self) -> Floats:
+    def trace(self) -> Floats32:
         """The rows so far, float32 [n, len(TRACE)], as :class:`RunRecording` has them."""
         return np.array(self.rows, np.float32).reshape(-1, len(TRACE))
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, entry, part
 
-Mask = NDArray[np.bool_]
 Labels = NDArray[np.int32]
 
 

@@ -12,9 +12,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.raster.regions import numbered_regions
 
-Mask = NDArray[np.bool_]
 Owners = NDArray[np.int16]
 
 WIDEST_SEAM: Final = 2

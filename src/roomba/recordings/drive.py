@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from roomba.arrays import Floats, Ints64, Mask
 from roomba.perception.matching.mounts import Mount
 from roomba.recordings.choice import Chosen, Wanted, chosen
 from roomba.recordings.log import Channel, Frames, Log
@@ -26,16 +27,7 @@ from roomba.recordings.readings import (
     Value,
 )
 from roomba.recordings.sweeps import Sweep, SweptScans
-from roomba.recordings.times.stamps import (
-    CLOCKS,
-    Floats,
-    Ints,
-    Mask,
-    StampCounts,
-    delay_of,
-    in_order,
-    mended,
-)
+from roomba.recordings.times.stamps import CLOCKS, StampCounts, delay_of, in_order, mended
 from roomba.recordings.times.untimed import times_by_order
 
 _GAP: Final = 1.0
@@ -208,7 +200,7 @@ class LoggedDrive:
         bodies = (each.body for each in told if each.body)
         return Frames(next(worlds, _ODOMETRY), next(bodies, BODIES[0]))
 
-    def _timed(self) -> tuple[Floats, Floats, Ints, Ints]:
+    def _timed(self) -> tuple[Floats, Floats, Ints64, Ints64]:
         """Return times and arrivals, s, numbers of logs of all messages, the order to read them."""
         parts = [self._timed_log(log) for log in self._logs]
         sizes = [len(times) for times, *_ in parts]
@@ -219,7 +211,7 @@ class LoggedDrive:
         ranks = np.array([int(each.kind or 0) for each in self._chosen.channels])[channels]
         return times, arrivals, owners, in_order(times, channels, ranks, self.counts)
 
-    def _timed_log(self, log: Log) -> tuple[Floats, Floats, Ints]:
+    def _timed_log(self, log: Log) -> tuple[Floats, Floats, Ints64]:
         """Return times, arrivals and numbers of channels, among the chosen ones, of a log."""
         channels = self._channels_of(log)
         entries = list(log.entries(channels))
@@ -249,7 +241,7 @@ class LoggedDrive:
         return times, arrivals, numbers
 
     def _not_told_apart(
-        self, channels: Sequence[Channel], own: Ints, stamps: Floats, arrivals: Floats
+        self, channels: Sequence[Channel], own: Ints64, stamps: Floats, arrivals: Floats
     ) -> Iterator[Mask]:
         """Yield masks of channels whose times are coarse; they get ``arrivals`` by their order."""
         for at, channel in enumerate(channels):

@@ -13,15 +13,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats32
 from roomba.errors import RoombaError
 from roomba.files.arrays import read_arrays
 from roomba.files.kept import KeptFileError, read_kept, remove_kept, write_kept
 from roomba.files.plain_json import load_json
 
 Values = dict[str, Any]
-Floats = NDArray[np.float32]
 Goal = tuple[str, str, int, int]
 """Of a client: its action, its id, and its time, s and ns."""
 
@@ -88,7 +87,7 @@ def remove_checkpoint(path: Path) -> None:
     remove_kept(path)
 
 
-def save_dirt(learned: Floats, path: Path) -> None:
+def save_dirt(learned: Floats32, path: Path) -> None:
     """Write where it was dirty, float32 [rows, columns], NaN where the robot never was.
 
     Raises OSError when the disk refuses.
@@ -98,15 +97,15 @@ def save_dirt(learned: Floats, path: Path) -> None:
     write_kept(path, packed.getvalue())
 
 
-def load_dirt(path: Path, shape: tuple[int, int], tell: Callable[[str], object]) -> Floats | None:
+def load_dirt(path: Path, shape: tuple[int, int], tell: Callable[[str], object]) -> Floats32 | None:
     """Return where it was dirty, or None if that was never saved.
 
     A file that is damaged, or of another grid, is set aside, and the one before is used, of which
     ``tell`` is told. Raises CheckpointFileError if there is none that can be used.
     """
 
-    def parse(content: bytes) -> Floats:
-        learned: Floats = np.asarray(read_arrays(content)["learned"], np.float32)
+    def parse(content: bytes) -> Floats32:
+        learned: Floats32 = np.asarray(read_arrays(content)["learned"], np.float32)
         if learned.shape != shape:
             raise CheckpointFileError(f"expected a dirt map of shape {shape}, got {learned.shape}")
         return learned

@@ -6,12 +6,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roomba.geometry import Twist
 from roomba_bench.coverage.peer import PeerRobot
-
-Floats = NDArray[np.float64]
 
 _LEAST_TURN: Final = math.pi / 2.0
 """rad; a smaller turn would lead into the same wall again."""

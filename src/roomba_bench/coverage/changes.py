@@ -9,8 +9,8 @@ from enum import Enum
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.configuration.body import BodyConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
@@ -18,8 +18,6 @@ from roomba.world.home.home import Door, Furniture, Home, MovingKind
 from roomba.world.home.raster import cells_within, covered_cells, outline
 from roomba.world.layers.assembly import standing_cells
 from roomba_bench.coverage.floor import Disc
-
-Mask = NDArray[np.bool_]
 
 MOVABLE: Final = (
     "armchair",

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.files.shipped import HOMES
 from roomba.headless.burst import LONGEST_BURST
 from roomba.headless.mission import HeadlessMission
@@ -35,7 +35,6 @@ from roomba_bench.localization.robot import WRONG
 from roomba_bench.ours_sim import ROBOT
 
 Sensors = Literal["ideal", "noisy"]
-Floats = NDArray[np.float64]
 
 _LOOKED_AT: Final = 20
 """Ticks, a second; where something changed it is looked so often at what the robot believes."""

@@ -26,6 +26,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Mask
 from roomba.grid import GridFrame
 
 REACH: Final = 0.17
@@ -42,8 +43,6 @@ _BESIDE: Final = 1.5
 _TOUCH: Final = 1e-3
 """cells; distances of cells come as float32."""
 
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 Disc = tuple[float, float, float]
 """x, y and radius of a round thing, m."""
 

@@ -7,16 +7,14 @@ from enum import Enum
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Mask
 from roomba.grid import GridFrame
 from roomba.planning.path.search.grid_path import GridSearch
 from roomba.raster.regions import numbered_regions
 from roomba.world.home.raster import where_body_fits
 from roomba_bench.coverage.floor import TOOL, length
 
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 Cell = tuple[int, int]
 Lane = tuple[Cell, Cell]
 

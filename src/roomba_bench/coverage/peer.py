@@ -9,8 +9,8 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.mission import MissionConfig
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.world.home.home import Home
@@ -43,8 +43,6 @@ _TOUCHES: Final = (
     "cliff_front_right",
     "cliff_right",
 )
-
-Floats = NDArray[np.float64]
 
 
 class PeerRobot:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.coverage import CoverageConfig
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
@@ -30,8 +30,6 @@ from roomba_bench.coverage.floor import (
 from roomba_bench.coverage.lanes import Order, boustrophedon
 from roomba_bench.coverage.peer import PeerRobot
 from roomba_bench.ours_sim import ROBOT
-
-Floats = NDArray[np.float64]
 
 CONFIG: Final = CoverageConfig()
 BOUNCE: Final = "random bounce"

@@ -10,12 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Mask
 from roomba_bench.coverage.floor import Reachable, drawn, share_over_time
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 OURS = "ours"
 _COLOURS = {OURS: "#2a6fbb", "random bounce": "#9aa1a9"}

@@ -9,8 +9,8 @@ from itertools import pairwise
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.commands.trials.homes import rooms_of
 from roomba.configuration.household import DueConfig
 from roomba.files.shipped import HOMES
@@ -23,7 +23,6 @@ from roomba.world.home.home import DirtSource
 from roomba.world.layers.layer import load_home
 from roomba_bench.ours_sim import ROBOT
 
-Mask = NDArray[np.bool_]
 Plan = Callable[[int, "Household"], tuple[str, ...]]
 """Which rooms are cleaned on a day, from 0, of a household; all of them is all floor."""
 

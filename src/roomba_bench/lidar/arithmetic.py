@@ -12,12 +12,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats32
 from roomba_bench.peers.protocol import Work
 
 _PIECES = 16
 """Edges that a robot sees at once, about, in a furnished room."""
-
-Floats = NDArray[np.float32]
 
 
 def arithmetic(poses: NDArray[np.float64], beams: int) -> Work:
@@ -36,7 +35,7 @@ def arithmetic(poses: NDArray[np.float64], beams: int) -> Work:
 
 
 @njit(cache=True, fastmath=True, nogil=True)
-def _evaluate(poses: NDArray[np.float64], edges: Floats, fan: Floats, ranges: Floats) -> None:
+def _evaluate(poses: NDArray[np.float64], edges: Floats32, fan: Floats32, ranges: Floats32) -> None:
     beams = ranges.shape[1]
     for scan in range(len(poses)):
         cosine, sine = np.float32(math.cos(poses[scan, 2])), np.float32(math.sin(poses[scan, 2]))

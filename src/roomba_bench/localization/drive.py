@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.geometry import Twist, wrap_angle
 from roomba.perception.localization.estimate import Knowledge
 from roomba_bench.localization.robot import (
@@ -44,7 +45,6 @@ _AIMED = 0.1
 _PATIENCE = 60.0
 """s; a turn that takes so long is not possible here."""
 
-Floats = NDArray[np.float64]
 Errors = NDArray[np.float32]
 """[n, 2]: m and rad, none negative."""
 

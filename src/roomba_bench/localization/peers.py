@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from roomba.arrays import Floats
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OccupancyMap
@@ -19,7 +20,7 @@ from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba_bench.bench import Bench
 from roomba_bench.contestants import ContestantError, Local, Peer
-from roomba_bench.localization.drive import Errors, Floats, errors
+from roomba_bench.localization.drive import Errors, errors
 from roomba_bench.localization.robot import home_named
 from roomba_bench.localization.rows import (
     MATCH_AIM,

@@ -12,7 +12,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from roomba_bench.localization.drive import Errors, Floats
+from roomba.arrays import Floats
+from roomba_bench.localization.drive import Errors
 from roomba_bench.localization.peers import Followed
 
 _COLOURS = {"ours": "#2a6fbb", "wheels alone": "#9aa1a9", "wheels and gyro": "#5b626a"}

@@ -8,15 +8,13 @@ from typing import Final
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from PIL import Image
 
+from roomba.arrays import Floats
 from roomba.plots.style import BLUE, GREEN, INK, ORANGE, RED, drawn, empty_figure
 from roomba_bench.localization.drive import Wander
 from roomba_bench.localization.robot import LocalizedRobot, home_named
 from roomba_bench.slam.localized import HELD, square_of
-
-Floats = NDArray[np.float64]
 
 _SHARES: Final = np.linspace(0.0, 0.999, 200)
 _COLOURS: Final = (BLUE, GREEN, ORANGE, RED, "#7a5195", "#5d8aa8")

@@ -13,8 +13,8 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.commands.localize.replay import Replay, Row
 from roomba.commands.map.drive.mapped import MappedDrive
 from roomba.commands.map.drive.whole_odometry import whole_odometry_of
@@ -26,8 +26,6 @@ from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.recordings.drive import LoggedDrive
 from roomba.recordings.readings import LidarScan
 from roomba_bench.slam.relations import poses_at
-
-Floats = NDArray[np.float64]
 
 FAR: Final = 0.5
 """m; a pose that is farther off is of another place."""

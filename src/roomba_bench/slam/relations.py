@@ -16,9 +16,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.recordings.packed import Unpacked
-
-Floats = NDArray[np.float64]
 
 _COLUMNS: Final = 8
 """t1, t2 (s), x, y, z (m), roll, pitch, yaw (rad)."""

@@ -6,8 +6,8 @@ import itertools
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.sensors import CameraConfig
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
@@ -33,8 +33,6 @@ _THICK = 0.1
 _GREY = (0.7, 0.7, 0.7)
 _SAME_DEPTH = 0.05
 """Relative: the peers' home lacks skirtings, door frames and the parts of a wall above doors."""
-
-Floats = NDArray[np.float64]
 
 
 def measure(bench: Bench) -> list[Record]:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from roomba.arrays import Mask
 from roomba.configuration.robot import RobotConfig
 from roomba.files.shipped import HOMES
 from roomba.planning.path.costmap import Point
@@ -15,7 +16,7 @@ from roomba.planning.path.search.grid_path import shortest_grid_path
 from roomba.world.layers.layer import load_home
 from roomba_bench.bench import Bench
 from roomba_bench.contestants import Contestant, Local
-from roomba_bench.floors import Cell, Mask, apartment, building, far_corners, free_poses, room_for
+from roomba_bench.floors import Cell, apartment, building, far_corners, free_poses, room_for
 from roomba_bench.peers.protocol import Work, once
 from roomba_bench.record import Better, Record, gain
 from roomba_bench.rounds import Outcome, milliseconds

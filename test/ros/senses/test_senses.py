@@ -78,7 +78,7 @@ def test_it_senses_what_was_heard_last_and_where_it_is_now(ros: Lockstep) -> Non
 
 def test_a_scan_is_shown_once_and_only_where_the_place_is_known(ros: Lockstep) -> None:
     senses, lookout = heard_senses(), empty_floor()
-    ros.publish("/localization", Localization(state=Localization.ROUGH))
+    ros.publish("/localization", Localization(state=Localization.SEARCHING))
     tell(ros, 10.0)
     senses.at(10.0)
     senses.show(lookout)

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from roomba.arrays import Mask
 from roomba.grid import GridFrame
-from roomba_bench.floors import Floor, Mask, building, far_corners, free_poses, room_for
+from roomba_bench.floors import Floor, building, far_corners, free_poses, room_for
 from roomba_bench.shortest import ShortestWays
 
 FRAME = GridFrame(0.1, -1.0, 2.0, 40, 60)

@@ -13,13 +13,12 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.commands.campaign.running.measures import value_of
 from roomba.commands.campaign.running.specification import Campaign
 from roomba.commands.campaign.running.store import Row
 
-Floats = NDArray[np.float64]
 Pair = tuple[str, int]
 """Home and seed."""
 

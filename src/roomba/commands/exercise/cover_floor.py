@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.commands.exercise.verdict import expect, function_of, judged
 from roomba.raster.regions import dilated
 
@@ -21,8 +22,6 @@ _MOST: Final = 2.0
 """So many times the least way is allowed: that of the floor's cells by the tool's width."""
 _STEPS: Final = 4
 """Places a cell of way at which is looked."""
-
-Mask = NDArray[np.bool_]
 
 
 def floors() -> dict[str, Mask]:

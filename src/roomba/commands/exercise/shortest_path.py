@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
+from roomba.arrays import Mask
 from roomba.commands.exercise.verdict import NotYetError, expect, function_of, judged
 from roomba.configuration.body import BodyConfig
 from roomba.files.shipped import HOMES
@@ -20,7 +20,6 @@ from roomba.world.home.raster import where_body_fits
 from roomba.world.layers.layer import load_home
 
 Cell: TypeAlias = tuple[int, int]
-Mask: TypeAlias = NDArray[np.bool_]
 
 _SMALL: Final = (
     ("a straight row", ["....."], (0, 0), (0, 4)),

@@ -8,10 +8,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Mask
 from roomba.compilation import entry, part
-
-Mask = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 
 ROW_STEPS: Final = (0, 1, 0, -1)
 COLUMN_STEPS: Final = (1, 0, -1, 0)

@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Mask
 from roomba.commands.map.error_kernels import (
     COLUMN_STEPS,
     ROW_STEPS,
@@ -24,9 +25,6 @@ from roomba.commands.map.error_kernels import (
 )
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.raster.regions import dilated, numbered_regions
-
-Mask = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 
 NEAR: Final = 0.05
 """m; a side as near to a true one is right."""

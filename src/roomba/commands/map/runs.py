@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Mask
 from roomba.commands.map.blind_map import BlindMap
 from roomba.commands.map.map_error import MapError, map_error
 from roomba.commands.map.seen_floor import seen_floor
@@ -25,9 +25,6 @@ from roomba.headless.mission import HeadlessMission
 from roomba.headless.records import ExploreRecord
 from roomba.headless.tick_rows import GYRO, ODOMETRY, TIME, TRUE
 from roomba.world.home.home import Home
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,16 +6,14 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.commands.map.error_kernels import see_around
 from roomba.configuration.robot import RobotConfig
 from roomba.errors import RoombaError
 from roomba.grid import GridFrame
 from roomba.raster.distance import distance_to_nearest
 from roomba.raster.regions import numbered_regions
-
-Mask = NDArray[np.bool_]
 
 _APART: Final = 0.15
 """m; between two places from which is looked around."""

@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.geometry import Pose
 from roomba.headless.mission import HeadlessMission
 from roomba.headless.tick_rows import BELIEVED, GYRO, ODOMETRY, TIME, TRUE
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 from roomba.planning.path.planner import NoPathError
 from roomba.world.home.home import Home
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

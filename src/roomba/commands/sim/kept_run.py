@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats32
 from roomba.client.protocol import MissedFloor
 from roomba.client.view import known_cells
 from roomba.commands.sim.state_samples import StateSamples
@@ -20,7 +21,6 @@ from roomba.history.run import (
     TRACE,
     TRACE_STEP,
     CellLayer,
-    Floats,
     RunFigures,
     RunRecording,
     RunSource,
@@ -85,7 +85,7 @@ def recording_of(run: Run, samples: StateSamples) -> RunRecording:
     return RunRecording(_trace(run, samples), words, samples.home, layers)
 
 
-def _trace(run: Run, samples: StateSamples) -> Floats:
+def _trace(run: Run, samples: StateSamples) -> Floats32:
     stride = round(TRACE_STEP / TRAJECTORY_STEP)
     poses = run.trajectory[::stride]
     trace = np.zeros((len(poses), len(TRACE)))
@@ -94,7 +94,7 @@ def _trace(run: Run, samples: StateSamples) -> Floats:
     # Before, not at: a look at the very end finds no clean under way any more.
     latest = np.maximum(np.searchsorted(states[:, 0], poses[:, 0], side="left") - 1, 0)
     trace[:, 4:] = states[latest, 1:]
-    result: Floats = trace.astype(np.float32)
+    result: Floats32 = trace.astype(np.float32)
     return result
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Mask
 from roomba.commands.trials.figures import Figures, MissedShare
 from roomba.commands.trials.homes import home_of, rooms_of
 from roomba.commands.trials.numbers import DOCKING, MISSION, ROBOT, with_numbers
@@ -41,8 +41,6 @@ from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.world.home.home import Home
 from roomba.world.home.raster import largest_component, where_body_fits
 
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 RunObserver = Callable[[HeadlessMission], None]
 """Is shown the robot whenever some of its time has passed."""
 

@@ -6,10 +6,11 @@ from typing import Final
 
 import numpy as np
 
+from roomba.arrays import Mask
 from roomba.commands.options import UsageError
 from roomba.geometry import Pose, RoundObstacle
 from roomba.world.home.home import Home
-from roomba.world.home.raster import Mask, where_body_fits
+from roomba.world.home.raster import where_body_fits
 
 _STREAM: Final = 20_021
 """Makes these random numbers others than those of noise for the same seed."""

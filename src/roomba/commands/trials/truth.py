@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
@@ -18,8 +18,6 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.vocabulary import CleanMode
 from roomba.world.home.home import Home
-
-Mask = NDArray[np.bool_]
 
 
 def true_map(home: Home) -> OccupancyMap:

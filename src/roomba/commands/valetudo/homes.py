@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 import yaml
 
+from roomba.arrays import Mask
 from roomba.commands.trials.homes import rooms_of
 from roomba.commands.trials.unreached import Unreached, unreached_of
 from roomba.commands.trials.zones import ZONES_NAME, zones_of_home
@@ -24,7 +25,7 @@ from roomba.perception.rooms.outlines import outline_of
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.storage.zones import save_zones
 from roomba.world.home.home import Home
-from roomba.world.home.raster import Mask, largest_component, where_body_fits
+from roomba.world.home.raster import largest_component, where_body_fits
 from roomba.world.layers.automatic_station import automatic_station
 from roomba.world.layers.definite_map import definite_map
 from roomba.world.layers.layer import load_home

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.configuration.mission import CleaningConfig
 from roomba.geometry import RoundObstacle
 from roomba.grid import GridFrame
@@ -15,8 +15,6 @@ from roomba.perception.swept.coverage_map import patches_of
 from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError
 from roomba.raster.regions import large_regions
-
-Mask = NDArray[np.bool_]
 
 
 def floor_in_reach(context: PlanningContext, here: Point, obstacles: list[RoundObstacle]) -> Mask:

@@ -12,14 +12,13 @@ import zlib
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.errors import RoombaError
 from roomba.mission.cleaning.request import CleanRequest
 from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 
 VERSION: Final = 4
-Mask = NDArray[np.bool_]
 Values = dict[str, Any]
 
 

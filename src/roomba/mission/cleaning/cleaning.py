@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Mask
 from roomba.configuration.mission import CleaningConfig
 from roomba.geometry import Pose, RoundObstacle
 from roomba.mission.cleaning.another_round import (
@@ -28,12 +28,7 @@ from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, Mis
 from roomba.mission.cleaning.rounds import Rounds
 from roomba.mission.cleaning.second_pass import SecondPass
 from roomba.mission.cleaning.stages import Stage, edges_of
-from roomba.mission.cleaning.worth import (
-    PlanOver,
-    made_once,
-    plan_worth_its_way,
-    slivers_of,
-)
+from roomba.mission.cleaning.worth import PlanOver, made_once, plan_worth_its_way, slivers_of
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import patches_of
 from roomba.perception.swept.dirt_map import DirtMap
@@ -42,9 +37,6 @@ from roomba.planning.path.planner import NoPathError
 from roomba.planning.path.polyline import Path
 from roomba.raster.regions import large_regions
 from roomba.vocabulary import CleanMode, RoomWay
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 class Cleaning:

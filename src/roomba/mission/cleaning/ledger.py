@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.mission.cleaning.checkpoint import (
@@ -34,8 +34,6 @@ from roomba.perception.swept.dirt_map import DirtMap
 from roomba.raster.carried import carried
 from roomba.raster.distance import distance_to_nearest
 from roomba.vocabulary import CleanMode, RoomWay
-
-Mask = NDArray[np.bool_]
 
 _ALL: Final = 0xFF
 _AS_NEAR: Final = 1.5

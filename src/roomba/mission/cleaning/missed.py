@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.geometry import RoundObstacle
 from roomba.grid import GridFrame
 from roomba.mission.cleaning.request import Missed, MissReason
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import Patch, patches_of
-
-Mask = NDArray[np.bool_]
 
 _MOSTLY: Final = 0.8
 """Share of a patch that is near to things: it is missed for what stands there."""

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.vocabulary import RoomDirt
-
-Mask = NDArray[np.bool_]
 
 
 def dirt_of_rooms(clean: Mask, context: PlanningContext, dirt: DirtMap) -> tuple[RoomDirt, ...]:

@@ -7,14 +7,12 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.cleaning.stages import Stage
 from roomba.perception.rooms.rooms import Rooms
 from roomba.vocabulary import CleanMode, RoomWay
-
-Mask = NDArray[np.bool_]
 
 
 def queue_of(request: CleanRequest, left: Sequence[Stage]) -> tuple[str, ...]:

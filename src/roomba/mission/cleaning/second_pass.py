@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Mask
 from roomba.configuration.mission import CleaningConfig
 from roomba.geometry import RoundObstacle
 from roomba.mission.cleaning.dirty.detour import with_detour
@@ -13,9 +13,6 @@ from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.worth import PlanOver, is_worth_its_way, way_worth
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.path.costmap import Point
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 class SecondPass:

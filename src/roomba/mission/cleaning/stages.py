@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.geometry import Pose
 from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -16,8 +16,6 @@ from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.planner import NoPathError
 from roomba.raster.distance import distance_to_nearest
 from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, listed
-
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.grid import GridFrame
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.path.planner import NoPathError
 from roomba.raster.regions import large_regions
 
-Mask = NDArray[np.bool_]
 PlanOver = Callable[[Mask], CoveragePlan]
 """Plans a way over a floor, bool over a frame, and on; raises NoPathError."""
 

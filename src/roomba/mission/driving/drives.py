@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-from numpy.typing import NDArray
-
+from roomba.arrays import Floats
 from roomba.configuration.mission import DrivingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.mission.driving.give_way import way_aside
@@ -17,8 +15,6 @@ from roomba.mission.driving.trail import Trail
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.planning.path.planner import NoPathError
-
-Floats = NDArray[np.float64]
 
 
 class Drives:

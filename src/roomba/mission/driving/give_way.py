@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.mission import GivingWayConfig
 from roomba.geometry import RoundObstacle
 from roomba.mission.driving.obstacles import Obstacles
@@ -16,8 +16,6 @@ from roomba.mission.inputs.senses import Senses
 from roomba.planning.frontiers.kernels import ways_from
 from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError, PathPlanner
-
-Floats = NDArray[np.float64]
 
 
 def way_aside(

@@ -12,11 +12,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.control.path_tracker import PathTracker
 from roomba.geometry import RoundObstacle
 from roomba.planning.coverage.floor.floor import CoverageFloor
-
-Floats = NDArray[np.float64]
 
 _STEP: Final = 0.02
 _AHEAD: Final = 1.0

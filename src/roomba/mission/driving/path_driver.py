@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.clock import LONGEST_TICK, ClockJumps
 from roomba.configuration.mission import DrivingConfig
 from roomba.configuration.robot import RobotConfig
@@ -27,8 +28,6 @@ from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
 from roomba.mission.driving.way_ahead import LEAVING, WayAhead
 from roomba.mission.inputs.senses import Senses
-
-Floats = NDArray[np.float64]
 
 _PAUSE: Final = 3.5
 """Ticks; after more of them without a command its drive has stopped."""

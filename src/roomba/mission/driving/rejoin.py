@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.mission import DrivingConfig
 from roomba.control.path_tracker import PathTracker
 from roomba.geometry import RoundObstacle
@@ -21,7 +22,6 @@ from roomba.mission.inputs.senses import Senses
 from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError, NoPathReason
 
-Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 _STEP: Final = 0.05

@@ -8,12 +8,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import entry
 from roomba.geometry import Pose
 from roomba.perception.swept.coverage_kernels import LONGEST_STEP
 from roomba.planning.path.costmap import Point
-
-Floats = NDArray[np.float64]
 
 _STEP: Final = 0.05
 """m; between two places that are remembered."""

@@ -8,11 +8,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import entry
 from roomba.perception.things.kernels import first_blocked
 from roomba.perception.things.state import Things
-
-Floats = NDArray[np.float64]
 
 _HORIZON: Final = 2.0
 """m; so far ahead a path is looked at."""

@@ -12,6 +12,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
@@ -29,8 +30,6 @@ from roomba.planning.path.careful import CarefulPathPlanner
 from roomba.planning.path.costmap import Point
 from roomba.planning.path.new_walls import is_walled
 from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
-
-Mask = NDArray[np.bool_]
 
 _NEARER: Final = 0.02
 """m; by so much the place before the station comes nearer to it, until there is room."""

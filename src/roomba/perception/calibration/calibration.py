@@ -9,18 +9,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.perception.calibration.state import (
-    AHEAD,
-    DRIFT,
-    ERRORS,
-    GYRO,
-    LEFT,
-    TURN,
-    TURNED,
-    WAY,
-)
-
-Floats = NDArray[np.float64]
+from roomba.arrays import Floats
+from roomba.perception.calibration.state import AHEAD, DRIFT, ERRORS, GYRO, LEFT, TURN, TURNED, WAY
 
 _TOLD: Final = 2.0
 """Deviations from which on an error is told as one."""

@@ -11,10 +11,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from roomba.angles import wrapped
+from roomba.arrays import Floats
 from roomba.compilation import entry, inner_part, part
 from roomba.perception.calibration.state import (
     AHEAD,
@@ -29,8 +27,6 @@ from roomba.perception.calibration.state import (
     Row,
 )
 from roomba.perception.matching.pose_kernels import beyond
-
-Floats = NDArray[np.float64]
 
 _LONGEST: Final = 60.0
 """s; what takes longer is no drive: the robot stood meanwhile."""

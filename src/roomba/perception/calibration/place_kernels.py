@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from roomba.arrays import Floats
 from roomba.compilation import inner_part
 from roomba.perception.calibration.kernels import drop_window, note_place
 from roomba.perception.calibration.state import Row
-
-Floats = NDArray[np.float64]
 
 _SURE: Final = 0.012
 _SURE_TURN: Final = 0.01

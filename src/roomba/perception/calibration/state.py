@@ -21,14 +21,12 @@ import math
 from typing import Any, Final, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
 
 Row: TypeAlias = Any
 """A CALIBRATION in a kernel."""
-Floats = NDArray[np.float64]
 
 WAY, TURN, DRIFT, GYRO, AHEAD, LEFT, TURNED = range(7)
 ERRORS: Final = 7

@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.configuration.mapping import MapChangesConfig
 from roomba.geometry import Pose, wrap_angle
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
@@ -25,8 +26,6 @@ from roomba.perception.slam.drawing.drawing_kernels import CountArrays
 from roomba.perception.slam.scan_matching.surface_kernels import POINT
 from roomba.raster.distance import distance_to_nearest
 from roomba.raster.regions import dilated, numbered_regions
-
-Mask = NDArray[np.bool_]
 
 _NEAR: Final = np.ones((5, 5), np.bool_)
 """Cells; changed cells as near to each other are one change."""

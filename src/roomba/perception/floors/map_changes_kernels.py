@@ -8,11 +8,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import allocating_entry, entry
 from roomba.perception.slam.drawing.drawing_kernels import CountArrays, draw
 from roomba.perception.slam.scan_matching.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
-
-Floats = NDArray[np.float64]
 
 MOST: Final = 5
 """The largest score of a cell, so that a change is noticed soon also after a long time."""

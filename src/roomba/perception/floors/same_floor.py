@@ -19,6 +19,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.mapping import FloorsConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
@@ -26,8 +27,6 @@ from roomba.perception.floors.recognition import FloorRecord
 from roomba.perception.matching.match_kernels import match
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.raster.distance import distance_to_nearest
-
-Floats = NDArray[np.float64]
 
 _TURNS: Final = (0.0, 0.05, -0.05)
 """rad; a docked robot stands a little askew, and matching follows that so far and no farther."""

@@ -7,9 +7,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import entry
-
-Floats = NDArray[np.float64]
 
 KEPT: Final = 12
 """Scans that are kept."""

@@ -5,12 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from roomba.arrays import Floats
 from roomba.compilation import part
-
-Floats = NDArray[np.float64]
 
 _ALL_AROUND: Final = 0.01
 """rad; beams that lack no more of a full turn have no first and no last one."""

@@ -6,12 +6,10 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import allocating_entry, allocating_part, any_order_entry
 from roomba.perception.matching.field_kernels import OFF_MAP, Field, Place, look
-
-Floats = NDArray[np.float64]
 
 LOOKED_AT: Final = 0
 AGREEING: Final = 1

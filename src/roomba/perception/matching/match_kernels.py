@@ -13,10 +13,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import allocating_entry, allocating_part, any_order_entry, entry
 from roomba.perception.matching.field_kernels import Field, Place
-
-Floats = NDArray[np.float64]
 
 _MORE_ROUNDS: Final = 2
 """Rounds after those with scales of their own. Always as many: an end at a small correction would

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from roomba.angles import wrapped
+from roomba.arrays import Floats
 from roomba.compilation import entry
-
-Floats = NDArray[np.float64]
 
 
 @entry

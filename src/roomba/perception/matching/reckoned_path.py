@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.arrays import Floats
 from roomba.compilation import entry, inner_part
-
-Floats = NDArray[np.float64]
 
 _REMEMBERED: Final = 2.0
 """s; how late a scan may come: all of that time is known, however seldom odometry is told."""

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.arrays import Floats
 from roomba.compilation import entry, inner_part
 from roomba.perception.matching.beams import LidarBeams, is_all_around
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_in, stretch_at
 from roomba.trigonometry import direction_of, sine_cosine
 
-Floats = NDArray[np.float64]
 Ranges = NDArray[np.float32]
 
 _GRAZING: Final = 7.0

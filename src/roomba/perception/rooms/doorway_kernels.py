@@ -10,10 +10,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, allocating_part, entry, inner_part
 from roomba.raster.regions import root_of
 
-Mask = NDArray[np.bool_]
 Labels = NDArray[np.int32]
 Clearance = NDArray[np.float32]
 

@@ -8,17 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.configuration.rooms import RoomsConfig
-from roomba.perception.rooms.doorway_kernels import (
-    flood_basins,
-    gaps,
-    opening_at,
-    wall_thicknesses,
-)
+from roomba.perception.rooms.doorway_kernels import flood_basins, gaps, opening_at, wall_thicknesses
 from roomba.perception.rooms.floor_kernels import contacts, draw_line
 from roomba.raster.distance import distance_to_nearest
-
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)

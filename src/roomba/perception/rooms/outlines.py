@@ -6,11 +6,9 @@ import math
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.grid import GridFrame
-
-Mask = NDArray[np.bool_]
 
 
 def outline_of(mask: Mask, frame: GridFrame) -> shapely.Polygon | shapely.MultiPolygon:

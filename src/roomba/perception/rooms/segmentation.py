@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.configuration.rooms import RoomsConfig
 from roomba.grid import UNKNOWN, OccupancyMap
 from roomba.perception.rooms.doorways import clearance_of, doorways
@@ -18,7 +19,6 @@ from roomba.perception.rooms.floor_kernels import (
 )
 from roomba.raster.regions import numbered_regions
 
-Mask = NDArray[np.bool_]
 Labels = NDArray[np.int32]
 Counts = NDArray[np.int64] | np.int64
 

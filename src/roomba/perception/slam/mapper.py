@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import FollowingConfig, MappingConfig
 from roomba.configuration.sensors import GyroConfig
@@ -30,8 +31,6 @@ from roomba.perception.slam.submaps.parts import Carried
 from roomba.perception.slam.submaps.pose_graph import relative_to
 from roomba.perception.slam.submaps.relocation import MapRelocation
 from roomba.perception.slam.submaps.submap_graph import CLOUD
-
-Floats = NDArray[np.float64]
 
 
 class Mapper:

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.geometry import Pose
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.submaps.pose_graph import Link
 from roomba.perception.slam.submaps.submap import KeptSubmap
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.beams import LidarBeams
@@ -18,8 +19,6 @@ from roomba.perception.slam.scan_matching.surfels import SurfelGrid
 from roomba.perception.slam.submaps.parts import Carried
 from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe, moved
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
-
-Floats = NDArray[np.float64]
 
 
 class SubmapMap:

@@ -8,14 +8,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 from roomba.perception.swept.coverage_kernels import sweep, swept_from
 from roomba.raster.carried import carried
 from roomba.raster.regions import numbered_regions
-
-Mask = NDArray[np.bool_]
 
 GRANTED: Final = 0.002
 """m; a cell counts as swept when the tool's rim comes so near to its middle: two swaths that touch

@@ -8,13 +8,12 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats32, Mask
 from roomba.compilation import entry
 from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.raster.carried import carried
 
-Floats = NDArray[np.float32]
-Mask = NDArray[np.bool_]
 Window = tuple[slice, slice]
 """Rows and columns of a part of a grid."""
 
@@ -42,9 +41,9 @@ class DirtMap:
     def __init__(self, occupancy: OccupancyMap) -> None:
         """Lay it over a map, with nothing known."""
         self.frame = frame = occupancy.frame.with_cells(CELL)
-        self.learned: Floats = np.full(self.frame.shape, np.nan, np.float32)
-        self.grains: Floats = np.zeros(self.frame.shape, np.float32)
-        self.way: Floats = np.zeros(self.frame.shape, np.float32)
+        self.learned: Floats32 = np.full(self.frame.shape, np.nan, np.float32)
+        self.grains: Floats32 = np.zeros(self.frame.shape, np.float32)
+        self.way: Floats32 = np.zeros(self.frame.shape, np.float32)
         self.place = np.array([frame.origin_x, frame.origin_y, CELL])
 
     def note(self, x: float, y: float, grains: float, way: float) -> None:
@@ -115,9 +114,9 @@ class DirtMap:
         """Floor of which the present run counted what lies on it, m2."""
         return float(np.count_nonzero(self.way > LEAST_WAY)) * CELL**2
 
-    def known(self) -> Floats:
+    def known(self) -> Floats32:
         """Return grains/m2 by cells: of this run where it was, else as learned, NaN elsewhere."""
-        known: Floats = np.where(self.way > LEAST_WAY, self._density_now(), self.learned)
+        known: Floats32 = np.where(self.way > LEAST_WAY, self._density_now(), self.learned)
         return known
 
     def over(
@@ -144,13 +143,13 @@ class DirtMap:
         ends = np.ceil(last * parts).astype(np.int64)
         return slice(int(starts[0]), int(ends[0])), slice(int(starts[1]), int(ends[1]))
 
-    def _density_now(self) -> Floats:
+    def _density_now(self) -> Floats32:
         area = np.maximum(self.way, 0.05) * CELL
-        density: Floats = self.grains / area
+        density: Floats32 = self.grains / area
         return density
 
 
-def dirty_from(density: Floats, times: float, least: float) -> float:
+def dirty_from(density: Floats32, times: float, least: float) -> float:
     """Return from how many grains/m2 on floor is dirty: so many times the usual, their median.
 
     It is ``least`` grains/m2 or more. ``density`` is of any shape; NaN where nothing is known.
@@ -162,8 +161,8 @@ def dirty_from(density: Floats, times: float, least: float) -> float:
 
 @entry
 def note_dirt(
-    grains_of: Floats,
-    way_of: Floats,
+    grains_of: Floats32,
+    way_of: Floats32,
     place: NDArray[np.float64],
     x: float,
     y: float,

@@ -13,13 +13,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import entry, inner_part
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import OFF_MAP, Field, Place, look
 from roomba.perception.things.range_kernels import is_mixed, measure_noises, noise_at
 from roomba.perception.things.state import Row, Things
 
-Floats = NDArray[np.float64]
 Ranges = NDArray[np.float32]
 
 IN: Final = 0

@@ -8,12 +8,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.passes.edges import rings
 from roomba.planning.coverage.passes.stairs import SolidCells
 from roomba.planning.coverage.passes.sweep import unswept
 from roomba.planning.coverage.tour.net import Net, net_over
-from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 

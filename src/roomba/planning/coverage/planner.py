@@ -20,6 +20,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.configuration.coverage import CoverageConfig
 from roomba.geometry import RoundObstacle
 from roomba.grid import OccupancyMap
@@ -29,7 +30,7 @@ from roomba.planning.coverage.passes.sweep import unswept
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 from roomba.planning.coverage.tour.connection import tidy
-from roomba.planning.path.costmap import Mask, Point
+from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError, NoPathReason
 
 __all__ = ["CoverageFloor", "CoveragePlan", "CoveragePlanner"]

@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.passes.edges import edges as our_edges
 from roomba.planning.coverage.passes.swaths import swaths as our_swaths
@@ -21,7 +22,6 @@ from roomba.planning.coverage.tour.net import Net
 from roomba.planning.coverage.tour.order import ordered as our_order
 from roomba.planning.coverage.tour.polish import polished as our_polish
 from roomba.planning.coverage.tour.rounding import rounded as our_rounding
-from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 

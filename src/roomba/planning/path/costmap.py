@@ -13,13 +13,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import entry, part
 from roomba.geometry import RoundObstacle
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.path.straight_walls import has_shares, solid_parts
 from roomba.raster.regions import dilated, numbered_regions
 
-Mask = NDArray[np.bool_]
 Point = tuple[float, float]
 
 _PARTS = 5

@@ -15,11 +15,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Mask
 from roomba.compilation import allocating_entry, inner_part
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
-from roomba.raster.regions import Mask
-
-Floats = NDArray[np.float64]
 
 _WINDOW: Final = 7
 """Columns over which a wall must be straight: 35 cm."""

@@ -18,10 +18,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import entry, inner_part, part
 
 Bytes = NDArray[np.uint8]
-Floats = NDArray[np.float64]
 
 QUARTER: Final = 16
 """Steps of an arc of 90 degrees: its chords are nearer to the corner by 0.12 % of the room."""

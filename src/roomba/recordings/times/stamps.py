@@ -13,11 +13,8 @@ from dataclasses import dataclass, fields
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
+from roomba.arrays import Floats, Ints64, Mask
 
 CLOCKS: Final = 1.0
 """s; delays between stamp and arrival that differ by more are of two clocks."""
@@ -148,7 +145,7 @@ def mended(stamps: Floats, arrivals: Floats, delay: float, counts: StampCounts) 
     return times
 
 
-def in_order(times: Floats, channels: Ints, ranks: Ints, counts: StampCounts) -> Ints:
+def in_order(times: Floats, channels: Ints64, ranks: Ints64, counts: StampCounts) -> Ints64:
     """Return the numbers of messages in the order of ``times``, s, without doubles.
 
     ``channels`` tells of each message the channel; of a time those of the lowest of ``ranks``

@@ -8,11 +8,8 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
+from roomba.arrays import Floats, Ints64, Mask
 
 _EQUAL: Final = 0.5
 """Share of times equal to the one before, from which they tell nothing; a log in which each scan is
@@ -68,12 +65,12 @@ def _by_ticks(times: Floats) -> Floats:
     return _between(times, ticks)
 
 
-def _ticks(times: Floats) -> Ints:
+def _ticks(times: Floats) -> Ints64:
     """Return the numbers of the ``times``, s, that differ from the one before, and of the first."""
     return np.concatenate(([0], 1 + np.flatnonzero(np.diff(times) > 0.0)))
 
 
-def _between(times: Floats, ticks: Ints) -> Floats:
+def _between(times: Floats, ticks: Ints64) -> Floats:
     """Return ``times``, s, evenly from each of the ``ticks`` up to the next."""
     count = len(times)
     step = float(np.median(np.diff(times[ticks]) / np.diff(ticks)))

@@ -8,11 +8,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import entry, inner_part, part
 from roomba.world.engine.state.arrays import CARPET, Row
 from roomba.world.engine.state.random_kernels import next_normal
-
-Floats = NDArray[np.float64]
 
 _LEAST: Final = 20
 """Micrograms; a smaller amount is picked up completely."""

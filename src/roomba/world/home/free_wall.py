@@ -15,6 +15,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.grid import GridFrame
 from roomba.world.home.surface import Surface
 
@@ -24,7 +25,6 @@ LONGEST_PIECE: Final = 0.06
 """m; of a round wall: the camera draws an edge between longer ones."""
 
 Points = tuple[tuple[float, float], ...]
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,14 +9,13 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.grid import GridFrame
 from roomba.raster.regions import dilated, numbered_regions
 from roomba.world.home.home import Box, Rectangle
 
 RELEVANT_SHARE = 0.10
 """0..1; a cell of which this share is covered counts as covered."""
-
-Mask = NDArray[np.bool_]
 
 
 def footprint(box: Box) -> shapely.Polygon:

@@ -16,6 +16,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Mask
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.world.home.free_wall import FreeWall, inside
@@ -28,9 +29,6 @@ from roomba.world.home.home import (
     Room,
     TurnedFrom,
 )
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 _SAMPLES: Final = 9
 """In each direction of a cell."""

@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.world.catalogue.furniture import FIXTURES, LOW_KINDS, STATION_GAP, station_at
@@ -22,7 +23,6 @@ from roomba.world.home.free_wall import (
 )
 from roomba.world.home.home import Box, Door, Furniture, Rectangle, cells_in
 from roomba.world.home.raster import (
-    Mask,
     cells_within,
     covered_cells,
     distance_to_cells,

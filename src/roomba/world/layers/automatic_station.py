@@ -8,11 +8,12 @@ from typing import Final
 
 import numpy as np
 
+from roomba.arrays import Mask
 from roomba.errors import HomeError
 from roomba.geometry import Pose
 from roomba.grid import OCCUPIED, OccupancyMap
 from roomba.world.catalogue.furniture import STATION_GAP, STATION_WIDTH
-from roomba.world.home.raster import Mask, where_body_fits, with_neighbours
+from roomba.world.home.raster import where_body_fits, with_neighbours
 from roomba.world.layers.paper import off_paper
 
 CLEARANCE = 0.03

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from roomba.arrays import Mask
 from roomba.configuration.body import BodyConfig
 from roomba.errors import HomeError
 from roomba.files.home_layer import MAP_NAME, Layer, files_of_home, read_layer
@@ -22,7 +23,6 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.world.home.dirt import DirtField
 from roomba.world.home.home import DirtSource, Home, StationPlace
-from roomba.world.home.raster import Mask
 from roomba.world.home.turned import with_steps
 from roomba.world.layers.assembly import (
     FurnishedFloor,

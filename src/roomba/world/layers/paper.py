@@ -7,10 +7,11 @@ from typing import Final
 
 import numpy as np
 
+from roomba.arrays import Mask
 from roomba.geometry import Pose
 from roomba.grid import FREE, GridFrame, OccupancyMap
 from roomba.raster.regions import dilated, numbered_regions
-from roomba.world.home.raster import Mask, largest_component, where_body_fits
+from roomba.world.home.raster import largest_component, where_body_fits
 from roomba.world.layers.definite_map import FENCE
 
 LEAST_HOME: Final = 3.0

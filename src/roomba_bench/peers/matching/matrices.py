@@ -6,9 +6,8 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from roomba.arrays import Floats
 
 
 def matrix_of(pose: Sequence[float] | Floats) -> Floats:

@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
+from roomba.arrays import Mask
 from roomba.errors import RoombaError
 from roomba.mission.cleaning.checkpoint import (
     CheckpointError,
-    Mask,
     Values,
     packed,
     request_of,

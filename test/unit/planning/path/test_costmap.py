@@ -12,8 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from roomba.arrays import Mask
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
-from roomba.planning.path.costmap import FitMap, Mask, room_beside
+from roomba.planning.path.costmap import FitMap, room_beside
 
 
 def occupancy(solid: Mask, resolution: float = 0.05, origin: float = 0.0) -> OccupancyMap:

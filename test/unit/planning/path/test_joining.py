@@ -12,9 +12,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from roomba.arrays import Mask
 from roomba.geometry import RoundObstacle
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.planning.path.costmap import FitMap, Mask, Point
+from roomba.planning.path.costmap import FitMap, Point
 from roomba.planning.path.joining import join_goal, join_start
 from roomba.planning.path.search.any_angle import Joints
 

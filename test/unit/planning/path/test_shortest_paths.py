@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from fixtures.homes.planned_rooms import Point, occupancy
 
-from roomba.planning.path.costmap import Mask
+from roomba.arrays import Mask
 from roomba.planning.path.planner import NoPathError, NoPathReason, Path, PathPlanner
 
 

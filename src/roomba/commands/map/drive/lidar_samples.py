@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.perception.matching.pose_kernels import is_apart, seen_from
 from roomba.perception.matching.reckoned_path import ReckonedPath
 from roomba.perception.slam.scan_matching.correlative import CorrelativeMatch, CorrelativeMatcher
@@ -20,8 +20,6 @@ from roomba.perception.slam.scan_matching.surface_kernels import (
 )
 from roomba.recordings.readings import LidarScan, Odometry, Reading
 from roomba.recordings.sweeps import Sweep, SweptScans
-
-Floats = NDArray[np.float64]
 
 _APART_WAY, _APART_TURN = 0.03, 0.03
 """m, rad; between scans that are kept: a robot that stands shows nothing new."""

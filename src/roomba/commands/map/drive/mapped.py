@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.commands.map.drive.looking import look_at_drive
 from roomba.commands.map.drive.odometry_gaps import OdometryGap, gaps_of
 from roomba.commands.map.drive.replay import MapReplay
@@ -24,8 +24,6 @@ from roomba.recordings.choice import Wanted
 from roomba.recordings.drive import LoggedDrive
 from roomba.recordings.readings import Kind, LogError, TruePose
 from roomba.recordings.times.stamps import StampCounts
-
-Floats = NDArray[np.float64]
 
 _SHOWN: Final = 64
 """Readings between two updates of the progress."""

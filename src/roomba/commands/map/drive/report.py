@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from roomba.commands.map.drive.mapped import Floats, MappedDrive
+from roomba.arrays import Floats
+from roomba.commands.map.drive.mapped import MappedDrive
 from roomba.grid import FREE, UNKNOWN
 from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.matching.scan_view import LidarModel

@@ -14,7 +14,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from roomba.commands.map.drive.lidar_samples import Floats, LidarSamples, Sample, laid_on
+from roomba.arrays import Floats
+from roomba.commands.map.drive.lidar_samples import LidarSamples, Sample, laid_on
 
 _WAY, _TURN = 0.3, 0.3
 """m, rad; two scans are compared between which the robot moved so far, or turned."""

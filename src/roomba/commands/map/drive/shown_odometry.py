@@ -14,7 +14,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.commands.map.drive.lidar_samples import Floats, LidarSamples, laid_on
+from roomba.arrays import Floats
+from roomba.commands.map.drive.lidar_samples import LidarSamples, laid_on
 
 _SELDOM: Final = 2.0
 """s between two messages, as a rule, from which most scans are of times without odometry."""

@@ -13,7 +13,8 @@ from typing import Final
 
 import numpy as np
 
-from roomba.commands.map.drive.lidar_samples import Floats, LidarSamples, Sample, laid_on
+from roomba.arrays import Floats
+from roomba.commands.map.drive.lidar_samples import LidarSamples, Sample, laid_on
 from roomba.recordings.sweeps import Sweep
 
 _TURNING: Final = 0.03

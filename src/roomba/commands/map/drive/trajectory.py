@@ -6,15 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.files.atomic import write_whole
 from roomba.geometry import Pose
 
 if TYPE_CHECKING:
     from roomba.perception.slam.mapper import Mapper
-
-Floats = NDArray[np.float64]
 
 
 class Trajectory:

@@ -6,7 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from roomba.commands.pictures.sensors.drives import DriveRecording, Floats, wander
+from roomba.arrays import Floats
+from roomba.commands.pictures.sensors.drives import DriveRecording, wander
 from roomba.configuration.simulation import SimulatedRobotConfig, pickup_share
 from roomba.geometry import Pose, Twist
 from roomba.plots.style import BLUE, GREEN, INK, ORANGE, drawn, empty_figure, stacked

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import ControlConfig
 from roomba.control.position_loop import PositionLoop
@@ -19,9 +19,6 @@ STEP = 0.025
 """s; the robot's usual step."""
 _NEAR = 0.05
 """m; nearer than this to a point of its way the robot goes on to the next one."""
-
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(slots=True)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from roomba.commands.pictures.sensors.drives import STEP, DriveRecording, Floats, follow
+from roomba.arrays import Floats
+from roomba.commands.pictures.sensors.drives import STEP, DriveRecording, follow
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.plots.style import (

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.commands.pictures.teaching.matching import ends_at, matched
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
@@ -17,8 +17,6 @@ from roomba.perception.localization.belief.belief import numbers_of
 from roomba.perception.localization.belief.reckon_kernels import carry
 from roomba.plots.style import BLUE, ORANGE, drawn, empty_figure, show_floor_plan
 from roomba.world.home.home import Home
-
-Floats = NDArray[np.float64]
 
 _START: Final = (5.25, -0.5)
 """m; in the hallway, which is bare along its sides."""

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.robot import RobotConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.control.path_tracker import PathTracker
@@ -16,8 +17,6 @@ from roomba.geometry import Pose
 from roomba.plots.style import BLUE, GREEN, GREY, ORANGE, drawn, empty_figure
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
-
-Floats = NDArray[np.float64]
 
 _PATH: Final = (
     (0.00, 0.01), (0.64, 0.01), (0.66, 0.02), (0.69, 0.04), (0.72, 0.07), (0.74, 0.10),

@@ -6,13 +6,11 @@ from typing import Final
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.perception.slam.submaps.pose_graph import Link, composed, optimised, relative_to
 from roomba.plots.style import BLUE, GREEN, GREY, INK, RED, drawn, empty_figure
 from roomba.world.home.home import Home
-
-Floats = NDArray[np.float64]
 
 _SIDE: Final = 5
 """Submaps along each side of the block."""

@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.sensors import EXACT_LIDAR
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose, Twist
@@ -27,8 +27,6 @@ from roomba.plots.style import (
 )
 from roomba.world.home.home import Home
 from roomba.world.simulator import Simulator
-
-Floats = NDArray[np.float64]
 
 _AT: Final = Pose(1.6, 0.6, 0.6)
 _OFF: Final = Pose(0.18, -0.12, 0.12)

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.robot import RobotConfig
 from roomba.planning.path.costmap import FitMap, Point
 from roomba.planning.path.joining import join_goal
@@ -29,8 +29,6 @@ from roomba.plots.style import (
     show_floor_plan,
 )
 from roomba.world.home.home import Home
-
-Floats = NDArray[np.float64]
 
 _FROM: Final = (8.06, 1.52)
 _TO: Final = (3.71, 6.18)

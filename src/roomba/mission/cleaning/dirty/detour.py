@@ -7,14 +7,13 @@ from collections.abc import Callable
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError
 from roomba.planning.path.polyline import Path
 
-Floats = NDArray[np.float64]
 PlanFrom = Callable[[Point], CoveragePlan]
 """Plans a way from a place over the floor and back there; raises NoPathError."""
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Mask
 from roomba.clock import is_recent
 from roomba.configuration.mission import CleaningConfig
 from roomba.mission.cleaning.dirty.watch_kernels import WATCH, may_be_dirty
@@ -16,9 +16,6 @@ from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.swept.dirt_map import CELL, DirtMap
 from roomba.planning.path.costmap import Point
 from roomba.raster.regions import Labels, dilated, large_regions, numbered_regions
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 _AROUND: Final = np.ones((3, 3), np.bool_)
 _HAIR: Final = 1e-4

@@ -8,12 +8,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats32, Mask
 from roomba.clock import ROUNDING
 from roomba.compilation import entry, part
 from roomba.perception.swept.dirt_map import CELL, LEAST_WAY
-
-Floats = NDArray[np.float32]
-Mask = NDArray[np.bool_]
 
 WATCH: Final = np.dtype(
     [
@@ -32,8 +30,8 @@ WATCH: Final = np.dtype(
 @entry
 def may_be_dirty(
     rows: NDArray[np.void],
-    grains_of: Floats,
-    way_of: Floats,
+    grains_of: Floats32,
+    way_of: Floats32,
     done: Mask,
     place: NDArray[np.float64],
     x: float,

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.arrays import Floats
 from roomba.compilation import allocating_entry, allocating_part, entry, inner_part, part
 from roomba.perception.calibration.kernels import drop_window
 from roomba.perception.calibration.place_kernels import note_pose
@@ -24,8 +25,6 @@ from roomba.perception.matching.fit_kernels import THROUGH as ALL_THROUGH
 from roomba.perception.matching.match_kernels import beam_ends, match_in
 from roomba.perception.matching.pose_kernels import beyond, seen_from
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
-
-Floats = NDArray[np.float64]
 
 _NARROW: Final = np.array([0.10, 0.05, 0.05])
 _WIDE: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05])

@@ -12,13 +12,11 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import allocating_part, inner_part
 from roomba.perception.matching.field_kernels import Field, Place, look
 from roomba.perception.matching.match_kernels import invert
-
-Floats = NDArray[np.float64]
 
 _GROUPS: Final = 16
 """Groups of neighbouring beams; those that follow and face alike are of one wall."""

@@ -7,10 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import allocating_entry, entry
 from roomba.perception.matching.field_kernels import Field, Place
 
-Floats = NDArray[np.float64]
 Particles = NDArray[np.float64]
 """[n, 4]: x, y (m), theta (rad), and the logarithm of the weight."""
 

@@ -7,10 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import any_order_entry, entry
 from roomba.perception.matching.field_kernels import Field, Place
 
-Floats = NDArray[np.float64]
 _EARLY = 12
 """Beams after which a place that fits nowhere is given up."""
 _EARLY_SHARE = 0.3

@@ -13,11 +13,11 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import allocating_entry, entry, inlined_entry, inner_part, part
 from roomba.grid import FREE, OCCUPIED, UNKNOWN
 from roomba.perception.slam.scan_matching.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
 
-Floats = NDArray[np.float64]
 Counts = NDArray[np.uint16]
 
 _INTO: Final = 0.4

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.perception.slam.drawing import drawing_kernels
 from roomba.perception.slam.drawing.drawing_kernels import (
@@ -20,7 +21,6 @@ from roomba.perception.slam.drawing.drawing_kernels import (
 )
 from roomba.perception.slam.drawing.seen_surfaces import only_seen
 
-Floats = NDArray[np.float64]
 Offsets = NDArray[np.float32]
 
 _STEP: Final = 5.0

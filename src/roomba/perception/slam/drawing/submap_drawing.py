@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.mapping import MappingConfig
 from roomba.grid import OccupancyMap
 from roomba.perception.matching.beams import LidarBeams
@@ -14,8 +14,6 @@ from roomba.perception.slam.drawing.occupancy_counts import OccupancyCounts
 from roomba.perception.slam.submaps.pose_graph import relative_to
 from roomba.perception.slam.submaps.submap import Keyframe
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
-
-Floats = NDArray[np.float64]
 
 _REDRAWN_TURN: Final = 0.002
 """rad; a submap that turned more is drawn anew."""

@@ -6,9 +6,8 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from roomba.arrays import Floats
 
 _ALONG: Final = 0.995
 """Cosine; a wall that faces along an axis so well has one place on it."""

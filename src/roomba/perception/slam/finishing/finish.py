@@ -5,15 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.slam.finishing.axis_alignment import phase_of_walls, turn_of_walls
 from roomba.perception.slam.finishing.refinement import refined
 from roomba.perception.slam.submaps.pose_graph import Link
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
-
-Floats = NDArray[np.float64]
 
 
 def finish(graph: SubmapGraph, config: MappingConfig) -> tuple[float, float]:

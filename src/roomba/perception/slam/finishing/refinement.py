@@ -13,9 +13,9 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roomba.angles import wrap_angles
+from roomba.arrays import Floats
 from roomba.perception.slam.finishing.refinement_kernels import (
     SIZE,
     Asked,
@@ -32,8 +32,6 @@ from roomba.perception.slam.submaps.pose_graph import (
     relative_to,
 )
 from roomba.perception.slam.submaps.submap import Keyframe
-
-Floats = NDArray[np.float64]
 
 _STRIDE: Final = 5
 """Keyframes from the first of a group to the first of the next."""

@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import allocating_entry, allocating_part
 from roomba.perception.matching.match_kernels import invert
 from roomba.perception.matching.pose_kernels import seen_from
@@ -24,7 +25,6 @@ from roomba.perception.slam.scan_matching.surfel_kernels import (
 )
 from roomba.perception.slam.scan_matching.tolerances import Tolerances
 
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 SIZE: Final = 10

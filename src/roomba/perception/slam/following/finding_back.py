@@ -10,15 +10,13 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.slam.following.finding_back_kernels import FINDING, is_due
 from roomba.perception.slam.following.scan_follower import ScanFollower
 from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher, is_in_reach
-
-Floats = NDArray[np.float64]
 
 _STRIDE: Final = 2
 """Each such point of the keyframes is looked at: neighbours say the same."""

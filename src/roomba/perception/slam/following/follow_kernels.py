@@ -6,9 +6,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.arrays import Floats
 from roomba.compilation import entry, inner_part, part
 from roomba.perception.localization.belief.belief import Row, Rows
 from roomba.perception.localization.belief.reckon_kernels import compose
@@ -22,8 +22,6 @@ from roomba.perception.slam.scan_matching.surfel_kernels import (
     align,
 )
 from roomba.perception.slam.scan_matching.tolerances import Tolerances, in_plane, last_scale
-
-Floats = NDArray[np.float64]
 
 FOLLOWER: Final = np.dtype(
     [

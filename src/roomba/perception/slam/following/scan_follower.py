@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.mapping import FollowingConfig, MappingConfig
 from roomba.geometry import Pose
 from roomba.perception.calibration.latency import no_latency
@@ -26,8 +27,6 @@ from roomba.perception.slam.following.scan_kernels import (
 )
 from roomba.perception.slam.scan_matching.surface_kernels import POINT, room_for_sums
 from roomba.perception.slam.scan_matching.surfels import SurfelGrid
-
-Floats = NDArray[np.float64]
 
 _TAKEN_UP_SPREAD: Final = np.diag([0.1**2, 0.1**2, 0.05**2])
 """m2, rad2; of a pose by the wheels alone, after the mapping process was away."""

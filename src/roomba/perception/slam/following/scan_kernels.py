@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.arrays import Floats
 from roomba.compilation import entry, inner_part
 from roomba.perception.calibration.kernels import drop_window
 from roomba.perception.calibration.latency import learn_latency
@@ -24,7 +25,6 @@ from roomba.perception.slam.following.follow_kernels import COVARIANCE, follow, 
 from roomba.perception.slam.scan_matching.surface_kernels import surface_points
 from roomba.perception.slam.scan_matching.surfel_kernels import Surfels
 
-Floats = NDArray[np.float64]
 Ranges = NDArray[np.float32]
 
 IS_LEFT: Final = 0

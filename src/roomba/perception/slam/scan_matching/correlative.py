@@ -11,12 +11,10 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.perception.slam.scan_matching.likelihood_field import likelihood_field
 from roomba.perception.slam.scan_matching.window_search import search
-
-Floats = NDArray[np.float64]
 
 _TURN_STEP: Final = 0.012
 """rad; a cell and a bit at the usual range of 5 m."""

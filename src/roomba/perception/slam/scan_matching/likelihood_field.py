@@ -14,9 +14,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import entry, inner_part
 
-Floats = NDArray[np.float64]
 Likelihoods = NDArray[np.uint8]
 
 FULL: Final = 255

@@ -13,10 +13,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import allocating_entry, entry, inner_part
 from roomba.perception.matching.beams import LidarBeams, is_all_around
-
-Floats = NDArray[np.float64]
 
 X: Final = 0
 Y: Final = 1

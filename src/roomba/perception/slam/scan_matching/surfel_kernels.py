@@ -15,12 +15,11 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import allocating_entry, entry, inner_part, part
 from roomba.perception.matching.match_kernels import invert
 from roomba.perception.slam.scan_matching.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
 from roomba.perception.slam.scan_matching.tolerances import Tolerances
-
-Floats = NDArray[np.float64]
 
 FACINGS: Final = 4
 SUMS: Final = 5

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.perception.slam.scan_matching.surfel_kernels import (
     ALIGN_WORK,
     ASKED,
@@ -22,8 +22,6 @@ from roomba.perception.slam.scan_matching.surfel_kernels import (
     clear,
 )
 from roomba.perception.slam.scan_matching.tolerances import Tolerances
-
-Floats = NDArray[np.float64]
 
 CELL: Final = 0.1
 """m; the size of a surfel."""

@@ -12,13 +12,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.compilation import allocating_entry, allocating_part, inner_part, part
-from roomba.perception.slam.scan_matching.likelihood_field import (
-    FULL,
-    Floats,
-    LikelihoodField,
-    Likelihoods,
-)
+from roomba.perception.slam.scan_matching.likelihood_field import FULL, LikelihoodField, Likelihoods
 
 Cells = NDArray[np.int32]
 

@@ -8,14 +8,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from roomba.angles import wrapped
+from roomba.arrays import Floats
 from roomba.configuration.mapping import BackingConfig
 from roomba.perception.slam.submaps.pose_graph import Link, composed, relative_to
-
-Floats = NDArray[np.float64]
 
 
 def is_far(link: Link, poses: Floats, config: BackingConfig) -> bool:

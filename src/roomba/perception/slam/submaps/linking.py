@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.arrays import Floats
 from roomba.compilation import entry
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.match_kernels import invert
@@ -17,8 +18,6 @@ from roomba.perception.slam.scan_matching.surfels import Match, SurfelGrid
 from roomba.perception.slam.scan_matching.tolerances import Tolerances, tolerances_of
 from roomba.perception.slam.submaps.pose_graph import Link, relative_to
 from roomba.perception.slam.submaps.submap import Submap
-
-Floats = NDArray[np.float64]
 
 _COARSE: Final = np.array([0.3, 0.2, 0.1])
 _FINE: Final = (0.05,)

@@ -16,13 +16,13 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.slam.submaps.places import ClearPlace, clearly_best
 from roomba.perception.slam.submaps.pose_graph import Link, composed, inverse, relative_to
 from roomba.perception.slam.submaps.submap import Keyframe, Submap, cloud_of, moved
 
-Floats = NDArray[np.float64]
 Labels = NDArray[np.int64]
 
 _SHARES: Final = np.linspace(0.2, 0.8, 13)

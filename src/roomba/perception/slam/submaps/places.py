@@ -7,15 +7,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher, is_in_reach
 from roomba.perception.slam.submaps.pose_graph import composed
 from roomba.perception.slam.submaps.submap import Submap
-
-Floats = NDArray[np.float64]
 
 
 class ClearPlace(NamedTuple):

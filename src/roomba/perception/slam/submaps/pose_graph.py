@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrap_angles
+from roomba.arrays import Floats
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 _ROUNDS: Final = 30

@@ -6,16 +6,12 @@ scan, taken elsewhere, must be found where the first one and dead reckoning say.
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from roomba.arrays import Floats
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.slam.submaps.places import clearly_best
 from roomba.perception.slam.submaps.pose_graph import composed, relative_to
 from roomba.perception.slam.submaps.submap import Submap
-
-Floats = NDArray[np.float64]
 
 
 class MapRelocation:

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.slam.submaps.agreement import is_backed, is_far
@@ -30,8 +31,6 @@ from roomba.perception.slam.submaps.pose_graph import (
     relative_to,
 )
 from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe, Submap, moved
-
-Floats = NDArray[np.float64]
 
 CLOUD: Final = 1500
 """Points of a submap that are matched to others."""

@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.configuration.coverage import CoverageConfig
 from roomba.geometry import RoundObstacle
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.coverage.floor.masks import filled_from, grown, half_widths
-from roomba.planning.path.costmap import Mask, Point, checked_obstacles, clear_of
+from roomba.planning.path.costmap import Point, checked_obstacles, clear_of
 from roomba.planning.path.straight_walls import solid_parts
 
 _TOUCH = 1e-7

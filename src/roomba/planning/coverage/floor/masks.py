@@ -10,9 +10,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, entry
 from roomba.raster.growing import with_room
-from roomba.raster.regions import Mask
 
 _TILE = 32
 """Cells to a side of the squares that are transposed at once: as many lines as the cache holds."""

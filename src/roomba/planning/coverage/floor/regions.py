@@ -7,10 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, entry
 from roomba.raster.distance import distance_to_nearest
 from roomba.raster.growing import with_room
-from roomba.raster.regions import Labels, Mask, join, numbered_regions, root_of
+from roomba.raster.regions import Labels, join, numbered_regions, root_of
 
 _BLOCK = 5
 """Cells to a side of the blocks that are told apart."""

@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, inner_part
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.raster.growing import with_room
-from roomba.raster.regions import Mask
 
 Chain = NDArray[np.int32]
 """Cells, each touching the next, int32 [n, 2] (x, y)."""

@@ -11,9 +11,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, inner_part
 from roomba.planning.coverage.passes.contours import Chain, outlines
-from roomba.raster.regions import Mask
 
 _WINDOW = 150
 """Points of an outline, more than 1.5 m: three steps or more of a wall that is slanted by 6

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrap_angles
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import way_fits
@@ -23,7 +24,6 @@ from roomba.planning.coverage.passes.sweep import (
     set_leg,
     sweep_leg,
 )
-from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 """A polyline, float64 [n >= 2, 2] (x, y)."""

@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, inner_part
 from roomba.planning.coverage.passes.directions import line_along
-from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, inner_part
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import transposed
@@ -15,7 +16,6 @@ from roomba.planning.coverage.floor.regions import mask_of, regions
 from roomba.planning.coverage.passes.directions import main_directions
 from roomba.planning.coverage.passes.turned_cells import TurnedCells, turned_mask
 from roomba.raster.growing import with_room
-from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, entry, inner_part, part
-from roomba.raster.regions import Mask
 
 Counts = NDArray[np.int16]
 """How many legs of a path sweep each cell, int16 [rows, columns]."""

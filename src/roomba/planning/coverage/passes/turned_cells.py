@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry
-from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 

@@ -12,9 +12,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import inner_part, part
 from roomba.planning.coverage.passes.sweep import Counts, Legs
-from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 

@@ -10,12 +10,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.tour.net import Net
 from roomba.planning.coverage.tour.ways import taut, way_between
 from roomba.planning.path.search.grid_path import shortest_grid_path
-from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 

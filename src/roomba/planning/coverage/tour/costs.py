@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, entry, inner_part, part
-from roomba.raster.regions import Mask
 
 Tour = NDArray[np.int32]
 """The ends of pieces as they are passed, int32 [2 n]: the two ends of a piece at the positions 2 k

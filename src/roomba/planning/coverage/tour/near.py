@@ -11,12 +11,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Ints32
 from roomba.compilation import allocating_entry, allocating_part, inner_part
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.tour.net import STEP_X, STEP_Y, UNIT, Net, blocks_near, leg_to
 
 Line = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 _BUCKETS = 128
 _NEVER = np.int32(1 << 30)
@@ -33,16 +33,16 @@ class Places(NamedTuple):
     """
 
     at: Line
-    block_first: Ints
-    of_block: Ints
+    block_first: Ints32
+    of_block: Ints32
 
 
 class NearestSearch(NamedTuple):
     """Work arrays of a search over a net, int32 over its blocks, and the queue's bucket heads."""
 
-    costs: Ints
-    queue: Ints
-    touched: Ints
+    costs: Ints32
+    queue: Ints32
+    touched: Ints32
 
 
 @allocating_entry
@@ -86,7 +86,7 @@ def nearest_wanted(
     origin: int,
     enough: int,
     limit: float,
-    found: Ints,
+    found: Ints32,
     lengths: NDArray[np.float64],
 ) -> int:
     """Write the places nearest to one of them over the net, and the lengths of the ways.
@@ -163,7 +163,7 @@ def nearest_wanted(
 
 
 @allocating_part
-def _twice_as_long(queue: Ints) -> Ints:
+def _twice_as_long(queue: Ints32) -> Ints32:
     """Return the rows of a queue with as much room again behind them."""
     longer = np.empty((queue.shape[0], 2 * queue.shape[1]), np.int32)
     # Cell by cell: an array set at once may not fit, and to say so takes longest to compile.
@@ -176,7 +176,7 @@ def _twice_as_long(queue: Ints) -> Ints:
 @allocating_entry
 def neighbours(
     net: Net, search: NearestSearch, places: Places, most: int, limit: float
-) -> tuple[Ints, NDArray[np.float64]]:
+) -> tuple[Ints32, NDArray[np.float64]]:
     """Return the nearest places of each, the nearest first, and the lengths of the ways to them.
 
     int32 and float64 [n, most]; -1 and infinite where there are fewer within ``limit`` cells. Those
@@ -231,7 +231,7 @@ def neighbours(
 
 
 @allocating_part
-def _squares(at: Line) -> tuple[int, Ints, Ints]:
+def _squares(at: Line) -> tuple[int, Ints32, Ints32]:
     """Return how many squares there are in a row, and which places lie in each, as of blocks."""
     columns, rows = 1, 1
     for place in range(len(at)):
@@ -256,12 +256,12 @@ def _squares(at: Line) -> tuple[int, Ints, Ints]:
 def _as_the_crow_flies(
     at: Line,
     columns: int,
-    first: Ints,
-    inside: Ints,
+    first: Ints32,
+    inside: Ints32,
     origin: int,
     enough: int,
     limit: float,
-    near: Ints,
+    near: Ints32,
     away: NDArray[np.float64],
 ) -> tuple[int, float]:
     """Write other places and how far they are; return how many, and how far there are no others."""
@@ -300,7 +300,7 @@ def _as_the_crow_flies(
 
 
 @inner_part
-def _make_symmetric(nearest: Ints, lengths: NDArray[np.float64]) -> None:
+def _make_symmetric(nearest: Ints32, lengths: NDArray[np.float64]) -> None:
     """Give ways there and back the same length; searches both ways can differ by their steps."""
     for place in range(len(nearest)):
         for n in range(nearest.shape[1]):

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import entry, part
 from roomba.planning.coverage.floor.masks import way_fits
-from roomba.raster.regions import Mask
 
 _BLOCK = 8
 STEP_X = (1, 1, 0, -1, -1, -1, 0, 1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.tour.costs import Costs, costs_of, note_pair
 from roomba.planning.coverage.tour.guesses import guesses_measured
@@ -18,7 +19,6 @@ from roomba.planning.coverage.tour.near import (
 )
 from roomba.planning.coverage.tour.net import Net
 from roomba.planning.coverage.tour.tour import greedy_links, shaken
-from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, inner_part, part
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import way_fits
@@ -25,7 +26,6 @@ from roomba.planning.coverage.passes.sweep import (
     set_leg,
     sweep,
 )
-from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 

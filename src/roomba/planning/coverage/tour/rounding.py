@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, inner_part, part
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import grown, half_widths, way_fits
@@ -37,7 +38,6 @@ from roomba.planning.coverage.tour.bends import (
     turn_at,
 )
 from roomba.planning.coverage.tour.connection import tidy
-from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 

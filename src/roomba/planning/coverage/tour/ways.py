@@ -11,11 +11,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, allocating_part, inner_part
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.tour.net import STEP_X, STEP_Y, Net, blocks_near, leg_to
 from roomba.planning.path.search.heap_kernels import heap_pop, heap_push
-from roomba.raster.regions import Mask
 
 Line = NDArray[np.float64]
 

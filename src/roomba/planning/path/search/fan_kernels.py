@@ -11,13 +11,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Ints32
 from roomba.compilation import entry, inner_part, part
 from roomba.planning.path.search.floor_kernels import BEND, CROSSING, SIDE_X, SIDE_Y
 from roomba.planning.path.search.heap_kernels import heap_push
 
 Bytes = NDArray[np.uint8]
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 GOAL = -2
 """The goal's item in the heap."""
@@ -32,16 +31,16 @@ class Work(NamedTuple):
     """uint8 [rows, columns], as are the next two; from :func:`.floor_kernels.survey`."""
     open_squares: Bytes
     flags: Bytes
-    stamps: Ints
+    stamps: Ints32
     """int32 [rows * columns]: 2 * epoch where this search found a root, + 1 where it is done."""
     costs: Floats
     """float64 [rows * columns]: length of the way from the start to a root."""
-    before: Ints
+    before: Ints32
     """int32 [rows * columns]: the root before a root, or START."""
     keys: Floats
     """float64 [capacity] and int32: the heap of roots, fans (from rows * columns on) and GOAL."""
-    items: Ints
-    fan_roots: Ints
+    items: Ints32
+    fan_roots: Ints32
     """int32 [capacity] and float64 [capacity, 7]: the fans, see ROOT_X."""
     fans: Floats
     state: NDArray[np.int64]

@@ -5,17 +5,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from roomba.arrays import Floats, Ints32
 from roomba.compilation import entry
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 
 @entry
-def heap_push(keys: Floats, items: Ints, size: int, key: float, item: int) -> None:
+def heap_push(keys: Floats, items: Ints32, size: int, key: float, item: int) -> None:
     """Put an item into a 4-ary min-heap of ``size`` items."""
     at = size
     while at > 0:
@@ -30,7 +25,7 @@ def heap_push(keys: Floats, items: Ints, size: int, key: float, item: int) -> No
 
 
 @entry
-def heap_pop(keys: Floats, items: Ints, size: int) -> None:
+def heap_pop(keys: Floats, items: Ints32, size: int) -> None:
     """Remove the first item of a 4-ary min-heap of ``size`` items."""
     last = size - 1
     key, item = keys[last], items[last]

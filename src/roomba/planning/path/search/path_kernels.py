@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 
+from roomba.arrays import Floats, Ints32
 from roomba.compilation import entry, inner_part, part
 from roomba.planning.path.search.fan_kernels import (
     EPOCH,
@@ -19,8 +20,6 @@ from roomba.planning.path.search.fan_kernels import (
     GOAL,
     GOAL_SQUARE,
     HEAP_SIZE,
-    Floats,
-    Ints,
     Work,
     add_fan,
     drive_fan,
@@ -128,7 +127,7 @@ def _expand_start(work: Work) -> None:
 
 @entry
 def search(
-    work: Work, entries: Ints, entry_legs: Floats, exits: Ints, exit_legs: Floats, inside: bool
+    work: Work, entries: Ints32, entry_legs: Floats, exits: Ints32, exit_legs: Floats, inside: bool
 ) -> int:
     """Find the shortest path from the start to the goal in ``work.ends``; return how it went.
 

@@ -12,12 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats32
 from roomba.grid import GridFrame
 from roomba.raster.distance import distance_to_nearest
 from roomba.world.home.home import Home
 from roomba.world.home.raster import covered_cells, footprint
-
-Floats = NDArray[np.float32]
 
 FINEST = 0.025
 """m; cells of the light's grids in a home of the usual size."""
@@ -95,7 +94,7 @@ def lit(home: Home, walls: NDArray[np.bool_], rooms: NDArray[np.uint8]) -> Light
     return Light(_bytes(floor), _bytes(air), cell)
 
 
-def _bytes(light: Floats) -> NDArray[np.uint8]:
+def _bytes(light: Floats32) -> NDArray[np.uint8]:
     return np.clip(light * 255.0 + 0.5, 0.0, 255.0).astype(np.uint8)
 
 
@@ -108,7 +107,7 @@ def _light_frame(frame: GridFrame) -> GridFrame:
     return GridFrame(cell, frame.origin_x, frame.origin_y, rows, columns)
 
 
-def _centres(frame: GridFrame) -> tuple[Floats, Floats]:
+def _centres(frame: GridFrame) -> tuple[Floats32, Floats32]:
     x, y = frame.centres()
     return x[None, :].astype(np.float32), y[:, None].astype(np.float32)
 
@@ -119,7 +118,7 @@ def _room_at(frame: GridFrame, room: NDArray[np.uint8], pane: Pane) -> int:
     return int(room[row, column])
 
 
-def _daylight(home: Home, frame: GridFrame, room: NDArray[np.uint8]) -> Floats:
+def _daylight(home: Home, frame: GridFrame, room: NDArray[np.uint8]) -> Floats32:
     """Return the soft light: each room's windows, less with distance, spilling through doors."""
     panes = panes_of(home)
     x, y = _centres(frame)
@@ -136,7 +135,7 @@ def _daylight(home: Home, frame: GridFrame, room: NDArray[np.uint8]) -> Floats:
     return _blurred(light, 0.25 / frame.resolution)
 
 
-def _sunlight(home: Home, frame: GridFrame, room: NDArray[np.uint8]) -> Floats:
+def _sunlight(home: Home, frame: GridFrame, room: NDArray[np.uint8]) -> Floats32:
     """Return where the sun falls through windows on the floor, 0..1."""
     x, y = _centres(frame)
     sun = np.zeros(frame.shape, np.float32)
@@ -156,7 +155,7 @@ def _sunlight(home: Home, frame: GridFrame, room: NDArray[np.uint8]) -> Floats:
     return _blurred(sun, 0.03 / frame.resolution)
 
 
-def _shadows(home: Home, frame: GridFrame) -> Floats:
+def _shadows(home: Home, frame: GridFrame) -> Floats32:
     """Return how much light furniture leaves on the floor: less below it and beside it."""
     light = np.ones(frame.shape, np.float32)
     boxes = [box for piece in home.furniture if piece.kind != WINDOW_KIND for box in piece.boxes]
@@ -174,7 +173,7 @@ def _shadows(home: Home, frame: GridFrame) -> Floats:
     return light
 
 
-def _blurred(values: Floats, sigma: float) -> Floats:
+def _blurred(values: Floats32, sigma: float) -> Floats32:
     """Return a grid smoothed by a Gaussian of ``sigma`` cells."""
     reach = math.ceil(3.0 * sigma)
     weights = np.exp(-0.5 * (np.arange(-reach, reach + 1, dtype=np.float32) / sigma) ** 2)

@@ -14,8 +14,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats32
+
 Bytes = NDArray[np.uint8]
-Floats = NDArray[np.float32]
 
 GROUT = 40
 """Greys below this are joints between tiles: palettes of tiles give them the grout's colour."""
@@ -29,30 +30,30 @@ class Pattern:
     size: float
 
 
-def _noise(n: int, cells_v: int, cells_u: int, seed: int) -> Floats:
+def _noise(n: int, cells_v: int, cells_u: int, seed: int) -> Floats32:
     """Return smooth seamless noise of -1..1, float32 [n, n], with so many cells each way."""
     coarse = np.random.default_rng(seed).uniform(-1.0, 1.0, (cells_v, cells_u)).astype(np.float32)
     rows = _stretched(coarse, n)
     return np.ascontiguousarray(_stretched(np.ascontiguousarray(rows.T), n).T)
 
 
-def _stretched(values: Floats, n: int) -> Floats:
+def _stretched(values: Floats32, n: int) -> Floats32:
     """Return ``values`` [cells, m] interpolated along the first axis, seamless, as [n, m]."""
     cells = values.shape[0]
     place = (np.arange(n, dtype=np.float32) + 0.5) * (cells / n) - 0.5
     low = np.floor(place).astype(np.intp)
     part = (place - low).astype(np.float32)[:, None]
-    stretched: Floats = values[low % cells] * (1.0 - part)
+    stretched: Floats32 = values[low % cells] * (1.0 - part)
     stretched += values[(low + 1) % cells] * part
     return stretched
 
 
-def _grey(values: Floats) -> Bytes:
+def _grey(values: Floats32) -> Bytes:
     """Return 128 + ``values`` as uint8."""
     return np.clip(values + 128.5, 0.0, 255.0).astype(np.uint8)
 
 
-def _grain(n: int, seed: int) -> Floats:
+def _grain(n: int, seed: int) -> Floats32:
     """Wood grain along u: long fibres, pores, and the waves of the year rings; about -1..1."""
     v = np.arange(n, dtype=np.float32)[:, None] / n
     bend = _noise(n, 8, 3, seed) * 0.035 + _noise(n, 16, 6, seed + 1) * 0.01
@@ -60,7 +61,7 @@ def _grain(n: int, seed: int) -> Floats:
     fibres = _noise(n, n // 2, max(4, n // 128), seed + 2)
     pores = np.minimum(_noise(n, n // 2, n // 24, seed + 3) + 0.45, 0.0)
     patches = _noise(n, 10, 3, seed + 4)
-    grain: Floats = 0.30 * rings + 0.35 * fibres + 1.1 * pores + 0.45 * patches
+    grain: Floats32 = 0.30 * rings + 0.35 * fibres + 1.1 * pores + 0.45 * patches
     return grain
 
 

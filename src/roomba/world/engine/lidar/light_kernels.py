@@ -10,8 +10,8 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats32
 from roomba.compilation import inner_part, part
 from roomba.trigonometry import sine_cosine
 from roomba.world.engine.lidar.face_kernels import mirrored, ray_to_faces
@@ -19,8 +19,6 @@ from roomba.world.engine.lidar.ray_kernels import ray_to_cells, ray_to_movable
 from roomba.world.engine.state.arrays import Row, Solid
 from roomba.world.engine.state.random_kernels import hashed
 from roomba.world.home.surface import Finish
-
-Floats = NDArray[np.float32]
 
 CELL: Final = -1
 MOVABLE: Final = -2
@@ -47,7 +45,7 @@ class Surroundings(NamedTuple):
     world: Row
     robot: int
     numbers: Row
-    quantiles: Floats
+    quantiles: Floats32
     """See :func:`~roomba.world.engine.state.random_kernels.normal_quantiles`."""
 
 
@@ -224,7 +222,7 @@ def lidar_at(body: Row, numbers: Row, x: float, y: float, theta: float) -> Eye:
 
 
 @inner_part
-def look_through(around: Surroundings, ranges: Floats, key: np.uint32) -> None:
+def look_through(around: Surroundings, ranges: Floats32, key: np.uint32) -> None:
     """Measure those beams of a scan anew that met glass or a mirror before anything else.
 
     ``key`` decides by chance which of them glass sends back.

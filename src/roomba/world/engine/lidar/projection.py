@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.arrays import Floats32
 from roomba.compilation import any_order_part
 from roomba.world.engine.lidar.bundle_kernels import BEAMS
 from roomba.world.engine.lidar.edges import FACINGS, GROUPS
@@ -28,8 +29,6 @@ from roomba.world.engine.lidar.span_kernels import (
     shows_through,
 )
 from roomba.world.engine.state.arrays import Edges, Row, Rows
-
-Floats = NDArray[np.float32]
 
 FACTOR, X_RIGHT, Y_RIGHT, X_LEFT, Y_LEFT, BEAM_RIGHT, BEAM_LEFT = range(7)
 """Rows of the collected edges: the inverse distance of the line, and for both ends where they are
@@ -65,12 +64,12 @@ _C0, _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8 = (
 class ScanBuffers(NamedTuple):
     """Where scans are made, for one thread at a time."""
 
-    rays: Floats
+    rays: Floats32
     """[2, beams]: cosine and sine of each beam in the robot's frame."""
-    fan: Floats
+    fan: Floats32
     """[3, 1.5 beams and spare ones]: see :mod:`.span_kernels`; in the map frame. The beams of the
     first half come twice, so that no span has to be cut in two."""
-    ends: Floats
+    ends: Floats32
     """[7, edges of a tile]: the edges that look at the robot."""
     items: NDArray[np.int64]
     """[edges of a tile]: which they are."""
@@ -100,7 +99,7 @@ def buffers_for(edges: Edges, beams: int) -> ScanBuffers:
 
 
 @any_order_part
-def begin_scan(rays: Floats, fan: Floats, theta: float, max_range: float) -> np.float32:
+def begin_scan(rays: Floats32, fan: Floats32, theta: float, max_range: float) -> np.float32:
     """Turn the beams to the heading and empty the depth buffer; return the heading in [-pi, pi]."""
     beams = rays.shape[1]
     cosine = np.float32(math.cos(theta))
@@ -120,7 +119,7 @@ def begin_scan(rays: Floats, fan: Floats, theta: float, max_range: float) -> np.
 
 @any_order_part
 def point_beams(
-    ends: Floats, x: int, y: int, beam: int, count: int, theta: np.float32, beams: int
+    ends: Floats32, x: int, y: int, beam: int, count: int, theta: np.float32, beams: int
 ) -> None:
     """Set the row ``beam`` of ``ends`` to the beams, [0, beams), that point at rows (x, y)."""
     per_radian = np.float32(beams) / _TWO_PI
@@ -188,7 +187,7 @@ def gather(
 
 
 @any_order_part
-def span_of(ends: Floats, index: int, beams: np.float32) -> tuple[int, int]:
+def span_of(ends: Floats32, index: int, beams: np.float32) -> tuple[int, int]:
     """Return the first and last beam that meet a collected edge; no beam if last < first."""
     begin = ends[BEAM_RIGHT, index] - _SLACK
     end = ends[BEAM_LEFT, index] + _SLACK
@@ -197,7 +196,7 @@ def span_of(ends: Floats, index: int, beams: np.float32) -> tuple[int, int]:
 
 
 @any_order_part
-def fold(fan: Floats, beams: int) -> None:
+def fold(fan: Floats32, beams: int) -> None:
     """Bring together what is known of beams that come twice."""
     for beam in range(beams // 2 + LANES):
         both = max(fan[NEAREST, beam], fan[NEAREST, beams + beam])
@@ -314,7 +313,7 @@ def span_between(
 
 @any_order_part
 def scan_segment(
-    fan: Floats, beams: int, x0: float, y0: float, x1: float, y1: float, theta: np.float32
+    fan: Floats32, beams: int, x0: float, y0: float, x1: float, y1: float, theta: np.float32
 ) -> None:
     """Put one straight segment, as seen from the robot, into the depth buffer, from its right side.
 
@@ -332,7 +331,7 @@ def scan_segment(
 
 @any_order_part
 def scan_disc(
-    fan: Floats, beams: int, x: float, y: float, radius: float, theta: np.float32
+    fan: Floats32, beams: int, x: float, y: float, radius: float, theta: np.float32
 ) -> None:
     """Put a disc, its middle as seen from the robot, into the depth buffer; not from inside."""
     square = x * x + y * y - radius * radius
@@ -356,7 +355,7 @@ def scan_disc(
 
 
 @any_order_part
-def end_scan(fan: Floats, ranges: Floats, row: int, min_range: float, max_range: float) -> None:
+def end_scan(fan: Floats32, ranges: Floats32, row: int, min_range: float, max_range: float) -> None:
     """Write the ranges, m: inf if nothing is within reach, -inf nearer than the least (REP 117)."""
     fold(fan, ranges.shape[1])
     least, most = np.float32(1.0 / max_range), np.float32(1.0 / min_range)

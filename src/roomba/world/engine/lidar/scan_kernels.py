@@ -6,8 +6,8 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats32
 from roomba.compilation import any_order_part, inner_part
 from roomba.world.engine.lidar.light_kernels import Eye, Surroundings, lidar_at, look_through
 from roomba.world.engine.lidar.projection import (
@@ -20,8 +20,6 @@ from roomba.world.engine.lidar.projection import (
 )
 from roomba.world.engine.state.arrays import Edges, Row, Rows, Solid
 from roomba.world.engine.state.random_kernels import add_noise, next_bits
-
-Floats = NDArray[np.float32]
 
 _SLACK: Final = 1e-9
 """s; a scan is due when the time is as near to it as this."""
@@ -45,9 +43,9 @@ def scan(
     world: Row,
     robot: int,
     numbers: Row,
-    quantiles: Floats,
+    quantiles: Floats32,
     buffers: ScanBuffers,
-    ranges: Floats,
+    ranges: Floats32,
 ) -> None:
     """Fill the robot's row of ``ranges`` with what its lidar measures now."""
     body = solid.robots[robot]
@@ -78,7 +76,7 @@ def scan(
 
 @any_order_part
 def scan_faces(
-    faces: Rows, home: Row, x: float, y: float, fan: Floats, beams: int, theta: np.float32
+    faces: Rows, home: Row, x: float, y: float, fan: Floats32, beams: int, theta: np.float32
 ) -> None:
     """Put the faces of walls that are free of the grid into the depth buffer, but for clear ones.
 
@@ -102,7 +100,7 @@ def scan_things(
     solid: Solid,
     world: Row,
     eye: Eye,
-    fan: Floats,
+    fan: Floats32,
     beams: int,
     theta: np.float32,
     height: float,
@@ -123,7 +121,7 @@ def scan_things(
 
 @any_order_part
 def scan_box(
-    fan: Floats, beams: int, box: Row, x: float, y: float, turn: float, theta: np.float32
+    fan: Floats32, beams: int, box: Row, x: float, y: float, turn: float, theta: np.float32
 ) -> None:
     """Put the sides of a box, its middle as seen from the robot, into the depth buffer."""
     cosine, sine = math.cos(turn), math.sin(turn)
@@ -143,7 +141,7 @@ def scan_round_things(
     world: Row,
     robot: int,
     eye: Eye,
-    fan: Floats,
+    fan: Floats32,
     beams: int,
     theta: np.float32,
     radius: float,

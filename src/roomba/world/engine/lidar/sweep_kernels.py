@@ -11,9 +11,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roomba.angles import wrapped
+from roomba.arrays import Floats32
 from roomba.compilation import inner_part
 from roomba.world.engine.lidar.bundle_kernels import BUNDLE, aim, draw
 from roomba.world.engine.lidar.light_kernels import (
@@ -27,8 +27,6 @@ from roomba.world.engine.lidar.light_kernels import (
 from roomba.world.engine.state.arrays import Row, Rows
 from roomba.world.engine.state.random_kernels import next_bits
 
-Floats = NDArray[np.float32]
-
 _SLACK: Final = 1e-9
 """s; a beam is due when the time is as near to it as this."""
 _FLATTEST: Final = 0.1
@@ -39,7 +37,7 @@ _UNIT_20: Final = 1.0 / (1 << 20)
 
 @inner_part
 def sweep(
-    around: Surroundings, bundles: Rows, scans: tuple[Floats, Floats, Floats], dt: float
+    around: Surroundings, bundles: Rows, scans: tuple[Floats32, Floats32, Floats32], dt: float
 ) -> None:
     """Measure what is due in the step of ``dt`` s that ends now; deliver what has waited.
 
@@ -94,7 +92,7 @@ def begin_sweep(world: Row, body: Row, numbers: Row, dt: float) -> bool:
 
 
 @inner_part
-def deliver(body: Row, robot: int, underway: Floats, arrived: Floats) -> None:
+def deliver(body: Row, robot: int, underway: Floats32, arrived: Floats32) -> None:
     """Let the sweep on the line be the newest scan."""
     for beam in range(arrived.shape[1]):
         arrived[robot, beam] = underway[robot, beam]
@@ -104,7 +102,9 @@ def deliver(body: Row, robot: int, underway: Floats, arrived: Floats) -> None:
 
 
 @inner_part
-def measure_beams(around: Surroundings, bundles: Rows, ranges: Floats, due: int, dt: float) -> None:
+def measure_beams(
+    around: Surroundings, bundles: Rows, ranges: Floats32, due: int, dt: float
+) -> None:
     """Measure the beams from the next one to before ``due``, each where the lidar was at its time.
 
     Between its poses before and after the step it goes along an arc.

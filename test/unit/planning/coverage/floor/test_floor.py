@@ -13,11 +13,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from roomba.arrays import Mask
 from roomba.configuration.coverage import CoverageConfig
 from roomba.geometry import RoundObstacle
 from roomba.grid import FREE, UNKNOWN, GridFrame, OccupancyMap
 from roomba.planning.coverage.floor.floor import CoverageFloor, fine_frame
-from roomba.planning.path.costmap import Mask
 
 CONFIG = CoverageConfig()
 

@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from roomba.arrays import Mask
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.regions import mask_of, regions
-from roomba.raster.regions import Mask, numbered_regions
+from roomba.raster.regions import numbered_regions
 
 CONFIG = CoverageConfig()
 

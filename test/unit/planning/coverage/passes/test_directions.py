@@ -11,11 +11,11 @@ from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from roomba.arrays import Mask
 from roomba.configuration.coverage import CoverageConfig
 from roomba.grid import OccupancyMap
 from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.passes.directions import line_along, main_directions
-from roomba.raster.regions import Mask
 
 
 def middles_of(map: OccupancyMap) -> Mask:
