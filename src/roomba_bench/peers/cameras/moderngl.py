@@ -5,8 +5,7 @@ from __future__ import annotations
 import moderngl
 import numpy as np
 
-from roomba.arrays import Floats
-from roomba_bench.peers.cameras.views import Film, metres, pose_matrix, triangles, work_of
+from roomba_bench.peers.cameras.views import Film, Floats, metres, pose_matrix, triangles, work_of
 from roomba_bench.peers.protocol import Parameters, Work
 
 DISTRIBUTION = "moderngl"

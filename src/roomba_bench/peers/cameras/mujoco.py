@@ -7,8 +7,7 @@ import math
 import mujoco
 import numpy as np
 
-from roomba.arrays import Floats
-from roomba_bench.peers.cameras.views import FAR, NEAR, Film, metres, work_of
+from roomba_bench.peers.cameras.views import FAR, NEAR, Film, Floats, metres, work_of
 from roomba_bench.peers.protocol import Parameters, Work
 
 DISTRIBUTION = "mujoco"

@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pybullet
 
-from roomba.arrays import Floats
-from roomba_bench.peers.cameras.views import Film, metres, pose_matrix, work_of
+from roomba_bench.peers.cameras.views import Film, Floats, metres, pose_matrix, work_of
 from roomba_bench.peers.protocol import Parameters, Work
 
 DISTRIBUTION = "pybullet"

@@ -6,8 +6,15 @@ import numpy as np
 import pyrender
 import trimesh
 
-from roomba.arrays import Floats
-from roomba_bench.peers.cameras.views import FAR, NEAR, Film, pose_matrix, triangles, work_of
+from roomba_bench.peers.cameras.views import (
+    FAR,
+    NEAR,
+    Film,
+    Floats,
+    pose_matrix,
+    triangles,
+    work_of,
+)
 from roomba_bench.peers.protocol import Parameters, Work
 
 DISTRIBUTION = "pyrender"

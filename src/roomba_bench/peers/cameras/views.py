@@ -16,12 +16,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.arrays import Floats
 from roomba_bench.peers.protocol import Parameters, Work
 
 NEAR, FAR = 0.02, 50.0
 """m; what is drawn."""
 _CHECKED_VIEWS = 4
+
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

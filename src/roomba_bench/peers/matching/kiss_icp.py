@@ -14,7 +14,6 @@ from kiss_icp.config import KISSConfig  # type: ignore[import-not-found, unused-
 from kiss_icp.kiss_icp import KissICP  # type: ignore[import-not-found, unused-ignore]
 from numpy.typing import NDArray
 
-from roomba.arrays import Floats
 from roomba_bench.peers.matching.matrices import matrix_of, pose_of
 from roomba_bench.peers.protocol import Parameters, Work
 
@@ -23,6 +22,8 @@ DISTRIBUTION = "kiss-icp"
 _VOXEL = 0.05
 _FIRST_THRESHOLD, _LEAST_MOTION = 0.3, 0.01
 """m."""
+
+Floats = NDArray[np.float64]
 
 
 class Odometry:

@@ -6,8 +6,9 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from roomba.arrays import Floats
+Floats = NDArray[np.float64]
 
 
 def matrix_of(pose: Sequence[float] | Floats) -> Floats:

@@ -13,7 +13,6 @@ import numpy as np
 import small_gicp  # type: ignore[import-not-found, unused-ignore]
 from numpy.typing import NDArray
 
-from roomba.arrays import Floats
 from roomba_bench.peers.matching.matrices import matrix_of, pose_of
 from roomba_bench.peers.protocol import Parameters, Work
 
@@ -26,6 +25,8 @@ _FARTHEST = 0.3
 _ROUNDS = 20
 _SETTLED, _SETTLED_TURN = 5e-5, 2e-4
 """m, rad."""
+
+Floats = NDArray[np.float64]
 
 
 class Registration:
