@@ -83,7 +83,8 @@ def test_the_emergency_stop_forgets_a_wish_and_takes_no_other(graph: RosGraph) -
     graph.rosrun("speed_pub_node.py")
     stop = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
     stop.wait_for_service(30.0)
-    probe.send("/odom", odometry(0.0, 0.0))
+    # Both nodes: told to the other one alone it would not know its place.
+    probe.send("/odom", odometry(0.0, 0.0), receivers=2)
     # Before it knows its place it takes no wish.
     probe.next("/position", RobotPosition)
     probe.send("/change_position", RobotPosition(1.0, 0.0))
