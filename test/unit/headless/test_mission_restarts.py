@@ -15,13 +15,13 @@ from fixtures.robots.missions import (
     HOME,
     TWO_ROOMS,
     floor_clean,
+    fresh_mission,
     in_phase,
     until,
     wait,
 )
 from fixtures.thoroughness import core_first
 
-from roomba.configuration.docking import DockingConfig
 from roomba.geometry import Pose
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.checkpoint import CheckpointError
@@ -30,7 +30,6 @@ from roomba.mission.cleaning.request import (
     CleanRequest,
     MissReason,
 )
-from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event
 from roomba.vocabulary import CleanMode, Phase
 from roomba.world.engine.state.arrays import Fault
@@ -40,20 +39,8 @@ def restarted(robot: HeadlessMission, values: dict[str, Any] | None = None) -> N
     """The mission's process ended and begins again, with nothing but the checkpoint."""
     values = json.loads(json.dumps(values or robot.mission.checkpoint(robot.senses())))
     robot.things.forget()
-    robot.mission = fresh(robot)
+    robot.mission = fresh_mission(robot)
     robot.mission.restore(values, robot.senses())
-
-
-def fresh(robot: HeadlessMission) -> Mission:
-    return Mission(
-        robot.context,
-        robot.robot,
-        robot.config,
-        DockingConfig(),
-        robot.things,
-        robot.dirt,
-        robot.senses(),
-    )
 
 
 @pytest.mark.parametrize("seed", core_first(range(4), {0, 1}))
@@ -205,7 +192,7 @@ def test_a_checkpoint_that_is_junk_is_refused(path: str, junk: object) -> None:
     robot = begun(12.0)
     values = json.loads(json.dumps(robot.mission.checkpoint(robot.senses())))
     set_in(values, path, junk)
-    robot.mission = fresh(robot)
+    robot.mission = fresh_mission(robot)
     with pytest.raises(CheckpointError, match="expected"):
         robot.mission.restore(values, robot.senses())
     assert robot.mission.cleaning is None
@@ -223,11 +210,11 @@ def test_a_checkpoint_without_something_is_refused() -> None:
     for name in values.keys() - SINCE_OLDER_ONES:
         less = {key: value for key, value in values.items() if key != name}
         with pytest.raises(CheckpointError, match=name):
-            fresh(robot).restore(less, robot.senses())
+            fresh_mission(robot).restore(less, robot.senses())
     for name in values["cleaning"]:
         less = {key: value for key, value in values["cleaning"].items() if key != name}
         with pytest.raises(CheckpointError, match=name):
-            fresh(robot).restore({**values, "cleaning": less}, robot.senses())
+            fresh_mission(robot).restore({**values, "cleaning": less}, robot.senses())
 
 
 def test_a_checkpoint_of_another_map_is_refused() -> None:

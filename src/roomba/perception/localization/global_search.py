@@ -116,11 +116,11 @@ class GlobalSearch:
             self._particles = ParticleSearch(self._walls.field, self._body_radius)
         self._particles.see(view, reckoned)
         pose = self._particles.found
-        if pose is None:
+        if pose is None or self._told is None:
             return None
         scan = self._particles.reckoned.inverse().compose(reckoned)
         there = self._walls.find(view, pose.compose(scan), self._config.beam_deviation)
-        if self._told is None or self._told.is_tied(there, reckoned):
+        if self._told.is_tied(there, reckoned):
             return None
         fit = view.fit(self._walls.field, there.as_array())
         return FoundPlace(there.compose(since), fit)

@@ -112,7 +112,8 @@ def test_what_fills_less_than_half_of_a_cell_does_not_vanish(thing: list[list[in
 
 @pytest.mark.parametrize("side", [2, 6, 9, 11, 14])
 def test_the_lidar_expects_surfaces_where_the_world_is_solid(side: int) -> None:
-    """Whatever the size, in cells, of the spot that is not known; small ones were thought floor."""
+    """The spot that is not known may be of any size, in cells: a localizer takes small ones for
+    floor that no beam passed."""
     values = room()
     values[15 : 15 + side, 20 : 20 + side] = UNKNOWN
     settled = definite_map(map_of(values))
