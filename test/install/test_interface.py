@@ -7,14 +7,8 @@ from pathlib import Path
 
 import pytest
 from catkin_pkg.package import parse_package
-from install.test_workspace import (
-    BUILD_DEADLINE,
-    REPOSITORY,
-    SUMS,
-    copy_of_repository,
-    in_space,
-    run,
-)
+from fixtures.processes.fresh_login import run
+from install.test_workspace import BUILD_DEADLINE, REPOSITORY, SUMS, copy_of_repository, in_space
 
 ALONE = {"ROOMBA_ROBOT_PART": "interface"}
 PACKAGE = """<package format="3">

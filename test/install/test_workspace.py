@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 import subprocess
-from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from fixtures.processes.fresh_login import DEADLINE, run
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 CACHES = (".git", ".cache", ".venv", ".workspace", ".hypothesis", "__pycache__")
@@ -28,29 +27,6 @@ NODES_OF_LAUNCH = {
 }
 BUILD_DEADLINE = 240.0
 """s that a build may take; it takes 10."""
-DEADLINE = 60.0
-"""s that anything else may take."""
-
-
-def run(
-    command: Sequence[str | Path], folder: Path, deadline: float = DEADLINE
-) -> subprocess.CompletedProcess[str]:
-    """Run a command as after a fresh login, without a terminal."""
-    environment = {
-        "HOME": os.environ["HOME"],
-        "LANG": "C.UTF-8",
-        "PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
-    }
-    return subprocess.run(
-        [str(word) for word in command],
-        cwd=folder,
-        env=environment,
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=deadline,
-        check=False,
-    )
 
 
 def in_space(workspace: Path, space: str, script: str) -> str:

@@ -2,36 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import shutil
-import subprocess
-from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from fixtures.processes.fresh_login import run
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-DEADLINE = 60.0
-"""s that a command may take."""
-
-
-def run(command: Sequence[str | Path], folder: Path) -> subprocess.CompletedProcess[str]:
-    """Run a command as after a fresh login, without a terminal."""
-    environment = {
-        "HOME": os.environ["HOME"],
-        "LANG": "C.UTF-8",
-        "PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
-    }
-    return subprocess.run(
-        [str(word) for word in command],
-        cwd=folder,
-        env=environment,
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=DEADLINE,
-        check=False,
-    )
 
 
 def test_unknown_command_is_refused_with_the_usage() -> None:

@@ -14,7 +14,7 @@ from pathlib import Path
 from threading import Event, Thread
 
 import pytest
-from fixtures.written_robot import VIEW, WrittenRobot
+from fixtures.households.written_robot import VIEW, WrittenRobot
 
 from roomba.client.protocol import CleanReport, ErrandOutcome
 from roomba.ui.web.app import create_app

@@ -7,17 +7,15 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from fixtures.written_robot import HOME, VIEW, WrittenRobot
+from fixtures.households.living_plans import LivingPlans
+from fixtures.households.written_robot import HOME, VIEW, WrittenRobot
 
 from roomba.client.household import plans_of
 from roomba.client.protocol import CleanReport, ErrandOutcome
 from roomba.client.view import CleanOrder, HomeView, RobotView, RoomView
 from roomba.configuration.frozen import Frozen
-from roomba.configuration.household import DueConfig, PlansConfig
-from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.folder import KeptValues
 from roomba.household.plan_changes import replaced
-from roomba.household.plan_keeper import PlanKeeper
 from roomba.plans.due import DirtRecords
 from roomba.plans.plan import Plan, PlannedOrder
 from roomba.vocabulary import CleanMode, RoomDirt
@@ -37,30 +35,15 @@ class RoomyRobot(WrittenRobot):
         return replace(HOME, rooms=self.rooms)
 
 
-class Living:
+class Living(LivingPlans):
     """A keeper of plans over a robot with two rooms."""
 
+    robot: RoomyRobot
+
     def __init__(self, folder: Path) -> None:
-        self.folder, self.robot = folder, RoomyRobot()
-        self.now = dt.datetime(2026, 3, 2, 8, 0, tzinfo=dt.timezone.utc)
-        self.again()
-        self.keeper.change(lambda all_: replaced(all_, "plans", DUE.name, DUE))
+        super().__init__(folder, RoomyRobot())
+        self.put(DUE)
         self.keeper.look(DOCKED)
-
-    def again(self) -> None:
-        def kept(name: str) -> KeptValues:
-            return KeptValues(self.folder / name, lambda text: pytest.fail(text))
-
-        self.keeper = PlanKeeper(
-            self.robot,
-            kept("plans.json"),
-            kept("agenda.json"),
-            PlansConfig(),
-            lambda: self.now,
-            "UTC",
-            DirtKeeper(kept("dirt.json"), DueConfig()),
-            kept("rooms.json"),
-        )
 
     def day(self, view: RobotView = DOCKED, **grains: float) -> list[CleanOrder]:
         """Let a day pass, at nine of which the plan is due; return what is begun.

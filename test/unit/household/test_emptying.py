@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from fixtures.written_robot import VIEW
+from fixtures.households.written_robot import VIEW
 
 from roomba.client.view import RobotView
 from roomba.configuration.household import EmptyingConfig

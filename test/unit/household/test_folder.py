@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from fixtures.kept_household import (
+from fixtures.households.kept_household import (
     AGENDA,
     DIRT,
     FIRST_AND_LAST,

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
+from fixtures.households.written_robot import VIEW, WrittenRobot
 from fixtures.waiting import wait_until
-from fixtures.written_robot import VIEW, WrittenRobot
 
 from roomba.client.household import TotalsView
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError

@@ -9,15 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from fixtures.written_robot import VIEW, WrittenRobot
+from fixtures.households.living_plans import LivingPlans
+from fixtures.households.written_robot import VIEW, WrittenRobot
 
 from roomba.client.protocol import CleanReport, ErrandOutcome, RequestRefusedError
 from roomba.client.view import CleanOrder, RobotView
-from roomba.configuration.household import DueConfig, PlansConfig
-from roomba.household.dirt_keeper import DirtKeeper
-from roomba.household.folder import KeptValues
 from roomba.household.plan_changes import removed, replaced
-from roomba.household.plan_keeper import PlanKeeper
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset
 from roomba.vocabulary import CleanMode, FanLevel
 
@@ -26,31 +23,11 @@ KITCHEN = PlannedOrder(mode=CleanMode.ROOMS, rooms=("kitchen",), passes=2, fan=F
 AT_NINE = Plan(name="kitchen", order=KITCHEN, at=(dt.time(9, 0),))
 
 
-class Living:
-    """A keeper of plans with its robot and its clock; ``again`` is the program begun anew."""
+class Living(LivingPlans):
+    """Plans of a home with a robot that has no rooms."""
 
     def __init__(self, folder: Path) -> None:
-        self.folder, self.robot = folder, WrittenRobot()
-        self.now = dt.datetime(2026, 3, 2, 8, 0, tzinfo=dt.timezone.utc)
-        self.again()
-
-    def again(self) -> None:
-        def kept(name: str) -> KeptValues:
-            return KeptValues(self.folder / name, lambda text: pytest.fail(text))
-
-        self.keeper = PlanKeeper(
-            self.robot,
-            kept("plans.json"),
-            kept("agenda.json"),
-            PlansConfig(),
-            lambda: self.now,
-            "UTC",
-            DirtKeeper(kept("dirt.json"), DueConfig()),
-            kept("rooms.json"),
-        )
-
-    def put(self, plan: Plan) -> None:
-        self.keeper.change(lambda all_: replaced(all_, "plans", plan.name, plan))
+        super().__init__(folder, WrittenRobot())
 
     def look(self, view: RobotView | None, minutes: float = 0.0) -> None:
         self.now += dt.timedelta(minutes=minutes)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from fixtures.written_robot import HOME, WrittenRobot
+from fixtures.households.written_robot import HOME, WrittenRobot
 
 from roomba.client.protocol import RobotUnavailableError
 from roomba.client.view import HomeView, RoomView

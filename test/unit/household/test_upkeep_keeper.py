@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from fixtures.written_robot import VIEW, WrittenRobot
+from fixtures.households.written_robot import VIEW, WrittenRobot
 
 from roomba.client.view import RobotView
 from roomba.configuration.household import UpkeepConfig

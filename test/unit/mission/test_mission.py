@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
+from fixtures.missions.told_mission import TICK, ToldMission
 from fixtures.robots.missions import HOME, STATION
 
 from roomba.configuration.docking import DockingConfig
@@ -33,42 +34,28 @@ FIELD = SurfaceField.of(HOME.map)
 HERE = Pose(1.0, 0.6, 0.0)
 AWAY = Senses(0.0, HERE)
 DOCKED = Senses(0.0, STATION, battery=Battery(1.0, 26.0, is_docked=True))
-TICK = 0.05
 
 
-class Rig:
+class Rig(ToldMission):
     """A mission whose senses are made by hand; it stands unless it is put somewhere else."""
 
     def __init__(self, senses: Senses = AWAY) -> None:
-        self.senses = senses
-        self.mission = Mission(
-            SITE,
-            CONFIG,
-            MissionConfig(),
-            DockingConfig(),
-            ThingLayer(FIELD),
-            DirtMap(HOME.map),
+        super().__init__(
+            Mission(
+                SITE,
+                CONFIG,
+                MissionConfig(),
+                DockingConfig(),
+                ThingLayer(FIELD),
+                DirtMap(HOME.map),
+                senses,
+            ),
             senses,
         )
-
-    def tick(self, count: int = 1, **changes: object) -> MissionStep:
-        self.senses = replace(self.senses, **changes)  # type: ignore[arg-type]
-        step = MissionStep()
-        for _ in range(count):
-            self.senses = replace(self.senses, now=self.senses.now + TICK)
-            step = self.mission.tick(self.senses)
-        return step
-
-    def command(self, event: Event, reason: str = "") -> None:
-        self.mission.command(event, self.senses, reason)
 
     def clean(self) -> Rig:
         self.mission.clean(CleanRequest(), self.senses)
         return self
-
-    @property
-    def phase(self) -> Phase:
-        return self.mission.state.phase
 
 
 def cleaning() -> Rig:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fixtures.robots.exploring import (
+from fixtures.missions.exploring import (
     AWAY,
     CONFIG,
     DOCKED,
@@ -13,12 +13,12 @@ from fixtures.robots.exploring import (
     HERE,
     LOW,
     ROBOT,
-    TICK,
     WHOLE,
     Rig,
     exploring,
     known_to,
 )
+from fixtures.missions.told_mission import TICK
 from fixtures.robots.missions import DOOR, TWO_ROOMS, WALL_X
 
 from roomba.geometry import STANDSTILL, Twist

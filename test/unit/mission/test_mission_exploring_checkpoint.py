@@ -6,7 +6,8 @@ import json
 from dataclasses import replace
 
 import pytest
-from fixtures.robots.exploring import AWAY, DOCKED, HALL, LOW, TICK, Rig, exploring
+from fixtures.missions.exploring import AWAY, DOCKED, HALL, LOW, Rig, exploring
+from fixtures.missions.told_mission import TICK
 
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap

@@ -7,18 +7,18 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.robots.exploring import (
+from fixtures.missions.exploring import (
     AWAY,
     CONFIG,
     DOCKED,
     HALL,
     HERE,
     ROBOT,
-    TICK,
     WHOLE,
     Rig,
     known_to,
 )
+from fixtures.missions.told_mission import TICK
 from fixtures.robots.missions import TWO_ROOMS, WALL_X
 
 from roomba.geometry import Pose, Twist

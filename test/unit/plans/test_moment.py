@@ -6,7 +6,7 @@ import datetime as dt
 import zoneinfo
 
 import pytest
-from fixtures.kept_household import FIRST_AND_LAST
+from fixtures.households.kept_household import FIRST_AND_LAST
 from pydantic import TypeAdapter, ValidationError
 
 from roomba.plans.moment import Moment

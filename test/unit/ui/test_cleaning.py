@@ -6,9 +6,9 @@ import dataclasses
 import io
 import math
 import signal
-from collections.abc import Iterable
 
 import pytest
+from fixtures.typed_answers import TypedAnswers
 from rich.console import Console
 
 from roomba.client.fake.errands import ErrandScript
@@ -30,25 +30,10 @@ WHAT = " What to clean (Enter: the whole home): "
 ROOMS = " Rooms, by name or number, with commas between: "
 
 
-class Answers:
-    """Types prepared lines and keeps the questions; an exception among them is raised."""
-
-    def __init__(self, lines: Iterable[str | type[BaseException]]) -> None:
-        self._lines = list(lines)
-        self.prompts: list[str] = []
-
-    def __call__(self, prompt: str) -> str:
-        self.prompts.append(prompt)
-        line = self._lines.pop(0) if self._lines else EOFError
-        if isinstance(line, str):
-            return line
-        raise line
-
-
-def use(robot: FakeRobot, *lines: str | type[BaseException]) -> tuple[int, list[str], Answers]:
+def use(robot: FakeRobot, *lines: str | type[BaseException]) -> tuple[int, list[str], TypedAnswers]:
     """Run the whole menu on prepared lines; returns its status, what it printed and asked."""
     output = io.StringIO()
-    answers = Answers(lines)
+    answers = TypedAnswers(lines)
     console = Console(file=output, force_terminal=False)
     menu = Menu(
         robot,

@@ -4,6 +4,7 @@ import io
 from collections.abc import Iterable
 
 import pytest
+from fixtures.typed_answers import TypedAnswers
 from rich.console import Console
 
 from roomba.client.fake.errands import ErrandScript
@@ -16,16 +17,10 @@ from roomba.ui.menu import Menu
 
 def use(robot: FakeRobot, lines: Iterable[str]) -> list[str]:
     """Run the whole menu on prepared lines; return what it printed."""
-    output, left = io.StringIO(), list(lines)
-
-    def answer(_: str) -> str:
-        if not left:
-            raise EOFError
-        return left.pop(0)
-
+    output, answers = io.StringIO(), TypedAnswers(lines)
     console = Console(file=output, force_terminal=False)
     menu = Menu(
-        robot, answer, console, more=TASKS, more_heading=CLEANING_HEADING, clock=robot.clock
+        robot, answers, console, more=TASKS, more_heading=CLEANING_HEADING, clock=robot.clock
     )
     assert menu.run() == 0
     return output.getvalue().splitlines()

@@ -7,9 +7,9 @@ import os
 import re
 import signal
 import sys
-from collections.abc import Iterable
 
 import pytest
+from fixtures.typed_answers import TypedAnswers
 from rich.console import Console
 
 from roomba.client.fake.robot import FakeRobot, SteppedClock, Turn, WalkScript
@@ -18,27 +18,12 @@ from roomba.ui.menu import OPTIONS, Menu, Option
 from roomba.ui.prompt import LONGEST_LINE, Keyboard, explain, read_number
 
 
-class Answers:
-    """Types prepared lines and keeps the questions; an exception among them is raised."""
-
-    def __init__(self, lines: Iterable[str | type[BaseException]]) -> None:
-        self._lines = list(lines)
-        self.prompts: list[str] = []
-
-    def __call__(self, prompt: str) -> str:
-        self.prompts.append(prompt)
-        line = self._lines.pop(0) if self._lines else EOFError
-        if isinstance(line, str):
-            return line
-        raise line
-
-
 def use(
     robot: FakeRobot, *lines: str | type[BaseException], options: tuple[Option, ...] | None = None
-) -> tuple[int, list[str], Answers]:
+) -> tuple[int, list[str], TypedAnswers]:
     """Run a menu on prepared lines; returns its status, what it printed and what it asked."""
     output = io.StringIO()
-    answers = Answers(lines)
+    answers = TypedAnswers(lines)
     console = Console(file=output, force_terminal=False)
     status = Menu(robot, answers, console, options=options, clock=robot.clock).run()
     return status, output.getvalue().splitlines(), answers

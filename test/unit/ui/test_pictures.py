@@ -9,12 +9,12 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from fixtures.typed_answers import TypedAnswers
 from numpy.typing import NDArray
 from rich.console import Console
 
@@ -34,21 +34,6 @@ SHAPE = (6, 8)
 
 def small_camera() -> FakeRobot:
     return FakeRobot(picture_shape=SHAPE)
-
-
-class Answers:
-    """Types prepared lines, then nothing more; an exception among them is raised."""
-
-    def __init__(self, lines: Iterable[str | type[BaseException]]) -> None:
-        self._lines = list(lines)
-        self.prompts: list[str] = []
-
-    def __call__(self, prompt: str) -> str:
-        self.prompts.append(prompt)
-        line = self._lines.pop(0) if self._lines else EOFError
-        if isinstance(line, str):
-            return line
-        raise line
 
 
 class FakeWindow:
@@ -85,10 +70,10 @@ def use(
     directory: Path,
     *lines: str | type[BaseException],
     window: FakeWindow | None = None,
-) -> tuple[int, list[str], Answers]:
+) -> tuple[int, list[str], TypedAnswers]:
     """Run a viewer on prepared lines; returns its status, what it printed and what it asked."""
     output = io.StringIO()
-    answers = Answers(lines)
+    answers = TypedAnswers(lines)
     console = Console(file=output, force_terminal=False)
     viewer = PictureViewer(robot, answers, console, window=window, directories=(directory,))
     return viewer.run(), output.getvalue().splitlines(), answers

@@ -6,7 +6,7 @@ import json
 import math
 
 import numpy as np
-from fixtures.written_robot import HOME
+from fixtures.households.written_robot import HOME
 
 from roomba.client.floor_map import FloorMap, valetudo_of
 from roomba.client.view import GridLayer

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from fixtures.written_robot import WrittenRobot
+from fixtures.households.written_robot import WrittenRobot
 
 from roomba.client.address import HERE
 from roomba.commands.demonstration.owner import Owner, next_minute

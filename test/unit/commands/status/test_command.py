@@ -12,7 +12,7 @@ from pathlib import Path
 from threading import Thread
 
 import pytest
-from fixtures.written_robot import VIEW, WrittenRobot
+from fixtures.households.written_robot import VIEW, WrittenRobot
 
 from roomba.client.plain import state_of
 from roomba.client.protocol import CleanReport, ErrandOutcome

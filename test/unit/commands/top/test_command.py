@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from fixtures.written_robot import WrittenRobot
+from fixtures.households.written_robot import WrittenRobot
 
 from roomba.commands.top.command import main
 from roomba.ui.web.app import create_app

@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from fixtures.robots.exploring import HALL, HERE, WHOLE, context_of, known_to
+from fixtures.missions.exploring import HALL, HERE, WHOLE, context_of, known_to
 from fixtures.robots.missions import WALL_X
 
 from roomba.geometry import Pose

@@ -6,7 +6,7 @@ import json
 import re
 from pathlib import Path
 
-from fixtures.written_robot import HOME, VIEW, WrittenRobot
+from fixtures.households.written_robot import HOME, VIEW, WrittenRobot
 
 from roomba.ui.smart_home.announcement import announcements
 from roomba.ui.smart_home.commands import SmartCommands

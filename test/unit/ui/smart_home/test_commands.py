@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from fixtures.written_robot import VIEW, WrittenRobot
+from fixtures.households.written_robot import VIEW, WrittenRobot
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -8,7 +8,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from fixtures.written_robot import HOME
+from fixtures.households.written_robot import HOME
 from PIL import Image
 
 from roomba.client.floor_map import FloorMap, valetudo_of

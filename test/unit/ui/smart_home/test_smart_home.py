@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fixtures.households.written_robot import WrittenRobot
 from fixtures.mosquitto import HomeSide, Mosquitto
 from fixtures.waiting import unchanged, wait_until
-from fixtures.written_robot import WrittenRobot
 
 from roomba.commands.play.living import live_client
 from roomba.errors import RoombaError

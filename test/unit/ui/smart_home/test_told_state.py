@@ -7,7 +7,7 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from fixtures.written_robot import HOME, VIEW
+from fixtures.households.written_robot import HOME, VIEW
 
 from roomba.client.protocol import CleanReport, ErrandOutcome
 from roomba.client.view import RobotView

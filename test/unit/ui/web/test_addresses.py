@@ -8,7 +8,7 @@ import urllib.error
 import urllib.request
 
 import pytest
-from fixtures.written_robot import WrittenRobot
+from fixtures.households.written_robot import WrittenRobot
 
 from roomba.client.address import outside_address
 from roomba.ui.web.addresses import ALL, addresses_of, guard_for, hosts_of, is_host

@@ -14,8 +14,8 @@ from typing import Any, Final
 
 import pytest
 from fastapi.testclient import TestClient
+from fixtures.households.written_robot import WrittenRobot
 from fixtures.spoiled import NUMBERS, spoiled, spoiled_values
-from fixtures.written_robot import WrittenRobot
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from starlette.testclient import WebSocketTestSession

@@ -13,8 +13,8 @@ from urllib.parse import quote
 import pytest
 from fastapi.routing import APIRoute
 from fastapi.testclient import TestClient
+from fixtures.households.written_robot import VIEW, WrittenRobot
 from fixtures.routes import all_routes
-from fixtures.written_robot import VIEW, WrittenRobot
 
 from roomba.ui.web.app import STATIC, create_app
 from roomba.ui.web.guard import Guard

@@ -16,8 +16,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fixtures.households.written_robot import VIEW, WrittenRobot
 from fixtures.waiting import wait_until
-from fixtures.written_robot import VIEW, WrittenRobot
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 

@@ -11,7 +11,7 @@ from urllib.parse import quote
 
 import pytest
 from fastapi.testclient import TestClient
-from fixtures.written_robot import VIEW, WrittenRobot
+from fixtures.households.written_robot import VIEW, WrittenRobot
 
 from roomba.configuration.household import HouseholdConfig
 from roomba.household.household import LiveHousehold

@@ -11,7 +11,7 @@ from unittest import mock
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
-from fixtures.written_robot import WrittenRobot
+from fixtures.households.written_robot import WrittenRobot
 from numpy.typing import NDArray
 from starlette.testclient import WebSocketTestSession
 from unit.history.made import made_figures, made_recording

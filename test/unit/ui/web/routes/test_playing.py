@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
-from fixtures.written_robot import WrittenRobot
+from fixtures.households.written_robot import WrittenRobot
 
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard

@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from fixtures.households.written_robot import VIEW, WrittenRobot
 from fixtures.waiting import wait_until
-from fixtures.written_robot import VIEW, WrittenRobot
 from prometheus_client.parser import text_string_to_metric_families
 
 from roomba.client.protocol import CleanReport, ErrandOutcome
