@@ -159,10 +159,11 @@ def test_rates_are_the_reports_by_the_robots_clock(shared_robot: RosGraph) -> No
 def test_change_topics_stream_at_20_hz_while_it_walks(shared_robot: RosGraph) -> None:
     probe = Probe(shared_robot)
     probe.hear("/change_position", RobotPosition)
+    probe.hear("/change_speed", Float32)
     walker = Walker()
     walker.send(1.5, 2.0)
     probe.next("/change_position", RobotPosition)
-    have_rates(probe, {"/change_position": 20.0}, 1.0)
+    have_rates(probe, {"/change_position": 20.0, "/change_speed": 20.0}, 1.0)
     walker.cancel()
     walker.ends(5.0)
 

@@ -98,8 +98,6 @@ class PeriodsConfig(Frozen):
     """s of wall time between two tellings of where a simulated robot really is,"""
     true_dirt_wall: Duration = 0.5
     """and of the dirt that really lies in its home."""
-    cruise_speed_ticks: AtLeastOne = 4
-    """Ticks between two cruise speeds of a walk that did not change."""
 
 
 class MemoryConfig(Frozen):

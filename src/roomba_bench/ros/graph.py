@@ -7,6 +7,7 @@ import os
 import signal
 import socket
 import subprocess
+import sys
 import time
 import xmlrpc.client
 from collections.abc import Callable
@@ -29,14 +30,19 @@ def has_ros() -> bool:
     return "ROS_PACKAGE_PATH" in os.environ
 
 
+def free_port() -> int:
+    """Return a port of loopback on which nothing listens now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
 class Graph:
     """Starts programs that all use one master, and ends them all on exit, the newest first."""
 
     def __init__(self, folder: Path) -> None:
         """Choose a port; what the programs write is under ``folder``."""
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            self._port = str(probe.getsockname()[1])
+        self._port = str(free_port())
         self._folder = folder
         self.environment = {
             **{k: v for k, v in os.environ.items() if k not in ("ROS_HOSTNAME", "ROS_NAMESPACE")},
@@ -69,8 +75,18 @@ class Graph:
         self.start("roslaunch", "-p", self._port, *_WORKERS, *launch_file, *arguments)
         self.wait_for_topic("/walk_to_point/status")
 
-    def start(self, *command: str) -> None:
-        """Start a program in this graph."""
+    def run_robot(self, *arguments: str) -> int:
+        """Run the robot by the program of ``./roomba run``; return its process when all is up.
+
+        Raises ContestantError.
+        """
+        pid = self.start(sys.executable, "-m", "roomba_ros.supervision", *arguments)
+        self.wait_for_topic("/walk_to_point/status")
+        self.wait_for_topic("/clean/status")
+        return pid
+
+    def start(self, *command: str) -> int:
+        """Start a program in this graph; return its process."""
         log = self._folder / f"{len(self._programs)}-{Path(command[0]).name}.log"
         with log.open("wb") as output:
             program = subprocess.Popen(
@@ -83,6 +99,7 @@ class Graph:
             )
         self._programs.append(program)
         self._logs[program.pid] = (Path(command[0]).name, log)
+        return program.pid
 
     def wait_for_topic(self, topic: str) -> None:
         """Wait until a topic has a publisher; raises ContestantError."""

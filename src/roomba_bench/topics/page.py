@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import json
-import os
-import socket
 import subprocess
 import sys
 import time
 import xmlrpc.client
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any, Final
 
 from roomba_bench.bench import Bench
 from roomba_bench.contestants import ContestantError
 from roomba_bench.record import Better, Record
-from roomba_bench.ros.graph import NO_ROS, Graph, has_ros
+from roomba_bench.ros.graph import NO_ROS, Graph, free_port, has_ros
+from roomba_bench.ros.processes import load
 
 _TOPIC: Final = "page"
 _ONE: Final = 15.0
@@ -29,7 +27,6 @@ _OLDEST: Final = 200.0
 _VIEWERS: Final = (0, 1, 100)
 _SETTLED: Final = 5.0
 """s until the robot is under way, and viewers have the layers."""
-_TICK: Final = os.sysconf("SC_CLK_TCK")
 
 
 def measure(bench: Bench) -> list[Record]:
@@ -73,9 +70,7 @@ def _headless() -> Iterator[tuple[int, int]]:
 
 def _launched(graph: Graph) -> tuple[int, int]:
     """Launch the robot with its page, let it clean; return the page's process and port."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = int(probe.getsockname()[1])
+    port = free_port()
     graph.launch("page:=true", f"page_port:={port}")
     graph.wait_for_topic("/clean/status")
     graph.start(
@@ -94,11 +89,11 @@ def _rows(case: str, pid: int, port: int, seconds: float) -> list[Record]:
     """Return what the process costs with so many viewers, and how old updates are for many."""
     records = []
     for count in _VIEWERS:
-        load, seen = _watched(pid, port, count, seconds)
+        used, seen = _watched(pid, port, count, seconds)
         who = {0: "no viewer", 1: "one viewer"}.get(count, f"{count} viewers")
         aim = {0: None, 1: _ONE}.get(count, _MANY)
         records.append(
-            Record(_TOPIC, case, f"CPU of the process, {who}", load, "% core", Better.LOWER, aim)
+            Record(_TOPIC, case, f"CPU of the process, {who}", used, "% core", Better.LOWER, aim)
         )
         if count > 1:
             figure = f"age of an update, {who}, 99th percentile"
@@ -114,7 +109,7 @@ def _rows(case: str, pid: int, port: int, seconds: float) -> list[Record]:
 def _watched(pid: int, port: int, count: int, seconds: float) -> tuple[float, dict[str, float]]:
     """Let so many look on for so long; return % of a core, and what they saw."""
     if count == 0:
-        return _load(pid, seconds), {}
+        return load([pid], seconds), {}
     viewers = subprocess.Popen(
         (sys.executable, "-m", "roomba_bench.page.viewers", str(port), str(count), str(seconds)),
         stdout=subprocess.PIPE,
@@ -122,22 +117,9 @@ def _watched(pid: int, port: int, count: int, seconds: float) -> tuple[float, di
     )
     # Only while all are there.
     time.sleep(_SETTLED)
-    load = _load(pid, seconds - 2.0)
+    used = load([pid], seconds - 2.0)
     told, _ = viewers.communicate(timeout=60.0)
     if viewers.returncode:
         raise ContestantError(f"the viewers ended with status {viewers.returncode}")
     seen: dict[str, float] = json.loads(told)
-    return load, seen
-
-
-def _load(pid: int, seconds: float) -> float:
-    """Return % of a core that a process takes."""
-    used, began = _used(pid), time.monotonic()
-    time.sleep(seconds)
-    return 100.0 * (_used(pid) - used) / (time.monotonic() - began)
-
-
-def _used(pid: int) -> float:
-    """Return s of a core that a process has had, all its threads together."""
-    fields = Path(f"/proc/{pid}/stat").read_text("ascii").rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / _TICK
+    return used, seen

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import sys
+import time
 from pathlib import Path
 
 from roomba_bench.bench import Bench
 from roomba_bench.contestants import ContestantError, Program
 from roomba_bench.peers.protocol import Parameters
 from roomba_bench.record import Better, PeerFigure, Record
-from roomba_bench.ros.graph import NO_ROS, Graph, has_ros
+from roomba_bench.ros.graph import NO_ROS, Graph, free_port, has_ros
+from roomba_bench.ros.processes import family_of, load, memory
 from roomba_bench.rounds import Outcome, milliseconds
 
 _TOPIC = "ros"
@@ -22,6 +24,10 @@ _APART = 0.06
 """s between two commands: more than a tick, as what comes more often waits for the next one."""
 _FASTEST = 100
 """As fast as the simulation may be asked to run: what is measured is how far behind it falls."""
+_START, _MOST_LOAD, _MOST_MEMORY = 5.0, 25.0, 600.0
+"""s, % of a core, and MB that the whole graph may take."""
+_SETTLED = 10.0
+"""s from its goal until the robot cleans."""
 _POINTS = ((2.5, 5.0), (8.5, 5.0))
 """m; the corridor of the apartment."""
 
@@ -35,7 +41,8 @@ def measure(bench: Bench) -> list[Record]:
     records = _round_trips(bench)
     bench.say(f"the whole graph, asked to run at {_FASTEST} x real time")
     records.append(_real_time_row(bench))
-    return records
+    bench.say("what the whole graph takes while it cleans")
+    return records + _cost_rows(bench)
 
 
 def _round_trips(bench: Bench) -> list[Record]:
@@ -115,6 +122,38 @@ def _real_time_row(bench: Bench) -> Record:
         _REAL_TIME_AIM,
         error=outcome.error,
     )
+
+
+def _cost_rows(bench: Bench) -> list[Record]:
+    """Return how soon all nodes are up, and what they take while the robot cleans in real time."""
+    case = "all of ./roomba run with its page, cleaning the flat in real time"
+    began = time.monotonic()
+    with Graph(_folder(bench, "cost")) as graph:
+        try:
+            pid = graph.run_robot("page:=true", "open_page:=false", f"page_port:={free_port()}")
+        except ContestantError as error:
+            row = Record(_TOPIC, case, "start", None, "s", Better.LOWER, _START, error=str(error))
+            return [row]
+        start = time.monotonic() - began
+        goal = ("/clean/goal", "roomba_robot/CleanActionGoal", "{}")
+        graph.start("rostopic", "pub", "--once", *goal)
+        time.sleep(_SETTLED)
+        family = family_of(pid)
+        used = load(family, 5.0 if bench.is_quick else 20.0)
+        size = memory(family)
+    return [
+        Record(_TOPIC, case, "start until all nodes are up", start, "s", Better.LOWER, _START),
+        Record(_TOPIC, case, "CPU of all processes", used, "% core", Better.LOWER, _MOST_LOAD),
+        Record(
+            _TOPIC,
+            case,
+            "memory, shared counted once",
+            size,
+            "MB",
+            Better.LOWER,
+            _MOST_MEMORY,
+        ),
+    ]
 
 
 def _program(graph: Graph, name: str, module: str, parameters: Parameters) -> Program:

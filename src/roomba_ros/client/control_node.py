@@ -5,13 +5,12 @@ from __future__ import annotations
 import signal
 import sys
 
-import rospy
-
 from roomba.errors import RoombaError
 from roomba.ui.cleaning import CLEANING_HEADING
 from roomba.ui.exploring import TASKS
 from roomba.ui.menu import Menu
 from roomba_ros.client.ros_client import RosRobot
+from roomba_ros.runtime.joining import join_graph
 from roomba_ros.runtime.node import leave, require_master, wait_for_clock
 from roomba_ros.runtime.subscriptions import tell_refusals
 
@@ -20,7 +19,7 @@ def main() -> None:
     """Run the menu until its user leaves."""
     require_master()
     # Ctrl-C belongs to the menu: it cancels a walk, and leaves a clean to itself.
-    rospy.init_node("control_node", disable_signals=True)
+    join_graph("control_node")
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     try:
         wait_for_clock()

@@ -20,6 +20,7 @@ from roomba.client.protocol import (
 )
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.client.ros_client import RosRobot
+from roomba_ros.runtime.joining import join_graph
 from roomba_ros.runtime.node import wait_for_clock
 
 _LOOK = 1.0
@@ -52,7 +53,7 @@ class RoombaClient:
                 "`./roomba run`, or set ROS_MASTER_URI to where it runs"
             )
         if not rospy.core.is_initialized():
-            rospy.init_node(node_name, anonymous=True, disable_signals=True)
+            join_graph(node_name, is_anonymous=True)
         wait_for_clock()
         robot = RosRobot()
         robot.start()

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from roomba.errors import RoombaError
 from roomba_ros.client.ros_client import RosRobot
 from roomba_ros.model.screen import VirtualScreen
+from roomba_ros.runtime.joining import join_graph
 
 SIZE: Final = (1400, 900)
 """Pixels of the window."""
@@ -68,7 +69,7 @@ def picture_of_rviz(cleaned: float) -> NDArray[np.uint8]:
         VirtualScreen(*SIZE) as screen,
         _robot(screen, Path(folder)) as output,
     ):
-        rospy.init_node("picture_of_rviz", disable_signals=True)
+        join_graph("picture_of_rviz")
         robot = RosRobot()
         robot.start()
         _wait(lambda: bool(robot.rooms()), _START, "the rooms of the map", output)

@@ -15,8 +15,8 @@ from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.errors import RoombaError
 from roomba_ros.runtime.node import told_to_end
 
-SERVER_DEADLINE = 5.0
-"""s of wall time that an action server or a service may take to be there."""
+SERVER_DEADLINE = 4.0
+"""s of wall time that an action server or a service may take to be there: an error comes in 5."""
 _LOOK = 0.5
 """s of wall time between two looks whether this process is told to end."""
 CALL_DEADLINE = 10.0
@@ -53,7 +53,7 @@ def _wait_for(name: str) -> None:
     deadline = time.monotonic() + SERVER_DEADLINE
     while True:
         try:
-            rospy.wait_for_service(name, timeout=_LOOK)
+            rospy.wait_for_service(name, timeout=max(0.01, min(_LOOK, deadline - time.monotonic())))
             return
         except rospy.ROSException as error:
             if told_to_end() or time.monotonic() > deadline:

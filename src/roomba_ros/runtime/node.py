@@ -17,6 +17,7 @@ import rospy
 
 from roomba.errors import RoombaError
 from roomba_ros.runtime.connections import guard_connections
+from roomba_ros.runtime.joining import join_graph
 from roomba_ros.runtime.sending import send_at_once
 from roomba_ros.runtime.subscriptions import tell_refusals
 from roomba_ros.runtime.timing.heart import HEART
@@ -113,7 +114,7 @@ def register(name: str) -> None:
     send_at_once()
     # A log that the disk refuses is no reason for a traceback with each line of it.
     logging.raiseExceptions = False
-    rospy.init_node(name, disable_signals=True)
+    join_graph(name)
 
 
 def _on_ending(*_: object) -> None:

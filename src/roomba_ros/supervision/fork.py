@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import gc
 import os
 import signal
 import sys
@@ -18,8 +19,11 @@ _ENDING: Final = (signal.SIGINT, signal.SIGTERM)
 def fork(function: Callable[[], object]) -> int:
     """Run a function in a process of its own group, which ends with this one; return its id.
 
-    Call it from a process of one thread: of others the child would have the locks alone.
+    Call it from a process of one thread: of others the child would have the locks alone. What both
+    share is looked through for garbage no more: to look writes to each object, and what is written
+    to is copied.
     """
+    gc.freeze()
     sys.stdout.flush()
     sys.stderr.flush()
     parent = os.getpid()

@@ -45,12 +45,11 @@ class WalkJob:
         """Tell nothing yet; ``planning`` is held while the walk may plan."""
         self.goal, self.stage = goal, WalkStage.WALKING
         self._walk, self._topics, self._planning = walk, topics, planning
-        self._nodes, self._end = nodes, nodes.walk_end
+        self._end = nodes.walk_end
         self._stage_ends = math.inf
         """When the stage is over at the latest, s of the robot's clock."""
         self._setpoint: tuple[float, float] | None = None
         """The newest one that was told, m; None before the first."""
-        self._cruise_speed, self._speed_ticks = math.nan, 0
         self._feedback_period = self._feedback_due = 0.0
 
     @property
@@ -100,7 +99,7 @@ class WalkJob:
         if walk.path is not path:
             rospy.loginfo("a new way: %.2f m to walk", walk.path.length)
             self._topics.show_path(senses.now, walk)
-        self._tell_cruise_speed(step.cruise_speed)
+        self._topics.drive_at(step.cruise_speed)
         # While its place is not known the setpoint moves nothing, but tells that the walk goes on.
         self._setpoint = step.setpoint
         self._topics.drive_to(*step.setpoint)
@@ -157,14 +156,6 @@ class WalkJob:
     def _arrive(self, now: float) -> None:
         self.stage = WalkStage.OVER
         self.goal.arrived(self._walk.time_spent(now), "arrived")
-
-    def _tell_cruise_speed(self, speed: float) -> None:
-        """Tell the cruise speed at a change, and now and then: its hearers go by the last one."""
-        self._speed_ticks += 1
-        is_due = self._speed_ticks >= self._nodes.periods.cruise_speed_ticks
-        if speed != self._cruise_speed or is_due:
-            self._cruise_speed, self._speed_ticks = speed, 0
-            self._topics.drive_at(speed)
 
     def _tell_feedback(self, senses: Senses, distance_left: float) -> None:
         now = senses.now

@@ -1,10 +1,12 @@
 """Forked processes: how they end, in words, and whether they are stopped."""
 
+import gc
 import os
 import signal
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from fixtures.waiting import wait_until
@@ -37,6 +39,26 @@ def test_a_forked_process_has_its_own_group_and_can_be_interrupted() -> None:
     wait_until(lambda: os.getpgid(child) == child, 10.0, "its own group")
     os.kill(child, signal.SIGINT)
     assert told_end(os.waitpid(child, 0)[1]) == "ended with status 1"
+
+
+def test_what_it_shares_stays_shared_when_it_looks_for_garbage() -> None:
+    """A node does so at the end of its start; nine copies of all imports were 400 MB."""
+    shared = [[number] for number in range(400_000)]
+    read, write = os.pipe()
+
+    def look() -> None:
+        gc.collect()
+        os.write(write, str(private_memory()).encode())
+
+    os.waitpid(fork(look), 0)
+    taken = int(os.read(read, 20))
+    assert 0 < taken < 0.5 * 64 * len(shared), "bytes of its own"
+
+
+def private_memory() -> int:
+    lines = Path("/proc/self/smaps_rollup").read_text("ascii").splitlines()
+    [size] = [line.split()[1] for line in lines if line.startswith("Private_Dirty:")]
+    return 1024 * int(size)
 
 
 def test_one_that_is_interrupted_before_it_begins_ends() -> None:

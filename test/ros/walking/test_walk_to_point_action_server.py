@@ -4,21 +4,17 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
-from pathlib import Path as FilePath
 
 import numpy as np
 import rospy
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from fixtures.graph import RosGraph
-from fixtures.nodes.node_compositions import started
 from fixtures.probe import Probe, Walker
-from fixtures.robots.compositions import Case
-from fixtures.robots.missions import HOME
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseGoal
 from nav_msgs.msg import OccupancyGrid, Odometry, Path
-from roomba_robot.msg import RobotPosition, WalkToPointActionGoal
+from roomba_robot.msg import RobotPosition
 from roomba_robot.srv import EmergencyStop
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32
@@ -306,26 +302,3 @@ def test_what_the_lidar_sees_is_walked_around_and_forgotten_when_it_is_gone(
             return nearest(plan, *THING[:2]) < 0.01
 
         wait_until(goes_straight, 30.0, "the straight way again when it was taken away")
-
-
-def test_a_cruise_speed_is_told_at_a_change_and_now_and_then(tmp_path: FilePath) -> None:
-    told: list[tuple[int, float]] = []
-    goal = WalkToPointActionGoal()
-    goal.goal.destin.dest_x, goal.goal.destin.dest_y = 2.6, 2.1
-    ticks = 0
-
-    def on_speed(message: Float32) -> None:
-        told.append((ticks, message.data))
-
-    with started(Case(HOME, sensors="ideal"), tmp_path) as robot:
-        for _ in range(100):
-            robot.tick()
-        robot.lockstep.hear("/change_speed", on_speed)
-        robot.lockstep.publish("/walk_to_point/goal", goal)
-        for _ in range(60):
-            ticks += 1
-            robot.tick()
-    gaps = [(later[0] - first[0], later[1] != first[1]) for first, later in pairwise(told)]
-    assert all(gap == 4 or has_changed for gap, has_changed in gaps), told
-    assert max(gap for gap, _ in gaps) == 4
-    assert len(told) >= 10

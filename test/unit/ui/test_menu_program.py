@@ -16,8 +16,8 @@ import pytest
 
 DEADLINE = 20.0
 """s that a process of these tests has for anything; far more than it needs."""
-PROMPT = 5.0
-"""s of wall time; alone on the machine a tenth of a second."""
+PROMPT = 1.0
+"""s of wall time, promised; alone on the machine it takes a tenth of a second."""
 
 
 WALKING = r"(m left at|m, current speed:) 2\.00 m/s"
