@@ -79,10 +79,11 @@ class LineView:
         """Leave it to the report."""
 
 
-class LiveView:
-    """A bar with the distance left and the speed, redrawn in place when something is new."""
+class LiveView(LineView):
+    """A line for each feedback, and below them a bar that is redrawn when something is new."""
 
     def __init__(self, progress: Progress, total: float) -> None:
+        super().__init__(progress.console)
         self._progress = progress
         self._total = max(total, 1e-6)
         self._task = progress.add_task(
@@ -90,7 +91,8 @@ class LiveView:
         )
 
     def feedback(self, left: float, speed: float) -> None:
-        """Move the bar; a way around something may leave more than there was at first."""
+        """Print a line and move the bar; a way around something may leave more than at first."""
+        super().feedback(left, speed)
         self._update(
             completed=self._total - left,  # rich draws less than nothing as nothing
             left=_left(left),

@@ -145,7 +145,7 @@ def test_while_the_robot_is_astray_nothing_is_told_of_the_way() -> None:
     walking.job.begin(10.0, FASTEST)
     walking.tick()
     walking.walk.step = replace(UNDER_WAY, state=WalkState.ASTRAY)
-    assert walking.tick(now=11.0) == [("drive_to", 0.75, 0.25)]
+    assert walking.tick(now=11.0) == [("drive_at", 0.3), ("drive_to", 0.75, 0.25)]
     assert walking.job.stage is WalkStage.WALKING
 
 

@@ -82,7 +82,7 @@ def test_a_pipe_gets_one_line_per_feedback() -> None:
     ]
 
 
-def test_a_terminal_gets_a_live_bar_that_fills() -> None:
+def test_a_terminal_gets_a_line_per_feedback_and_a_live_bar_that_fills() -> None:
     console = terminal()
     follow(FakeRobot(), console)
     output = shown(console)
@@ -91,7 +91,8 @@ def test_a_terminal_gets_a_live_bar_that_fills() -> None:
     for left in ("5.00 m left", "3.50 m left", "0.00 m left", "0.50 m/s"):
         assert left in output
     assert "━" in output
-    assert "Distance left" not in output
+    for left in ("5.00", "3.50", "2.00", "0.50"):
+        assert output.count(f"Distance left: {left} m, current speed: 0.50 m/s") == 1
 
 
 def test_no_color_is_honoured() -> None:

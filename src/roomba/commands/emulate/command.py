@@ -53,7 +53,8 @@ def _parser() -> Parser:
         "A robot that people own, made up: a robot in a simulated home that speaks the protocol of "
         "one on a pseudo terminal, for programs that drive such robots. An LD19 alone stands where "
         "a robot would charge.",
-        "What it knows of the protocol: docs/real_robots.md.",
+        "What it knows of the protocol: docs/real_robots.md. Exit status: 0 after Ctrl-C, 2 for "
+        "wrong usage.",
     )
     parser.add_argument("robot", choices=tuple(MADE_UP), help="which robot, or lidar")
     parser.add_argument(

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
 from rich.console import Console
 
-from roomba.commands.options import HelpfulParser
-from roomba.commands.output import tell_tables, told_width
+from roomba.commands.options import STANDARD_OUTPUT, HelpfulParser
+from roomba.commands.output import tell_tables, told_width, write_json
 from roomba.commands.program_name import spelled
-from roomba.commands.report.table import csv_of, run_table, runs_table, weeks_table
+from roomba.commands.report.table import csv_of, json_of, run_table, runs_table, weeks_table
 from roomba.errors import RoombaError
 from roomba.files.atomic import write_whole
 from roomba.history.database import LAST, History, KeptRun
@@ -42,10 +43,9 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _tell(wanted: argparse.Namespace, history: History) -> None:
-    if wanted.csv is not None:
-        _write(wanted.csv, csv_of(history.runs(limit=1_000_000)))
-        if wanted.run is None and wanted.compare is None:
-            return
+    _write_figures(wanted, history)
+    if _wants_figures_alone(wanted):
+        return
     if wanted.compare is not None:
         one, other = (history.named(word) for word in wanted.compare)
         text = comparison_of((one, _recording(history, one)), (other, _recording(history, other)))
@@ -55,6 +55,21 @@ def _tell(wanted: argparse.Namespace, history: History) -> None:
         _list(history)
         return
     _report(wanted, history, history.named(wanted.run or LAST))
+
+
+def _write_figures(wanted: argparse.Namespace, history: History) -> None:
+    """Write the runs for programs."""
+    if wanted.csv is not None:
+        _write(wanted.csv, csv_of(_all(history)))
+    if wanted.json is not None:
+        runs = _all(history) if wanted.run is None else [history.named(wanted.run)]
+        write_json(wanted.json, json_of(runs))
+
+
+def _wants_figures_alone(wanted: argparse.Namespace) -> bool:
+    if any(each is not None for each in (wanted.compare, wanted.out, wanted.recording)):
+        return False
+    return wanted.json is not None or (wanted.csv is not None and wanted.run is None)
 
 
 def _report(wanted: argparse.Namespace, history: History, run: KeptRun) -> None:
@@ -68,8 +83,12 @@ def _report(wanted: argparse.Namespace, history: History, run: KeptRun) -> None:
     _write_document(wanted.out or Path(f"run-{run.number}.html"), text)
 
 
+def _all(history: History) -> Sequence[KeptRun]:
+    return history.runs(limit=1_000_000)
+
+
 def _list(history: History) -> None:
-    runs = history.runs(limit=1_000_000)
+    runs = _all(history)
     if not runs:
         print(
             f"There are no runs yet in {history.path.parent}: ./roomba sim makes one, and each "
@@ -116,6 +135,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--compare", nargs=2, metavar=("A", "B"), help="two runs in one report")
     parser.add_argument("--csv", type=Path, metavar="FILE|-", help="all runs, for programs")
+    parser.add_argument(
+        "--json",
+        nargs="?",
+        const=STANDARD_OUTPUT,
+        metavar="FILE|-",
+        help="all runs, or RUN alone, for programs; -, or nothing: standard output",
+    )
     parser.add_argument(
         "--recording",
         type=Path,

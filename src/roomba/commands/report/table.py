@@ -7,11 +7,13 @@ import datetime
 import io
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from typing import Any, Final
 
 from rich.table import Table
 from rich.text import Text
 
+from roomba.client.protocol import MissedFloor
 from roomba.commands.output import named_table
 from roomba.history.database import KeptRun
 from roomba.history.report import words
@@ -53,11 +55,34 @@ def csv_of(runs: Sequence[KeptRun]) -> str:
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(COLUMNS)
     for run in runs:
-        writer.writerow(_values(run))
+        writer.writerow(["" if value is None else _in_csv(value) for value in _values(run)])
     return file.getvalue()
 
 
-def _values(run: KeptRun) -> list[Any]:
+def json_of(runs: Sequence[KeptRun]) -> dict[str, Any]:
+    """Return the runs as values of JSON, named as in CSV; what is not known is None."""
+    return {
+        "runs": [
+            {
+                **dict(zip(COLUMNS, _values(run), strict=True)),
+                "missed": [_place_values(miss) for miss in run.figures.missed],
+            }
+            for run in runs
+        ]
+    }
+
+
+def _place_values(missed: MissedFloor) -> dict[str, Any]:
+    values = asdict(missed)
+    return {"area_m2": values.pop("area"), **values}
+
+
+def _in_csv(value: str | float) -> str:
+    return f"{value:.4f}" if isinstance(value, float) else str(value)
+
+
+def _values(run: KeptRun) -> list[str | float | None]:
+    """Return the values of COLUMNS."""
     figures = run.figures
     source = figures.source
     began = datetime.datetime.fromtimestamp(figures.began, datetime.timezone.utc)
@@ -75,13 +100,13 @@ def _values(run: KeptRun) -> list[Any]:
         began.strftime("%Y-%m-%dT%H:%M:%SZ"),
         source.program,
         source.home,
-        "" if source.seed is None else source.seed,
+        source.seed,
         figures.kind,
         figures.outcome,
         figures.message,
-        *(f"{number:.4f}" if math.isfinite(number) else "" for number in numbers),
+        *(number if math.isfinite(number) else None for number in numbers),
         len(figures.missed),
-        f"{sum(miss.area for miss in figures.missed):.4f}",
+        math.fsum(miss.area for miss in figures.missed),
         source.repeat,
     ]
 

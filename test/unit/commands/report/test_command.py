@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 import shlex
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ import pytest
 from fixtures.homes.tiny_home import tiny_home
 from rich.console import Console
 
+from roomba.client.protocol import MissedFloor
 from roomba.commands.report.command import main
 from roomba.commands.report.table import runs_table
 from roomba.commands.sim.command import main as sim
@@ -54,6 +56,37 @@ def test_a_real_run_is_reported(
         assert miss["reason"] in document
     assert read_run(tmp_path / "one.run")[0].source.seed == 4
     assert len(document) < 300_000
+
+
+def test_runs_are_told_to_programs(
+    history: History, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    missed = MissedFloor(0.25, 1.0, 2.0, "den", "a door is shut")
+    history.add(replace(figures("flat", 18.0), missed=(missed,)))
+    history.add(replace(figures("loft", math.nan), energy=math.inf))
+    assert main(["--json"]) == 0
+    loft, flat = json.loads(capsys.readouterr().out)["runs"]
+    assert (flat["run"], flat["home"], flat["covered_m2"], flat["missed_m2"]) == (
+        1,
+        "flat",
+        18.0,
+        0.25,
+    )
+    assert flat["missed"] == [
+        {"area_m2": 0.25, "x": 1.0, "y": 2.0, "room": "den", "reason": "a door is shut"}
+    ]
+    assert (loft["run"], loft["covered_m2"], loft["energy_wh"], loft["missed"]) == (
+        2,
+        None,
+        None,
+        [],
+    )
+    assert main(["1", "--json", str(tmp_path / "one.json")]) == 0
+    assert json.loads((tmp_path / "one.json").read_text())["runs"] == [flat]
+    assert capsys.readouterr().out == ""
+    assert not list(tmp_path.glob("*.html"))
+    assert main(["1", "--json", "one.json", "--out", "one.html"]) == 0
+    assert (tmp_path / "one.html").is_file()
 
 
 def test_a_run_is_repeated_by_what_was_kept_of_it(history: History, tmp_path: Path) -> None:
