@@ -193,6 +193,8 @@ def _again(trial: Trial) -> str:
         words += ["--empty-after", f"{trial.empties_bin_after:g}"]
     if trial.config is not None:
         words += ["--config", str(trial.config)]
+    for name, path in trial.stages:
+        words += ["--plan", f"{name}={path}"]
     request = trial.request
     if request.mode is not usual.request.mode:
         words += ["--mode", request.mode.value]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -80,6 +81,8 @@ def options_of(arguments: list[str] | None) -> SimOptions:
         bin=given.bin,
         empties_bin_after=given.empty_after,
         turned=given.turned,
+        stages=_stages_of(given.plan),
+        code=Path.cwd() if given.plan else None,
     )
     return SimOptions(
         trial, given.homes, given.json, given.plot, given.bag, given.quiet, given.keep and _CAN_KEEP
@@ -157,6 +160,15 @@ def _add_circumstances(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="round things on the floor that the map does not show, where the seed puts them",
     )
+    how.add_argument(
+        "--plan",
+        type=_stage,
+        action="append",
+        default=[],
+        metavar="STAGE=MODULE:FUNCTION",
+        help="a stage of coverage planning of your own, of a module in this folder or installed; "
+        "may be repeated (docs/tutorials/a_coverage_stage.md)",
+    )
     how.add_argument("--shut-doors", action="store_true", help="all doors of the home are shut")
     how.add_argument(
         "--battery", type=_share, default=1.0, metavar="SHARE", help="charge at the start, 0..1"
@@ -174,6 +186,22 @@ def _add_circumstances(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="how long a full dust bin waits on the station to be emptied (default: 120 s)",
     )
+
+
+def _stage(text: str) -> tuple[str, str]:
+    """Return a stage's name, and what takes its place."""
+    parts = re.fullmatch(r"(\w+)=([\w.]+:[\w.]+)", text)
+    if parts is None:
+        raise argparse.ArgumentTypeError(f"expected STAGE=MODULE:FUNCTION, got {text!r}")
+    return parts[1], parts[2]
+
+
+def _stages_of(given: list[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+    names = [name for name, _ in given]
+    for name in names:
+        if names.count(name) > 1:
+            raise UsageError(f"--plan: expected each stage once, got {name} twice; leave one out")
+    return tuple(sorted(given))
 
 
 _share = number(lambda value: 0.0 <= value <= 1.0, "a share from 0 to 1")

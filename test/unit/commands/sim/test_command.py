@@ -52,6 +52,8 @@ def outcomes(monkeypatch: pytest.MonkeyPatch) -> dict[int, Outcome]:
         ),
         ("--home flat --bag a.bag", "--bag: expected a Python with ROS"),
         ("--seed x", "expected a whole number"),
+        ("--plan order=nowhere:f", "expected a module that can be imported, got 'nowhere'"),
+        ("--plan paint=math:sin", "stages: expected edges, swaths, order"),
     ],
 )
 def test_wrong_usage_is_status_2_and_one_line(

@@ -31,7 +31,7 @@ def test_everything_that_can_be_asked_for_arrives(tmp_path: Path) -> None:
     config.write_text("sensors: ideal\n", encoding="utf-8")
     words = "--home studio --station -1e-05 2 -3.1 --seed 7 --sensors ideal --things 3 --passes 2 "
     words += "--fan strong --battery 0.5 --shut-doors --no-go 0 0 1 1 --no-go -2 -2 -1 -1 --quiet "
-    words += "--turned -17.5 "
+    words += "--turned -17.5 --plan swaths=mine:swaths --plan order=their.code:best.order "
     words += f"--json --plot {tmp_path}/a.png --bag {tmp_path}/a.bag --config {config}"
     options = options_of(words.split())
     assert options.trial == Trial(
@@ -46,6 +46,8 @@ def test_everything_that_can_be_asked_for_arrives(tmp_path: Path) -> None:
         station=Pose(-1e-05, 2.0, -3.1),
         config=config,
         turned=-17.5,
+        stages=(("order", "their.code:best.order"), ("swaths", "mine:swaths")),
+        code=Path.cwd(),
     )
     assert options.json == "-"
     assert options.quiet
@@ -97,6 +99,8 @@ REFUSED = {
     "--json no/such/file": "--json: expected a file in a folder that is there, got no/such/file",
     "--json a.png --plot a.png": "--plot: a.png is the file of --json already",
     "--config no.yaml": "--config: expected a file like robot.yaml, got no.yaml",
+    "--plan mine:swaths": "--plan: expected STAGE=MODULE:FUNCTION, got 'mine:swaths'",
+    "--plan order=a:b --plan order=c:d": "--plan: expected each stage once, got order twice",
     "--speed 3": "unrecognized arguments: --speed 3",
     "--see 3": "unrecognized arguments: --see 3",
 }
