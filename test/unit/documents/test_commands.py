@@ -15,7 +15,11 @@ from running.suites import SUITES
 from roomba.errors import RoombaError
 
 ROOT = Path(__file__).parents[3]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [
+    *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "benchmarks/README.md")),
+    *sorted((ROOT / "docs").rglob("*.md")),
+    *sorted((ROOT / "benchmarks" / "measured").glob("*.md")),
+]
 MODULES = {
     "campaign": "roomba.commands.campaign.command",
     "sim": "roomba.commands.sim.command",
@@ -39,9 +43,19 @@ MODULES = {
     "exercise": "roomba.commands.exercise.command",
 }
 """The module whose ``main`` parses what follows a command; the others are told below."""
-PROGRAMS = {"dask", "rostopic", "rosservice", "roscore", "rosparam", "rosbag", "bash"}
+PROGRAMS = {
+    "dask",
+    "rosnode",
+    "rostopic",
+    "rosservice",
+    "roscore",
+    "rosparam",
+    "rosbag",
+    "rviz",
+    "bash",
+}
 """What ``./roomba exec`` runs of others, whose arguments are theirs."""
-MENTIONED = {"import valetudo", "map --bag", "emulate"}
+MENTIONED = {"import valetudo", "map --bag", "emulate", "play --smart-home", "sim --homes N"}
 """What the text names without the rest of the line."""
 
 
@@ -172,7 +186,7 @@ def take_program(program: str, *words: str) -> None:
         assert words[1] == "pip" or file_of_module(words[1]).is_file()
     elif program == "python" and words[0] != "FILE":
         assert (ROOT / words[0]).is_file()
-    elif program == "rviz":
+    elif program == "rviz" and words:
         assert words[0] == "-d"
         assert (ROOT / words[1]).is_file()
     elif program == "rosrun":
