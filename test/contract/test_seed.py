@@ -49,6 +49,16 @@ SUBSCRIBES = {
     "/cmd_vel_out": "home_sim_node",
 }
 
+MENU_SENDS = {"/walk_to_point/goal", "/walk_to_point/cancel"}
+MENU_HEARS = {
+    "/dirt",
+    "/position",
+    "/speed",
+    "/walk_to_point/feedback",
+    "/walk_to_point/result",
+    "/walk_to_point/status",
+}
+
 TYPES = {
     "/dirt": "std_msgs/Float32",
     "/speed": "std_msgs/Float32",
@@ -94,6 +104,28 @@ def test_nodes_topics_and_services_are_those_of_the_report(shared_robot: RosGrap
         assert services[f"/{node}/get_loggers"] == [f"/{node}"]
         assert services[f"/{node}/set_logger_level"] == [f"/{node}"]
     assert services["/turn_camera"] == ["/turn_camera_service_node"]
+
+
+def test_the_menu_speaks_and_hears_as_in_the_report(shared_robot: RosGraph) -> None:
+    menu = shared_robot.rosrun("control_node.py")
+    menu.says("Select: ", 30.0)
+    publishers, subscribers, _ = shared_robot.system_state()
+    assert {
+        topic for topic in MENU_SENDS if "/control_node" in publishers.get(topic, [])
+    } == MENU_SENDS
+    assert {
+        topic for topic in MENU_HEARS if "/control_node" in subscribers.get(topic, [])
+    } == MENU_HEARS
+    menu.end_of_input()
+    assert menu.ends(20.0) == 0
+
+
+def test_the_picture_client_has_the_reports_name(shared_robot: RosGraph) -> None:
+    client = shared_robot.rosrun("turn_camera_client.py")
+    client.says("Enter the angle: ", 30.0)
+    assert "/turn_camera_client_node" in tool(shared_robot, "rosnode", "list").split()
+    client.type("q")
+    assert client.ends(20.0) == 0
 
 
 def test_every_topic_has_one_writer(shared_robot: RosGraph) -> None:
