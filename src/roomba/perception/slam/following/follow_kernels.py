@@ -77,6 +77,8 @@ _CLEARLY: Final = 1.15
 _HARDEST: Final = (1.5, 1.5, 8.0)
 """m/s2, rad/s2; so fast the pace changes at most: beyond that a match jumped along a corridor, and
 the next one would jump back."""
+_NO_LEAP: Final = 0.03
+"""m; a match may be off so much more."""
 _LONGEST: Final = 1.0
 """s; over a longer time nothing is known of how fast it moves."""
 _ROUNDS: Final = 5
@@ -122,9 +124,10 @@ def follow(
     shows_enough = _match(follower, surfels, points, count, prior, reach, _FIRST_SCALES)
     is_soon = 0.0 < elapsed < _LONGEST
     if shows_enough and is_soon and follower.met * follower.close < expected:
-        _look_farther(follower, surfels, points, count, prior, expected)
+        farthest = _HARDEST[0] * elapsed * elapsed + _NO_LEAP if knows_pace else math.inf
+        _look_farther(follower, surfels, points, count, prior, expected, farthest)
         if knows_pace and follower.met * follower.close < expected:
-            _look_farther(follower, surfels, points, count, by_pace, expected)
+            _look_farther(follower, surfels, points, count, by_pace, expected, farthest)
     follower.is_sure = (
         shows_enough
         and follower.met >= follower.least_met
@@ -180,11 +183,18 @@ def _learn_pace(follower: Row, x: float, y: float, theta: float, elapsed: float)
 
 @inner_part
 def _look_farther(
-    follower: Row, surfels: Surfels, points: Floats, count: int, guess: Floats, expected: float
+    follower: Row,
+    surfels: Surfels,
+    points: Floats,
+    count: int,
+    guess: Floats,
+    expected: float,
+    farthest: float,
 ) -> None:
     """Match a scan in a wide window about ``guess`` [3].
 
-    The result is kept only if it agrees as ``expected``, and clearly better than before.
+    The result is kept only if it agrees as ``expected``, and clearly better than before, and is no
+    leap of more than ``farthest``, m.
     """
     pose, covariance = follower.work[1], follower.work[COVARIANCE : COVARIANCE + 3]
     before, sure = follower.work[10:13], follower.work[13]
@@ -196,13 +206,26 @@ def _look_farther(
             covariance[row, column] = 0.0
         covariance[row, row] = _FARTHER_SPREAD[row]
     _match(follower, surfels, points, count, guess, _FAR_REACH, _FARTHER_SCALES)
-    if follower.met * follower.close >= max(expected, _CLEARLY * met * close):
+    is_better = follower.met * follower.close >= max(expected, _CLEARLY * met * close)
+    if is_better and not _is_leap(follower, farthest):
         return
     follower.met, follower.close = met, close
     for row in range(3):
         pose[row] = sure[row]
         for column in range(3):
             covariance[row, column] = before[row, column]
+
+
+@inner_part
+def _is_leap(follower: Row, farthest: float) -> bool:
+    """Whether a match is ``farthest``, m, or more from where odometry and pace both have the robot.
+
+    Things that move along with it fit best if it stands.
+    """
+    prior, pose, by_pace = follower.work[0], follower.work[1], follower.work[2]
+    off = math.hypot(pose[0] - prior[0], pose[1] - prior[1])
+    off_pace = math.hypot(pose[0] - by_pace[0], pose[1] - by_pace[1])
+    return min(off, off_pace) >= farthest
 
 
 @part

@@ -1,4 +1,4 @@
-"""The pace that a follower goes on with where no odometry tells it."""
+"""The pace that a follower goes on with, and matches from farther away that it takes."""
 
 from __future__ import annotations
 
@@ -38,3 +38,47 @@ def test_a_jump_along_a_corridor_is_no_pace() -> None:
     there, after = pace_after([1.0, 1.05], 0.5)
     assert there == pytest.approx(0.65)
     assert after == pytest.approx(0.5)
+
+
+ODOMETRY, PACE = (0.05, 0.0, 0.0), (0.06, 0.0, 0.0)
+FARTHEST = 0.045
+"""m."""
+
+
+def looked_farther(monkeypatch: pytest.MonkeyPatch, found: tuple[float, ...]) -> float:
+    """Return where along x a scan is taken to be from that fits perfectly at ``found`` alone."""
+    work = np.zeros((20, 3))
+    work[0], work[1], work[2] = ODOMETRY, ODOMETRY, PACE
+    follower = SimpleNamespace(work=work, met=0.7, close=0.8)
+
+    def match(follower: Any, *_: object) -> bool:
+        follower.work[1], follower.met, follower.close = found, 1.0, 1.0
+        return True
+
+    monkeypatch.setattr(follow_kernels, "_match", match)
+    for name in ("_look_farther", "_is_leap"):
+        kernel: Any = getattr(follow_kernels, name)
+        monkeypatch.setattr(follow_kernels, name, getattr(kernel, "py_func", kernel))
+    look: Any = follow_kernels._look_farther
+    look(follower, None, None, 0, work[0].copy(), 0.9, FARTHEST)
+    assert (follower.met == 1.0) == (follower.work[1, 0] == found[0])
+    return float(follower.work[1, 0])
+
+
+def test_a_scan_that_fits_better_nearby_is_taken_from_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert looked_farther(monkeypatch, (0.02, 0.0, 0.0)) == 0.02
+
+
+def test_odometry_that_is_off_is_corrected_by_a_scan_that_goes_on_at_the_pace(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert looked_farther(monkeypatch, (0.10, 0.0, 0.0)) == 0.10
+
+
+def test_what_stands_by_a_scan_while_odometry_and_pace_go_on_moves_along_with_the_robot(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert looked_farther(monkeypatch, (0.0, 0.0, 0.0)) == ODOMETRY[0]
+    assert looked_farther(monkeypatch, (0.04, 0.06, 0.0)) == ODOMETRY[0]
