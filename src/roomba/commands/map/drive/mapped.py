@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from roomba.arrays import Floats
+from roomba.commands.map.drive.disagreement import disagreements, told_disagreements
 from roomba.commands.map.drive.looking import look_at_drive
 from roomba.commands.map.drive.odometry_gaps import OdometryGap, gaps_of
 from roomba.commands.map.drive.replay import MapReplay
@@ -94,8 +95,16 @@ def mapped_drive(logs: Sequence[Path], wanted: Wanted, show: Show) -> MappedDriv
             begin,
             drive.counts,
             refused,
-            (*drive.notes, *replay.notes),
+            (*drive.notes, *replay.notes, *_doubts(replay)),
         )
+
+
+def _doubts(replay: MapReplay) -> list[str]:
+    """Return what makes the finished map of a drive doubtful: its odometry tells another way."""
+    if not replay.has_odometry:
+        return []
+    on_map = replay.trajectory.at_the_end(replay.mapper)
+    return told_disagreements(disagreements(on_map, replay.by_odometry))
 
 
 def _replayed(

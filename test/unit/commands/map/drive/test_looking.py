@@ -121,7 +121,7 @@ def test_odometry_that_is_of_no_use_is_left_out_and_that_is_told(
 def test_odometry_that_was_named_is_used_all_the_same_with_a_word(tmp_path: Path) -> None:
     wanted = Wanted(odometry="/odom")
     done = mapped(tmp_path, changed(round_drive(), "/odom", in_feet), wanted, with_mount=True)
-    [note] = [note for note in done.notes if "odometry" in note]
+    [note] = [note for note in done.notes if "the odometry" in note]
     assert note.startswith("the odometry is doubtful: it tells ways of ")
     assert done.replay.has_odometry
 
