@@ -27,6 +27,7 @@ from roomba.perception.slam.following.scan_kernels import Following
 from roomba.perception.slam.mapper_estimate import estimate_at, lost_estimate
 from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
 from roomba.perception.slam.submap_map import SubmapMap
+from roomba.perception.slam.submaps.heading_drift import HeadingDrift
 from roomba.perception.slam.submaps.parts import Carried
 from roomba.perception.slam.submaps.pose_graph import relative_to
 from roomba.perception.slam.submaps.relocation import MapRelocation
@@ -261,6 +262,11 @@ class Mapper:
         was found on the rest.
         """
         return self._map.graph.ways_apart(self._follower.way)
+
+    @property
+    def heading_drift(self) -> HeadingDrift:
+        """How unsure the least sure heading of the map is, against that of its beginning."""
+        return self._map.graph.heading_drift()
 
     @property
     def trajectory(self) -> Floats:

@@ -41,6 +41,8 @@ _FEWEST: Final = 10
 """Scans; of a drive with fewer it is not told that most of them fitted nothing."""
 _MOST_UNFITTING: Final = 0.5
 """Share of the scans that fitted nothing; with more a map is hardly worth anything."""
+_MOST_BENT: Final = 4.0
+"""Degrees; a map that may be bent by more, two standard deviations, is told of."""
 _LATEST: Final = 1.0
 """s; a scan that odometry is so far behind is of a time that it knows nothing of."""
 
@@ -111,7 +113,7 @@ class MapReplay:
 
     @property
     def notes(self) -> list[str]:
-        """What was left out, and what no scan joined to the map."""
+        """What was left out, what no scan joined to the map, and how far it may be bent."""
         told = [f"{count} {what}: left out" for what, count in self.left_out.items()]
         if self.scans >= _FEWEST and self.unconfirmed > _MOST_UNFITTING * self.scans:
             told.append(
@@ -130,6 +132,14 @@ class MapReplay:
                 f"{sum(apart):.1f} m of the way, parts of the map: {len(apart)}, lie only where "
                 "the robot was thought to be: scans fitted nothing before them, and what was seen "
                 "there was found nowhere else; it may be drawn at a wrong place"
+            )
+        drift = self.mapper.heading_drift
+        bent = 2.0 * math.degrees(drift.deviation)
+        if bent > _MOST_BENT:
+            told.append(
+                f"too few places were seen again to hold the heading: the map may be bent by ± "
+                f"{bent:.0f} degrees between its begin and what was seen after {drift.way:.0f} m "
+                "of the way"
             )
         return told
 

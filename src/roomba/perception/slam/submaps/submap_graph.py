@@ -14,6 +14,7 @@ from roomba.arrays import Floats
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.slam.submaps.agreement import is_backed, is_far
+from roomba.perception.slam.submaps.heading_drift import HeadingDrift, heading_drift
 from roomba.perception.slam.submaps.linking import Linker
 from roomba.perception.slam.submaps.parts import (
     Carried,
@@ -158,6 +159,10 @@ class SubmapGraph:
         labels = part_labels(len(self.submaps), self.links)
         parts = np.unique(labels[shows]).tolist()[1:]
         return [float(driven[labels == part].sum()) for part in parts]
+
+    def heading_drift(self) -> HeadingDrift:
+        """Return how unsure the least sure heading of a submap is, against the first one's."""
+        return heading_drift(self.poses, [submap.way for submap in self.submaps], self.links)
 
     def join_parts(self) -> None:
         """Lay parts that begin where the robot was carried where they are found on the rest.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,8 @@ import pytest
 from fixtures.drives.made_logs import BEAMS, BEGAN, Item, changed, drive, held, pose_at, write_bag
 
 from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
+from roomba.perception.slam.mapper import Mapper
+from roomba.perception.slam.submaps.heading_drift import HeadingDrift
 from roomba.recordings.choice import Wanted
 from roomba.recordings.readings import Lifted
 
@@ -77,3 +80,28 @@ def test_a_drive_whose_scans_fit_nothing_is_told_to_make_no_map(tmp_path: Path) 
     assert made.replay.unconfirmed > 100
     told = f"{made.replay.unconfirmed} of {made.replay.scans} scans fitted nothing seen before"
     assert any(told in note for note in made.notes)
+
+
+def test_wheels_that_slip_are_told_from_when_to_when(tmp_path: Path) -> None:
+    def slipping(_: int, item: Item) -> Item:
+        passed = item.stamp - BEGAN
+        return replace(
+            item, value=BEGIN.compose(pose_at(passed + 2.0 * np.clip(passed - 12.0, 0.0, 8.0)))
+        )
+
+    made = mapped(tmp_path, changed(drive(SECONDS), "/odom", slipping))
+    assert off(made) < 0.05
+    (told,) = [note for note in made.notes if "disagree about the way" in note]
+    begin, end = (float(word) for word in told.split("way from ")[1].split(" s ")[0].split(" to "))
+    assert begin == pytest.approx(12.0, abs=3.0)
+    assert end == pytest.approx(20.0, abs=3.0)
+
+
+@pytest.mark.parametrize(("degrees", "is_told"), [(1.9, False), (4.5, True)])
+def test_a_map_that_may_be_bent_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, degrees: float, is_told: bool
+) -> None:
+    drift = HeadingDrift(math.radians(degrees), 41.8)
+    monkeypatch.setattr(Mapper, "heading_drift", property(lambda _: drift))
+    notes = mapped(tmp_path, drive(10.0)).notes
+    assert any("± 9 degrees" in note and "after 42 m" in note for note in notes) == is_told
