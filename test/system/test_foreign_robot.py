@@ -24,7 +24,7 @@ from std_srvs.srv import SetBool, Trigger
 from roomba.commands.map.drive.mapped import mapped_drive
 from roomba.geometry import Pose
 from roomba.grid import FREE
-from roomba.recordings.choice import Wanted
+from roomba.recordings.drives.choice import Wanted
 from roomba_ros.convert.common import map_message, map_of, pose_of
 
 SECONDS = 40.0

@@ -246,7 +246,10 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/perception/things/kernels": ("unit/perception/things/test_layer.py", PART),
     "roomba/perception/things/state": ("unit/perception/things/test_layer.py", VALUES),
     "roomba/plots/": ("unit/plots/test_home.py", "a drawing of a home is made of them"),
-    "roomba/recordings/": ("unit/recordings/test_drive.py", "read with all others as one drive"),
+    "roomba/recordings/": (
+        "unit/recordings/drives/test_drive.py",
+        "read with all others as one drive",
+    ),
     "roomba/robot/": ("unit/robot/test_parts.py", "the parts of one robot"),
     "roomba/storage/maps_folder": ("system/owned/test_owned_robot.py", VALUES),
     "roomba/storage/map_bound": ("unit/storage/test_rooms.py", "a base of what it stores"),

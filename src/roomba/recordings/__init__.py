@@ -1,1 +1,1 @@
-"""Recorded drives of any robot, read from bags of ROS 1 and 2 and from CARMEN logs."""
+"""Recordings of any robot: what a log is, and bags of ROS 1 and 2."""

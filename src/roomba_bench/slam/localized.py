@@ -23,7 +23,7 @@ from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
-from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.drives.drive import LoggedDrive
 from roomba.recordings.readings import LidarScan
 from roomba_bench.slam.relations import poses_at
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
-from roomba.recordings.choice import Wanted
+from roomba.recordings.drives.choice import Wanted
 from roomba.recordings.packed import plain_name
 from roomba_bench.slam.localized import (
     Fitting,

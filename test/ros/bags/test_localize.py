@@ -19,8 +19,8 @@ from roomba.commands.localize.command import main
 from roomba.files.occupancy_map import save_map
 from roomba.geometry import Pose
 from roomba.perception.localization.estimate import Knowledge
-from roomba.recordings.choice import Wanted
-from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.drives.choice import Wanted
+from roomba.recordings.drives.drive import LoggedDrive
 from roomba.recordings.readings import Kind, Lifted, OwnPose, ToldPose
 from roomba_ros.convert.common import pose_message, pose_of
 from roomba_ros.convert.localization import STATES, told_pose_of

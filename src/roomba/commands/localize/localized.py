@@ -21,7 +21,7 @@ from roomba.configuration.robot import load_robot_config
 from roomba.files.shipped import CONFIGURATION
 from roomba.grid import FREE, OccupancyMap
 from roomba.perception.localization.estimate import Knowledge
-from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.drives.drive import LoggedDrive
 from roomba.recordings.readings import Kind, LogError, OwnPose
 from roomba.recordings.times.stamps import StampCounts
 

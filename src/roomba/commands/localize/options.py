@@ -11,7 +11,7 @@ from roomba.commands.map.drive.options import DRIVES, add_read, wanted_of
 from roomba.commands.options import Parser, check_written, file_of, finite
 from roomba.commands.program_name import spelled
 from roomba.geometry import Pose
-from roomba.recordings.choice import Wanted
+from roomba.recordings.drives.choice import Wanted
 from roomba.recordings.readings import Kind
 
 PROGRAM: Final = spelled("localize")

@@ -13,6 +13,7 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.localization.localizer import Localizer
+from roomba.recordings.drives.turning import NewestTurning
 from roomba.recordings.readings import (
     LidarScan,
     Lifted,
@@ -21,7 +22,6 @@ from roomba.recordings.readings import (
     Turning,
 )
 from roomba.recordings.times.waiting import StampedScan, WaitingScan
-from roomba.recordings.turning import NewestTurning
 
 _ROW_PERIOD: Final = 0.045
 """s; as often as the live node tells its pose, with something left for clocks that tremble."""

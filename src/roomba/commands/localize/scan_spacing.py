@@ -7,7 +7,7 @@ import statistics
 from typing import Final
 
 from roomba.configuration.robot import RobotConfig
-from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.drives.drive import LoggedDrive
 from roomba.recordings.readings import LidarScan
 
 _LOOKED_AT: Final = 100

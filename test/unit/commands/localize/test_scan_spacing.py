@@ -9,8 +9,8 @@ from fixtures.drives.made_logs import Item, drive, write_bag
 
 from roomba.commands.localize.scan_spacing import with_patience
 from roomba.configuration.robot import RobotConfig
-from roomba.recordings.choice import Wanted
-from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.drives.choice import Wanted
+from roomba.recordings.drives.drive import LoggedDrive
 
 CONFIG = RobotConfig()
 

@@ -18,8 +18,8 @@ from roomba.perception.slam.scan_matching.surface_kernels import (
     room_for_sums,
     surface_points,
 )
+from roomba.recordings.drives.sweeps import Sweep, SweptScans
 from roomba.recordings.readings import LidarScan, Odometry, Reading
-from roomba.recordings.sweeps import Sweep, SweptScans
 
 _APART_WAY, _APART_TURN = 0.03, 0.03
 """m, rad; between scans that are kept: a robot that stands shows nothing new."""

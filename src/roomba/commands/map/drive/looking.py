@@ -10,8 +10,8 @@ from roomba.commands.map.drive.shown_odometry import odometry_fault
 from roomba.commands.map.drive.shown_sweep import shown_sweep
 from roomba.geometry import Pose
 from roomba.perception.matching.mounts import Mount
-from roomba.recordings.drive import LoggedDrive
-from roomba.recordings.mounting import degrees_aside
+from roomba.recordings.drives.drive import LoggedDrive
+from roomba.recordings.drives.mounting import degrees_aside
 from roomba.recordings.readings import UNUSABLE_ODOMETRY
 
 _ANOTHER_WAY: Final = 0.25

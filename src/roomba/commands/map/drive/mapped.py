@@ -21,8 +21,8 @@ from roomba.configuration.robot import load_robot_config
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
-from roomba.recordings.choice import Wanted
-from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.drives.choice import Wanted
+from roomba.recordings.drives.drive import LoggedDrive
 from roomba.recordings.readings import Kind, LogError, TruePose
 from roomba.recordings.times.stamps import StampCounts
 

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from roomba.geometry import Pose
-from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.drives.drive import LoggedDrive
 from roomba.recordings.readings import LidarScan, Odometry, Reading
 
 _MISSING: Final = 1.0

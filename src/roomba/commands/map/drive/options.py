@@ -11,7 +11,7 @@ from typing import Final
 from roomba.commands.map.options import PROGRAM, Output, add_output, output_of
 from roomba.commands.options import Parser
 from roomba.geometry import Pose
-from roomba.recordings.choice import Wanted
+from roomba.recordings.drives.choice import Wanted
 
 DRIVES: Final = (
     "a planar lidar and odometry: bags of ROS 1 (.bag), bags of ROS 2 (a folder with "

@@ -21,9 +21,9 @@ from roomba.grid import OccupancyMap
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.slam.mapper import Mapper
+from roomba.recordings.drives.turning import NewestTurning
 from roomba.recordings.readings import LidarScan, Lifted, Odometry, Turning, Value
 from roomba.recordings.times.waiting import StampedScan, WaitingScan
-from roomba.recordings.turning import NewestTurning
 
 _GUESSED: Final = {
     "way_noise": 0.2,

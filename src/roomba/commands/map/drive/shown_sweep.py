@@ -15,7 +15,7 @@ import numpy as np
 
 from roomba.arrays import Floats
 from roomba.commands.map.drive.lidar_samples import LidarSamples, Sample, laid_on
-from roomba.recordings.sweeps import Sweep
+from roomba.recordings.drives.sweeps import Sweep
 
 _TURNING: Final = 0.03
 """rad; so far the robot turns at least in the time of a scan that is bent."""

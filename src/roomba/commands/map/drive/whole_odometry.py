@@ -12,7 +12,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.files.shipped import CONFIGURATION
 from roomba.geometry import Pose
 from roomba.perception.slam.mapper import Mapper
-from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.drives.drive import LoggedDrive
 from roomba.recordings.readings import LidarScan, Odometry, Reading
 
 

@@ -17,8 +17,8 @@ from fixtures.drives.turning_drive import (
 
 from roomba.commands.map.drive.lidar_samples import LidarSamples
 from roomba.geometry import Pose
+from roomba.recordings.drives.sweeps import Sweep
 from roomba.recordings.readings import LidarScan, Odometry, Reading
-from roomba.recordings.sweeps import Sweep
 
 
 def test_a_scan_is_where_odometry_had_the_robot_at_its_time() -> None:

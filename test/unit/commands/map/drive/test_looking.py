@@ -16,7 +16,7 @@ from fixtures.drives.turning_drive import BEAM_TIME, turning_drive
 from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
 from roomba.commands.map.drive.report import lines_of, summary_of
 from roomba.geometry import Pose, wrap_angle
-from roomba.recordings.choice import Wanted
+from roomba.recordings.drives.choice import Wanted
 
 
 def mapped(

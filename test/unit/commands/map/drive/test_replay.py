@@ -13,7 +13,7 @@ from fixtures.drives.made_logs import BEAMS, BEGAN, Item, changed, drive, held, 
 from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
 from roomba.perception.slam.mapper import Mapper
 from roomba.perception.slam.submaps.heading_drift import HeadingDrift
-from roomba.recordings.choice import Wanted
+from roomba.recordings.drives.choice import Wanted
 from roomba.recordings.readings import Lifted
 
 SECONDS = 40.0

@@ -11,7 +11,7 @@ from fixtures.drives.turning_drive import BEAM_TIME, half_circle, readings_of, t
 
 from roomba.commands.map.drive.lidar_samples import LidarSamples
 from roomba.commands.map.drive.shown_sweep import shown_sweep
-from roomba.recordings.sweeps import Sweep
+from roomba.recordings.drives.sweeps import Sweep
 
 
 def shown(told: float, *, beam_time: float = 0.0, is_backwards: bool = False) -> Sweep | None:

@@ -10,7 +10,7 @@ from fixtures.robots.located import CONFIG
 
 from roomba.commands.map.drive.whole_odometry import whole_odometry_of
 from roomba.geometry import Pose, wrap_angle
-from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.drives.drive import LoggedDrive
 from roomba.recordings.readings import LidarScan, Odometry
 
 SECONDS = 40.0

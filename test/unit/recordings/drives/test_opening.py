@@ -11,8 +11,8 @@ import pytest
 from fixtures.drives.made_logs import drive, write_bag, write_bag_2, write_carmen
 
 from roomba.recordings.bag import BagLog
-from roomba.recordings.carmen import CarmenLog
-from roomba.recordings.opening import is_relations, open_log
+from roomba.recordings.carmen.log import CarmenLog
+from roomba.recordings.drives.opening import is_relations, open_log
 from roomba.recordings.readings import LogError
 
 RELATION = "976052857.3 976052890.1 1.5 -0.25 0.0 0.0 0.0 0.31\n"

@@ -13,10 +13,11 @@ import numpy as np
 
 from roomba.arrays import Floats, Ints64, Mask
 from roomba.perception.matching.mounts import Mount
-from roomba.recordings.choice import Chosen, Wanted, chosen
+from roomba.recordings.drives.choice import Chosen, Wanted, chosen
+from roomba.recordings.drives.mounting import BODIES, Mounting
+from roomba.recordings.drives.opening import open_log
+from roomba.recordings.drives.sweeps import Sweep, SweptScans
 from roomba.recordings.log import Channel, Frames, Log
-from roomba.recordings.mounting import BODIES, Mounting
-from roomba.recordings.opening import open_log
 from roomba.recordings.readings import (
     UNUSABLE_SCANS,
     Kind,
@@ -26,7 +27,6 @@ from roomba.recordings.readings import (
     Refused,
     Value,
 )
-from roomba.recordings.sweeps import Sweep, SweptScans
 from roomba.recordings.times.stamps import CLOCKS, StampCounts, delay_of, in_order, mended
 from roomba.recordings.times.untimed import times_by_order
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from roomba.perception.matching.mounts import Mount, Mounts
-from roomba.recordings.choice import Wanted
+from roomba.recordings.drives.choice import Wanted
 from roomba.recordings.log import Log
 from roomba.recordings.readings import Kind
 

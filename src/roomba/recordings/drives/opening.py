@@ -6,7 +6,8 @@ import shlex
 from pathlib import Path
 from typing import Final
 
-from roomba.recordings.carmen import CarmenLog, is_number
+from roomba.recordings.carmen.lines import is_number
+from roomba.recordings.carmen.log import CarmenLog
 from roomba.recordings.log import Log
 from roomba.recordings.packed import head_of, plain_name
 from roomba.recordings.readings import LogError

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from roomba.recordings.choice import Wanted, chosen
+from roomba.recordings.drives.choice import Wanted, chosen
 from roomba.recordings.log import Channel
 from roomba.recordings.readings import Kind, LogError
 

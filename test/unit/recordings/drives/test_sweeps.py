@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from roomba.perception.matching.scan_view import LidarModel
+from roomba.recordings.drives.sweeps import Sweep, SweptScans
 from roomba.recordings.readings import LidarScan
-from roomba.recordings.sweeps import Sweep, SweptScans
 
 RANGES = np.array([1.0, 2.0, 3.0, 4.0], np.float32)
 

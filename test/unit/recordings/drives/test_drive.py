@@ -25,10 +25,10 @@ from fixtures.drives.made_logs import (
 from roomba.geometry import Pose
 from roomba.perception.matching.mounts import Mount
 from roomba.perception.matching.scan_view import LidarModel
-from roomba.recordings.choice import Wanted
-from roomba.recordings.drive import LoggedDrive
+from roomba.recordings.drives.choice import Wanted
+from roomba.recordings.drives.drive import LoggedDrive
+from roomba.recordings.drives.sweeps import Sweep
 from roomba.recordings.readings import LidarScan, LogError, Odometry, Reading
-from roomba.recordings.sweeps import Sweep
 
 SECONDS = 6.0
 
