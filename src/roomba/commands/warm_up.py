@@ -48,7 +48,7 @@ def others() -> None:
     simulator = Simulator(home, config)
     _take_pictures(home, config, simulator)
     for _ in range(40):
-        simulator.step(Twist(0.5, 0.1), 0.025)
+        simulator.step(Twist(0.5, 0.1), config.timing.world_step)
     _find_place(home, config, simulator)
     _look_for_changes(home, config, simulator)
 

@@ -17,6 +17,7 @@ from roomba.commands.map.blind_map import BlindMap
 from roomba.commands.map.map_error import MapError, map_error
 from roomba.commands.map.seen_floor import seen_floor
 from roomba.configuration.mapping import MappingConfig
+from roomba.configuration.robot import TimingConfig
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.perception.matching.scan_view import LidarModel
@@ -37,7 +38,7 @@ _APART: Final = (1.5, 6.0)
 """m; between two doorways, at random."""
 _SPEED, _AHEAD = 0.4, 0.5
 """m/s, m; it steers to the point of the middle that is so far ahead."""
-_STEP, _STEPS = 0.025, 2
+_TIMING: Final = TimingConfig()
 _CORNERS: Final = np.array([[0.0, 0.0], [LONG, 0.0], [LONG, SHORT], [0.0, SHORT], [0.0, 0.0]])
 _BEGIN: Final = 5.0
 """m along the first side, where it begins and ends."""
@@ -111,7 +112,7 @@ def loop(seed: int) -> Looped:
         true = seen.pose
         driven += true.distance_to(before.x, before.y)
         before = true
-        simulator.advance(_steered(true), _STEP, _STEPS)
+        simulator.advance(_steered(true), _TIMING.world_step, _TIMING.steps_per_tick)
     true = simulator.observe().pose
     end_before = mapper.pose.distance_to(true.x, true.y)
     made, guessed = mapper.finish(), blind.occupancy()

@@ -11,12 +11,13 @@ import numpy as np
 from roomba.arrays import Floats
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import ControlConfig
+from roomba.configuration.robot import TimingConfig
 from roomba.control.position_loop import PositionLoop
 from roomba.geometry import Twist
 from roomba.world.simulator import Simulator
 
-STEP = 0.025
-"""s; the robot's usual step."""
+STEP = TimingConfig().world_step
+"""s."""
 _NEAR = 0.05
 """m; nearer than this to a point of its way the robot goes on to the next one."""
 
