@@ -130,6 +130,23 @@ class RoomDirt:
     grains: float
 
 
+class EdgeReason(str, Enum):
+    """Why a map goes on no further; a reason equals its words."""
+
+    NOT_LOOKED_AT = "it got to no place from which to look there"
+    NO_ECHO = "it looked there and the lidar met nothing: too far away, black, or of glass"
+
+
+@dataclass(frozen=True, slots=True)
+class OpenEdge:
+    """Where a map still ends: for ``length`` m at (x, y), m, map frame, and why."""
+
+    length: float
+    x: float
+    y: float
+    reason: EdgeReason
+
+
 def fault_of_name(name: str) -> str:
     """Return what is expected of a name in place of this one; empty if it is one."""
     if 0 < len(name) <= LONGEST_NAME and name.strip() and is_readable(name):

@@ -10,6 +10,7 @@ from roomba_robot.msg import (
     CleanResult,
     Localization,
     MissedArea,
+    OpenEdge,
     Zone,
 )
 
@@ -17,9 +18,18 @@ from roomba.mission.cleaning.request import CleanOutcome, MissReason
 from roomba.mission.phases.machine import VACUUM_STATES
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.zones import ZoneKind
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, Phase
+from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, EdgeReason, FanLevel, Phase
 from roomba_ros.convert.localization import STATES
-from roomba_ros.convert.mission import CARPETS, EDGES, FANS, KINDS, MODES, OUTCOMES, REASONS
+from roomba_ros.convert.mission import (
+    CARPETS,
+    EDGE_REASONS,
+    EDGES,
+    FANS,
+    KINDS,
+    MODES,
+    OUTCOMES,
+    REASONS,
+)
 
 
 def constants(message: type, names: set[str]) -> dict[str, int]:
@@ -39,6 +49,7 @@ def constants(message: type, names: set[str]) -> dict[str, int]:
         (CleanGoal, FanLevel, {level.name: code for code, level in FANS.items()}),
         (CleanResult, CleanOutcome, {outcome.name: code for outcome, code in OUTCOMES.items()}),
         (MissedArea, MissReason, {reason.name: code for reason, code in REASONS.items()}),
+        (OpenEdge, EdgeReason, {reason.name: code for code, reason in EDGE_REASONS.items()}),
         (Zone, ZoneKind, {kind.name: code for code, kind in KINDS.items()}),
         (Localization, Knowledge, {knowledge.name: code for knowledge, code in STATES.items()}),
     ],
@@ -72,6 +83,7 @@ def test_the_constants_are_those_of_the_enums_and_no_others() -> None:
         (CleanGoal, of_goal),
         (CleanResult, {outcome.name for outcome in CleanOutcome}),
         (MissedArea, {reason.name for reason in MissReason}),
+        (OpenEdge, {reason.name for reason in EdgeReason}),
         (Zone, {kind.name for kind in ZoneKind}),
     ):
         known = {name for name, value in vars(message).items() if name.isupper()}

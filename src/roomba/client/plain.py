@@ -91,6 +91,8 @@ def report_of(report: CleanReport) -> Json:
             {"area": miss.area, "x": miss.x, "y": miss.y, "room": miss.room, "reason": miss.reason}
             for miss in report.missed
         ],
+        "mapped": known(report.mapped),
+        "open_edges": [asdict(edge) for edge in report.open_edges],
     }
 
 

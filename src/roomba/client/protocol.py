@@ -5,6 +5,7 @@ Answers are immutable snapshots. Metres, m/s and seconds of the robot's clock; t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -15,7 +16,15 @@ from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
 from roomba.time_spent import NOT_COUNTED, TimeSpent
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomDirt, RoomWay
+from roomba.vocabulary import (
+    CarpetWay,
+    CleanMode,
+    EdgeOrder,
+    FanLevel,
+    OpenEdge,
+    RoomDirt,
+    RoomWay,
+)
 
 
 class RobotUnavailableError(RoombaError):
@@ -146,7 +155,9 @@ class CleanReport:
 
     What is not known, as after DISCONNECTED, is NaN; ``missed`` has the largest area first.
     ``times`` is what the duration went into; all 0 where that is not known. ``rooms`` are those
-    that were swept, with their dirt.
+    that were swept, with their dirt. ``open_edges`` are where a map that was made on the way still
+    ends, the longest first. ``mapped`` is the floor on the map at the end of an exploration, m2;
+    NaN of any other.
     """
 
     outcome: ErrandOutcome
@@ -160,6 +171,8 @@ class CleanReport:
     missed: tuple[MissedFloor, ...] = ()
     times: TimeSpent = NOT_COUNTED
     rooms: tuple[RoomDirt, ...] = ()
+    open_edges: tuple[OpenEdge, ...] = ()
+    mapped: float = math.nan
 
 
 class CleanHandle(Protocol):
@@ -203,7 +216,8 @@ class DockingHandle(Protocol):
 class ExploreReport:
     """The end of an exploration: ``known`` m2 of floor, m, s of the robot's clock.
 
-    What is not known, as after DISCONNECTED, is NaN.
+    What is not known, as after DISCONNECTED, is NaN. ``open_edges`` are where the map still ends,
+    the longest first.
     """
 
     outcome: ErrandOutcome
@@ -211,6 +225,7 @@ class ExploreReport:
     known: float
     distance: float
     duration: float
+    open_edges: tuple[OpenEdge, ...] = ()
 
 
 class ExploringHandle(Protocol):

@@ -11,7 +11,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.client.protocol import CleanReport, ErrandOutcome, RequestRefusedError, VacuumSnapshot
+from roomba.client.protocol import (
+    CleanReport,
+    ExploreReport,
+    RequestRefusedError,
+    VacuumSnapshot,
+)
 from roomba.geometry import Twist
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.vocabulary import (
@@ -296,11 +301,20 @@ def camera_angles(max_pan: float) -> tuple[float, ...]:
     return max_pan, 0.5 * max_pan, 0.0, -0.5 * max_pan, -max_pan
 
 
-def exploration_as_clean(
-    outcome: ErrandOutcome, message: str, distance: float, duration: float
-) -> CleanReport:
+def exploration_as_clean(report: ExploreReport) -> CleanReport:
     """Return the end of an exploration in the words of a clean: nothing was wanted or covered."""
-    return CleanReport(outcome, message, 0.0, 0.0, 0.0, distance, duration, math.nan)
+    return CleanReport(
+        report.outcome,
+        report.message,
+        covered=0.0,
+        wanted=0.0,
+        dirt=0.0,
+        distance=report.distance,
+        duration=report.duration,
+        energy=math.nan,
+        open_edges=report.open_edges,
+        mapped=report.known,
+    )
 
 
 def require_another_zone(name: str, names: Collection[str]) -> None:

@@ -21,6 +21,7 @@ from roomba.files.journal import append_line, read_lines, write_lines
 from roomba.history.run import RunFigures, RunRecording, RunSource
 from roomba.history.run_file import packed, unpacked
 from roomba.time_spent import TimeSpent
+from roomba.vocabulary import EdgeReason, OpenEdge
 
 if TYPE_CHECKING:
     from roomba.client.household import TotalsView
@@ -61,18 +62,24 @@ MIGRATIONS: Final = (
     """
     ALTER TABLE runs ADD COLUMN times TEXT NOT NULL DEFAULT '{}';
     """,
+    """
+    ALTER TABLE runs ADD COLUMN mapped REAL;
+    ALTER TABLE runs ADD COLUMN open_edges TEXT NOT NULL DEFAULT '[]';
+    """,
 )
 """What makes each version of the schema of the one before; the first one of nothing."""
 
 _COLUMNS: Final = (
     "program", "home", "seed", "repeat", "configuration", "kind", "began", "outcome", "message",
     "duration", "covered", "wanted", "distance", "turning", "dirt", "energy",
-    "times",
+    "times", "mapped", "open_edges",
 )  # fmt: skip
-_ADDED: Final = {"times": "{}"}
+_ADDED: Final = {"times": "{}", "mapped": None, "open_edges": "[]"}
 """Columns that rows of older journals do not have, with what they are then."""
 _SUMS: Final = ("covered", "duration", "distance", "dirt", "energy")
-_NUMBERS: Final = ("duration", "covered", "wanted", "distance", "turning", "dirt", "energy")
+_NUMBERS: Final = (
+    "duration", "covered", "wanted", "distance", "turning", "dirt", "energy", "mapped",
+)  # fmt: skip
 
 
 class HistoryError(RoombaError):
@@ -305,6 +312,7 @@ def _row(figures: RunFigures) -> dict[str, Any]:
         "outcome": figures.outcome,
         "message": figures.message,
         "times": json.dumps(asdict(figures.times), sort_keys=True),
+        "open_edges": json.dumps([asdict(edge) for edge in figures.open_edges], sort_keys=True),
         **{name: _known(getattr(figures, name)) for name in _NUMBERS},
         "missed": [[miss.area, miss.x, miss.y, miss.room, miss.reason] for miss in figures.missed],
     }
@@ -359,4 +367,9 @@ def _figures_of(database: sqlite3.Connection, number: int, row: dict[str, Any]) 
         **{name: math.nan if row[name] is None else row[name] for name in _NUMBERS},
         missed=tuple(MissedFloor(*miss) for miss in missed),
         times=TimeSpent(**json.loads(row["times"])),
+        open_edges=tuple(_edge_of(**edge) for edge in json.loads(row["open_edges"])),
     )
+
+
+def _edge_of(length: float, x: float, y: float, reason: str) -> OpenEdge:
+    return OpenEdge(length, x, y, EdgeReason(reason))

@@ -255,6 +255,8 @@ class _RunUnderWay:
             report.energy,
             report.missed,
             report.times,
+            report.open_edges,
+            report.mapped,
         )
 
     def recording(self, home: HomeView, layer: Layers) -> RunRecording:

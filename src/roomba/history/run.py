@@ -14,7 +14,7 @@ from roomba.arrays import Floats32
 from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor
 from roomba.shares import share_of
 from roomba.time_spent import NOT_COUNTED, TimeSpent, square_metres_a_minute
-from roomba.vocabulary import Phase
+from roomba.vocabulary import OpenEdge, Phase
 
 TRACE: Final = (
     "time", "x", "y", "theta", "speed", "battery", "dirt", "covered", "wanted", "to_go", "sweeps",
@@ -51,6 +51,8 @@ class RunFigures:
 
     ``kind`` is clean or explore, ``began`` s since 1970 of the wall clock; what is not known is
     NaN. ``missed`` has the largest area first; ``times`` are all 0 where they were not counted.
+    ``open_edges`` are where the map still ends, and ``mapped`` is the floor on it, of an
+    exploration.
     """
 
     source: RunSource
@@ -67,6 +69,8 @@ class RunFigures:
     energy: float
     missed: tuple[MissedFloor, ...] = ()
     times: TimeSpent = NOT_COUNTED
+    open_edges: tuple[OpenEdge, ...] = ()
+    mapped: float = math.nan
 
     @property
     def fraction(self) -> float:
@@ -93,6 +97,8 @@ class RunFigures:
             self.energy,
             self.missed,
             self.times,
+            open_edges=self.open_edges,
+            mapped=self.mapped,
         )
 
 

@@ -15,14 +15,14 @@ from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Errand, MissionState
-from roomba.vocabulary import Phase
+from roomba.vocabulary import EdgeReason, OpenEdge, Phase
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Remembered:
     """A checkpoint's content; ``ledger`` is distance m, energy Wh and dirt g; ``duration`` s.
 
-    ``times`` are those of a time ledger; ``not_seen`` and ``rough_way``, m, those of the job.
+    ``times`` are those of a time ledger; ``open_edges`` and ``rough_way``, m, those of the job.
     """
 
     state: MissionState
@@ -34,7 +34,7 @@ class Remembered:
     duration: float
     is_bin_full: bool
     times: dict[str, float]
-    not_seen: str
+    open_edges: tuple[OpenEdge, ...]
     rough_way: float
 
 
@@ -55,7 +55,7 @@ def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Va
         "duration": job.duration(now),
         "times": job.times.values(),
         "bin_full": job.bin.is_full,
-        "not_seen": job.not_seen,
+        "open_edges": [[edge.length, edge.x, edge.y, edge.reason.name] for edge in job.open_edges],
         "rough_way": job.rough_way,
     }
 
@@ -98,7 +98,12 @@ def _remembered(
     times = {str(name): float(value) for name, value in values["times"].items()}
     # Older checkpoints have none.
     rough_way = float(values.get("rough_way", 0.0))
-    numbers = (distance, energy, dirt, duration, rough_way, *times.values())
+    edges = tuple(
+        OpenEdge(float(length), float(x), float(y), EdgeReason[reason])
+        for length, x, y, reason in values.get("open_edges", [])
+    )
+    lengths = (value for edge in edges for value in (edge.length, edge.x, edge.y))
+    numbers = (distance, energy, dirt, duration, rough_way, *times.values(), *lengths)
     if not all(math.isfinite(value) for value in numbers):
         raise CheckpointError("expected finite numbers")
     return Remembered(
@@ -111,7 +116,7 @@ def _remembered(
         duration,
         bool(values["bin_full"]),
         times,
-        str(values.get("not_seen", "")),
+        edges,
         rough_way,
     )
 
@@ -121,7 +126,7 @@ def take_up(found: Remembered, job: Job, senses: Senses) -> None:
     job.cleaning, job.exploration, job.outcome = found.cleaning, found.exploration, found.outcome
     job.goes_on_after(found.duration, senses)
     job.times.restore(found.times)
-    job.not_seen, job.rough_way = found.not_seen, found.rough_way
+    job.open_edges, job.rough_way = found.open_edges, found.rough_way
     job.ledger.distance, job.ledger.energy, job.ledger.dirt = found.ledger
     if found.is_bin_full:
         job.bin.fill(senses.in_bin)

@@ -22,7 +22,7 @@ from roomba.client.protocol import (
     MissedFloor,
     RobotUnavailableError,
 )
-from roomba_ros.convert.mission import room_dirt_of, times_of
+from roomba_ros.convert.mission import open_edges_of, room_dirt_of, times_of
 from roomba_ros.convert.values import unchanged
 from roomba_ros.runtime.action_client import GoalClient, is_heard
 from roomba_ros.runtime.calls import SERVER_DEADLINE
@@ -216,6 +216,7 @@ class RosClean(_Errand[CleanProgress, CleanReport]):
             ),
             times=times_of(result.times),
             rooms=room_dirt_of(result.rooms),
+            open_edges=open_edges_of(result.open_edges),
         )
 
 
@@ -234,7 +235,8 @@ class RosExploring(_Errand[float, ExploreReport]):
             outcome = OUTCOMES.get(result.outcome, ErrandOutcome.FAULT)
         done = outcome is ErrandOutcome.COMPLETED
         text = result.message or ("" if done else message)
-        return ExploreReport(outcome, text, result.known, result.distance, result.duration)
+        edges = open_edges_of(result.open_edges)
+        return ExploreReport(outcome, text, result.known, result.distance, result.duration, edges)
 
 
 class RosDocking(_Errand[str, DockReport]):

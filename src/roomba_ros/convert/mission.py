@@ -27,6 +27,7 @@ from roomba_robot.msg import (
 )
 from roomba_robot.msg import CleanResult as CleanResultMessage
 from roomba_robot.msg import ExploreResult as ExploreResultMessage
+from roomba_robot.msg import OpenEdge as OpenEdgeMessage
 from roomba_robot.msg import RoomDirt as RoomDirtMessage
 from roomba_robot.msg import TimeSpent as TimeSpentMessage
 from roomba_robot.msg import Zone as ZoneMessage
@@ -51,7 +52,16 @@ from roomba.perception.rooms.low_things import OfferedZone
 from roomba.perception.rooms.zones import WALL_WIDTH, Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomDirt, RoomWay
+from roomba.vocabulary import (
+    CarpetWay,
+    CleanMode,
+    EdgeOrder,
+    EdgeReason,
+    FanLevel,
+    OpenEdge,
+    RoomDirt,
+    RoomWay,
+)
 from roomba_ros.convert.common import header, map_message, quaternion_of
 from roomba_ros.convert.errors import MessageError, require_finite
 
@@ -59,6 +69,7 @@ MODES = {getattr(CleanGoal, mode.name): mode for mode in CleanMode}
 FANS = {getattr(CleanGoal, level.name): level for level in FanLevel}
 OUTCOMES = {outcome: getattr(CleanResultMessage, outcome.name) for outcome in CleanOutcome}
 REASONS = {reason: getattr(MissedArea, reason.name) for reason in MissReason}
+EDGE_REASONS = {getattr(OpenEdgeMessage, reason.name): reason for reason in EdgeReason}
 CARPETS = {getattr(CleanGoal, f"CARPETS_{way.name}"): way for way in CarpetWay}
 EDGES = {getattr(CleanGoal, f"EDGES_{order.name}"): order for order in EdgeOrder}
 KINDS = {getattr(ZoneMessage, kind.name): kind for kind in ZoneKind}
@@ -143,6 +154,7 @@ def result_message(result: CleanResult) -> CleanResultMessage:
         missed=[_missed_message(missed) for missed in result.missed],
         times=TimeSpentMessage(**asdict(result.times)),
         rooms=[RoomDirtMessage(each.room, each.share, each.grains) for each in result.rooms],
+        open_edges=_edge_messages(result.open_edges),
     )
 
 
@@ -172,7 +184,30 @@ def explored_message(result: ExploreResult) -> ExploreResultMessage:
         distance=result.distance,
         duration=result.duration,
         unseen=[Point(x, y, 0.0) for x, y in result.unseen],
+        open_edges=_edge_messages(result.open_edges),
     )
+
+
+def open_edges_of(messages: Sequence[OpenEdgeMessage]) -> tuple[OpenEdge, ...]:
+    """Return where a map still ends; without those edges of which the message makes no sense."""
+    return tuple(
+        OpenEdge(each.length, each.at.x, each.at.y, EDGE_REASONS[each.reason])
+        for each in messages
+        if each.reason in EDGE_REASONS
+        and 0.0 <= each.length < math.inf
+        and math.isfinite(each.at.x)
+        and math.isfinite(each.at.y)
+    )
+
+
+def _edge_messages(edges: Sequence[OpenEdge]) -> list[OpenEdgeMessage]:
+    codes = {reason: code for code, reason in EDGE_REASONS.items()}
+    return [
+        OpenEdgeMessage(
+            edge.length, Point(edge.x, edge.y, 0.0), codes[edge.reason], edge.reason.value
+        )
+        for edge in edges
+    ]
 
 
 def _missed_message(missed: Missed) -> MissedArea:

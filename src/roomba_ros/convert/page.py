@@ -27,7 +27,7 @@ from roomba_robot.msg import (
 from roomba_robot.msg import Zone as ZoneMessage
 from sensor_msgs.msg import BatteryState
 
-from roomba.client.protocol import CleanReport, ErrandOutcome, MissedFloor
+from roomba.client.protocol import CleanReport, ErrandOutcome, ExploreReport, MissedFloor
 from roomba.client.view import (
     MOST_PATH,
     ChangeView,
@@ -43,7 +43,14 @@ from roomba.client.view import (
 from roomba.grid import GridFrame, OccupancyMap
 from roomba_ros.convert.common import map_of, path_of
 from roomba_ros.convert.errors import MessageError, require_finite
-from roomba_ros.convert.mission import KINDS, OUTCOMES, room_dirt_of, times_of, zones_of
+from roomba_ros.convert.mission import (
+    KINDS,
+    OUTCOMES,
+    open_edges_of,
+    room_dirt_of,
+    times_of,
+    zones_of,
+)
 
 _LEAST_CORNERS = 3
 """Of an outline that encloses something."""
@@ -137,6 +144,7 @@ def clean_report_of(message: CleanActionResult) -> CleanReport | None:
         ),
         times_of(result.times),
         room_dirt_of(result.rooms),
+        open_edges_of(result.open_edges),
     )
 
 
@@ -145,12 +153,15 @@ def exploration_report_of(message: ExploreActionResult) -> CleanReport | None:
     result = message.result
     if message.status.status == GoalStatus.REJECTED:
         return None
-    return exploration_as_clean(
+    report = ExploreReport(
         _outcome_of(result.outcome),
         result.message or _reason_of(message),
+        result.known,
         result.distance,
         result.duration,
+        open_edges_of(result.open_edges),
     )
+    return exploration_as_clean(report)
 
 
 def _outcome_of(code: int) -> ErrandOutcome:

@@ -20,6 +20,9 @@ from roomba_robot.msg import (
     DockAction,
     DockFeedback,
     DockResult,
+    ExploreAction,
+    ExploreFeedback,
+    ExploreResult,
     MissedArea,
     Room,
     RoomArray,
@@ -28,6 +31,7 @@ from roomba_robot.msg import (
     UndockAction,
     VacuumState,
 )
+from roomba_robot.msg import OpenEdge as OpenEdgeMessage
 from roomba_robot.srv import ChangeRooms, ChangeRoomsRequest, ChangeRoomsResponse
 from std_srvs.srv import Trigger, TriggerResponse
 
@@ -37,7 +41,7 @@ from roomba.client.protocol import (
     RequestRefusedError,
     RobotUnavailableError,
 )
-from roomba.vocabulary import CleanMode, FanLevel, RoomWay
+from roomba.vocabulary import CleanMode, EdgeReason, FanLevel, OpenEdge, RoomWay
 from roomba_ros.client.roomba_client import RoombaClient
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "clean_home.py"
@@ -72,6 +76,7 @@ class FakeMission:
     def __init__(self) -> None:
         self.cleans, self.docks = Server("clean", CleanAction), Server("dock", DockAction)
         self.undocks = Server("undock", UndockAction)
+        self.explorations = Server("explore", ExploreAction)
         self.orders: list[str] = []
         self.refusal = ""
         for name in ("pause", "resume", "stop", "locate", "empty_bin"):
@@ -150,6 +155,17 @@ def test_a_clean_from_its_goal_to_its_report(graph: RosGraph) -> None:
     assert [(each.room, each.share, each.grains) for each in report.rooms] == [("Hall", 0.75, 900)]
     assert (report.distance, report.duration, report.energy) == (40.0, 300.0, 2.5)
     assert report.missed == (MissedFloor(0.5, 1.0, 2.0, "Hall", "a chair"),)
+
+    exploring = roomba.robot.explore()
+    handle = wait_until(lambda: next(iter(mission.explorations.goals), None), 30.0)
+    handle.publish_feedback(ExploreFeedback("cleaning", 12.5, 0.5))
+    assert exploring.next_feedback(30.0) == 12.5
+    edge = OpenEdgeMessage(2.0, Point(1.0, 3.0, 0.0), OpenEdgeMessage.NOT_LOOKED_AT, "")
+    handle.set_succeeded(ExploreResult(message="it is open", known=34.5, open_edges=[edge]), "")
+    explored = wait_until(exploring.report, 30.0)
+    assert (explored.outcome, explored.message) == (ErrandOutcome.COMPLETED, "it is open")
+    assert explored.known == 34.5
+    assert explored.open_edges == (OpenEdge(2.0, 1.0, 3.0, EdgeReason.NOT_LOOKED_AT),)
 
     docking = roomba.robot.dock()
     handle = wait_until(lambda: next(iter(mission.docks.goals), None), 30.0)

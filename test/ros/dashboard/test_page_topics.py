@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from actionlib_msgs.msg import GoalStatus
 from fixtures.nodes.lockstep import Lockstep
 from geometry_msgs.msg import Point
 from roomba_robot.msg import (
     Carpet,
     CarpetArray,
     EmptyingStation,
+    ExploreActionResult,
+    ExploreResult,
     Localization,
     LowThing,
     LowThingArray,
 )
+from roomba_robot.msg import OpenEdge as OpenEdgeMessage
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Float32
 
+from roomba.client.protocol import ErrandOutcome
 from roomba.configuration.robot import RobotConfig
+from roomba.vocabulary import EdgeReason, OpenEdge
 from roomba_ros.dashboard.page_topics import PageTopics
 
 
@@ -56,3 +62,26 @@ def test_the_page_shows_the_zones_that_are_offered_as_they_are_told_last() -> No
         assert shown.home().felt_carpets == (thing.corners,)
         ros.publish("/low_things", LowThingArray())
         assert shown.home().low_things == ()
+
+
+def test_the_end_of_an_exploration_is_shown_with_what_was_mapped_and_where_that_ends() -> None:
+    with Lockstep().installed() as ros:
+        shown = PageTopics(RobotConfig())
+        shown.start()
+        assert shown.last is None
+        ros.publish("/explore/result", explored(GoalStatus.REJECTED))
+        assert shown.last is None
+        ros.publish("/explore/result", explored(GoalStatus.SUCCEEDED))
+        last = shown.last
+        assert last is not None
+        assert (last.outcome, last.mapped) == (ErrandOutcome.COMPLETED, 34.5)
+        assert last.open_edges == (OpenEdge(2.0, 1.0, 3.0, EdgeReason.NO_ECHO),)
+
+
+def explored(status: int) -> ExploreActionResult:
+    """Return the end of an exploration that left the map open in one place."""
+    edge = OpenEdgeMessage(2.0, Point(1.0, 3.0, 0.0), OpenEdgeMessage.NO_ECHO, "")
+    return ExploreActionResult(
+        status=GoalStatus(status=status),
+        result=ExploreResult(known=34.5, distance=20.0, duration=60.0, open_edges=[edge]),
+    )

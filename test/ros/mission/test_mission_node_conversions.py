@@ -8,6 +8,7 @@ import pytest
 from fixtures.robots.missions import HOME
 from geometry_msgs.msg import Point, Point32, Polygon
 from roomba_robot.msg import CleanGoal, Rectangle, Room, RoomArray
+from roomba_robot.msg import OpenEdge as OpenEdgeMessage
 from roomba_robot.msg import TimeSpent as TimeSpentMessage
 from roomba_robot.msg import Zone as ZoneMessage
 from sensor_msgs.msg import BatteryState
@@ -25,6 +26,7 @@ from roomba.mission.cleaning.request import (
     MissReason,
 )
 from roomba.mission.docking.beams import StationBeams
+from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery
 from roomba.perception.matching.surface_field import SurfaceField
@@ -32,11 +34,21 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 from roomba.time_spent import TimeSpent
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
+from roomba.vocabulary import (
+    CarpetWay,
+    CleanMode,
+    EdgeOrder,
+    EdgeReason,
+    FanLevel,
+    OpenEdge,
+    RoomWay,
+)
 from roomba_ros.convert.mission import (
     battery_of,
     coverage_message,
     dirt_message,
+    explored_message,
+    open_edges_of,
     outlines_of,
     request_of,
     result_message,
@@ -132,6 +144,39 @@ def test_a_result_says_what_was_missed_and_why() -> None:
     (area,) = message.missed
     assert (area.room, area.reason, area.at.y) == ("Hall", area.SHUT, 2.0)
     assert area.message == MissReason.SHUT.value
+
+
+EDGES = (
+    OpenEdge(3.0, 1.0, -2.0, EdgeReason.NO_ECHO),
+    OpenEdge(1.5, 4.0, 0.5, EdgeReason.NOT_LOOKED_AT),
+)
+
+
+def test_where_a_map_stays_open_is_told_of_explorations_and_of_cleans() -> None:
+    explored = explored_message(
+        ExploreResult(CleanOutcome.COMPLETED, "", 30.0, 9.0, 60.0, ((1.0, -2.0),), EDGES)
+    )
+    assert open_edges_of(explored.open_edges) == EDGES
+    edge = explored.open_edges[0]
+    assert (edge.reason, edge.message) == (edge.NO_ECHO, EdgeReason.NO_ECHO.value)
+    cleaned = result_message(
+        CleanResult(CleanOutcome.COMPLETED, "", 20.0, 20.0, 3.0, 99.0, 600.0, 4.5, open_edges=EDGES)
+    )
+    assert open_edges_of(cleaned.open_edges) == EDGES
+
+
+@pytest.mark.parametrize(
+    "spoiled",
+    [
+        OpenEdgeMessage(math.nan, Point(), 0, ""),
+        OpenEdgeMessage(-1.0, Point(), 0, ""),
+        OpenEdgeMessage(1.0, Point(math.inf, 0.0, 0.0), 0, ""),
+        OpenEdgeMessage(1.0, Point(0.0, math.nan, 0.0), 0, ""),
+        OpenEdgeMessage(1.0, Point(), 9, ""),
+    ],
+)
+def test_an_edge_that_makes_no_sense_is_left_out(spoiled: OpenEdgeMessage) -> None:
+    assert open_edges_of([spoiled]) == ()
 
 
 def test_the_battery_is_told_in_watt_hours() -> None:

@@ -6,9 +6,16 @@ import math
 
 import pytest
 
-from roomba.client.protocol import RequestRefusedError
-from roomba.client.view import PageLimits, battery_fills, battery_seconds, camera_angles
+from roomba.client.protocol import ErrandOutcome, ExploreReport, RequestRefusedError
+from roomba.client.view import (
+    PageLimits,
+    battery_fills,
+    battery_seconds,
+    camera_angles,
+    exploration_as_clean,
+)
 from roomba.geometry import Twist
+from roomba.vocabulary import EdgeReason, OpenEdge
 
 LIMITS = PageLimits(0.5, 4.0)
 
@@ -48,3 +55,12 @@ def test_a_top_speed_that_the_robot_cannot_keep_is_refused() -> None:
 
 def test_a_camera_looks_at_five_angles_from_the_left_to_the_right() -> None:
     assert camera_angles(30.0) == (30.0, 15.0, 0.0, -15.0, -30.0)
+
+
+def test_of_an_exploration_a_page_shows_what_was_mapped_and_where_that_ends() -> None:
+    edges = (OpenEdge(2.0, 1.0, 3.0, EdgeReason.NOT_LOOKED_AT),)
+    report = ExploreReport(ErrandOutcome.COMPLETED, "the map is open", 34.5, 30.0, 40.0, edges)
+    shown = exploration_as_clean(report)
+    assert (shown.outcome, shown.message) == (report.outcome, report.message)
+    assert (shown.mapped, shown.open_edges) == (34.5, edges)
+    assert (shown.distance, shown.duration, shown.wanted, shown.covered) == (30.0, 40.0, 0.0, 0.0)

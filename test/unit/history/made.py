@@ -14,6 +14,7 @@ from roomba.history.run import (
     Word,
 )
 from roomba.time_spent import TimeSpent
+from roomba.vocabulary import EdgeReason, OpenEdge
 
 
 def made_figures() -> RunFigures:
@@ -33,6 +34,7 @@ def made_figures() -> RunFigures:
         float("nan"),
         (MissedFloor(1.0, 3.5, 2.5, "hall", "a thing <stood> in the way"),),
         TimeSpent(least=18.5, straight=20.0, turning=12.0, station=20.0, waiting=8.0),
+        (OpenEdge(1.5, 4.0, 1.0, EdgeReason.NO_ECHO),),
     )
 
 

@@ -139,17 +139,24 @@ def test_runs_of_an_older_program_come_back_from_a_damaged_database(
     assert history.set_aside is not None
 
 
-def test_rows_of_a_journal_from_before_times_were_counted_come_back(
-    tmp_path: Path, figures: RunFigures
-) -> None:
+def test_an_exploration_is_kept_with_what_it_mapped(tmp_path: Path, figures: RunFigures) -> None:
+    history = History(tmp_path)
+    explored = replace(figures, kind="explore", mapped=34.5)
+    history.add(explored)
+    (kept,) = history.runs()
+    assert repr(kept.figures) == repr(explored)
+
+
+def test_rows_of_an_older_journal_come_back(tmp_path: Path, figures: RunFigures) -> None:
     history = History(tmp_path)
     history.add(figures)
     (journal,) = tmp_path.glob("*.journal")
     (row,) = read_lines(journal)
-    write_lines(journal, [{name: value for name, value in row.items() if name != "times"}])
+    added = ("times", "mapped", "open_edges")
+    write_lines(journal, [{name: value for name, value in row.items() if name not in added}])
     history.path.write_bytes(b"no database")
     (kept,) = history.runs()
-    assert repr(kept.figures) == repr(replace(figures, times=TimeSpent()))
+    assert repr(kept.figures) == repr(replace(figures, times=TimeSpent(), open_edges=()))
 
 
 def test_a_damaged_journal_costs_nothing_while_the_database_is_whole(

@@ -11,11 +11,13 @@ import numpy as np
 import pytest
 from unit.history.seen import HOME, REPORT, SOURCE, layer, view
 
-from roomba.client.protocol import CleanReport, ErrandOutcome
+from roomba.client.protocol import CleanReport, ErrandOutcome, ExploreReport
+from roomba.client.view import exploration_as_clean
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper, RunRecorder
 from roomba.history.run import RunFigures, RunRecording
 from roomba.history.unfinished import UnfinishedFile
+from roomba.vocabulary import EdgeReason, OpenEdge
 
 
 def run_of(recorder: RunRecorder, report: CleanReport) -> Iterator[tuple[RunFigures, RunRecording]]:
@@ -41,6 +43,14 @@ def test_one_run_is_one_record() -> None:
     assert set(recording.column("battery")) == {-1.0}
     assert [word.phase for word in recording.words] == ["cleaning", "docked"]
     assert set(recording.layers) == {"map", "coverage"}
+
+
+def test_an_exploration_is_kept_with_what_it_mapped_and_where_that_ends() -> None:
+    edges = (OpenEdge(2.0, 1.0, 3.0, EdgeReason.NOT_LOOKED_AT),)
+    explored = ExploreReport(ErrandOutcome.COMPLETED, "", 34.5, 30.0, 40.0, edges)
+    ((figures, _),) = run_of(RunRecorder(SOURCE), exploration_as_clean(explored))
+    assert (figures.mapped, figures.open_edges) == (34.5, edges)
+    assert (figures.report.mapped, figures.report.open_edges) == (34.5, edges)
 
 
 def test_dirt_that_the_robot_cannot_tell_hinders_nothing(tmp_path: Path) -> None:

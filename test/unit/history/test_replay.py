@@ -16,6 +16,7 @@ from roomba.history.replay import RecordedRobot
 from roomba.history.run import TRACE, RunFigures, RunRecording
 from roomba.history.run_file import RunFileError
 from roomba.history.unfinished import INTERRUPTED, WHY
+from roomba.vocabulary import EdgeReason
 
 
 @pytest.fixture
@@ -47,6 +48,7 @@ def test_it_is_where_it_was_at_the_time(robot: RecordedRobot) -> None:
     assert last is not None
     assert last.outcome.value == "completed"
     assert last.missed[0].room == "hall"
+    assert last.open_edges[0].reason is EdgeReason.NO_ECHO
 
 
 def test_a_run_that_was_interrupted_is_shown_to_its_end(

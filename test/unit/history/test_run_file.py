@@ -21,6 +21,7 @@ def test_a_run_is_read_back(tmp_path: Path, figures: RunFigures, recording: RunR
     write_run(figures, recording, path)
     read, recorded = read_run(path)
     assert read.missed == figures.missed
+    assert read.open_edges == figures.open_edges
     assert read.source == figures.source
     assert np.array_equal(recorded.trace, recording.trace)
     assert recorded.words == recording.words

@@ -21,11 +21,14 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Errand, MissionState
 from roomba.perception.swept.dirt_map import DirtMap
-from roomba.vocabulary import Phase
+from roomba.vocabulary import EdgeReason, OpenEdge, Phase
 
 SITE = PlanningContext(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
 SENSES = Senses(100.0, Pose(1.0, 0.6, 0.0))
 CLEANING = MissionState(Phase.CLEANING, Errand.CLEAN)
+
+
+EDGE = OpenEdge(2.0, 1.0, -3.0, EdgeReason.NO_ECHO)
 
 
 def begin(request: CleanRequest) -> Cleaning:
@@ -38,7 +41,7 @@ def job() -> Job:
     job.begin_clean(begin(CleanRequest(passes=2)), Senses(40.0, SENSES.pose))
     job.ledger.distance, job.ledger.energy, job.ledger.dirt = 12.0, 0.5, 2.0
     job.times.restore({"turning": 20.0, "fastest": 0.3})
-    job.not_seen, job.rough_way = "the map is open for 2.0 m", 3.0
+    job.open_edges, job.rough_way = (EDGE,), 3.0
     return job
 
 
@@ -59,16 +62,16 @@ def test_all_that_matters_comes_back() -> None:
     assert again.outcome is CleanOutcome.COMPLETED
     assert (again.ledger.distance, again.ledger.energy, again.ledger.dirt) == (12.0, 0.5, 2.0)
     assert again.times.values() == job().times.values()
-    assert (again.not_seen, again.rough_way) == ("the map is open for 2.0 m", 3.0)
+    assert (again.open_edges, again.rough_way) == ((EDGE,), 3.0)
     # By a clock that began anew.
     assert again.duration(now) == pytest.approx(60.0)
 
 
 def test_a_checkpoint_of_an_older_program_goes_on() -> None:
     older = values()
-    del older["not_seen"], older["rough_way"]
+    del older["open_edges"], older["rough_way"]
     found = remembered(older, begin, MissionConfig().exploring)
-    assert (found.not_seen, found.rough_way) == ("", 0.0)
+    assert (found.open_edges, found.rough_way) == ((), 0.0)
 
 
 @pytest.mark.parametrize("errand", [Errand.NONE, Errand.UNDOCK])

@@ -16,7 +16,7 @@ from roomba.client.protocol import (
     MissedFloor,
 )
 from roomba.time_spent import NOT_COUNTED, TimeSpent
-from roomba.vocabulary import Phase
+from roomba.vocabulary import OpenEdge, Phase
 
 if TYPE_CHECKING:
     from roomba.client.clock import Clock
@@ -49,6 +49,7 @@ class ErrandScript:
     after: float = math.inf
     message: str = ""
     missed: tuple[MissedFloor, ...] = ()
+    open_edges: tuple[OpenEdge, ...] = ()
     freezes: bool = False
 
 
@@ -260,6 +261,7 @@ class FakeClean(FakeErrand):
             energy=0.01 * self.worked if is_known else math.nan,
             missed=self._script.missed,
             times=self._times() if is_known else NOT_COUNTED,
+            open_edges=self._script.open_edges,
         )
 
     def _times(self) -> TimeSpent:
@@ -284,7 +286,8 @@ class FakeExploring(FakeErrand):
             return None
         is_known = outcome is not ErrandOutcome.DISCONNECTED
         way = 0.25 * self.worked if is_known else math.nan
-        return ExploreReport(outcome, self.reason, self._known, way, self.elapsed)
+        edges = self._script.open_edges
+        return ExploreReport(outcome, self.reason, self._known, way, self.elapsed, edges)
 
     @property
     def _known(self) -> float:

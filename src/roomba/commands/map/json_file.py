@@ -3,8 +3,9 @@
 Version 1. SI units as the names say, map frame, angles counter-clockwise, shares 0..1. ``error`` is
 of the robot's map against the truth, ``by_odometry`` of the one that wheels and gyro alone make of
 the same scans; see :class:`~roomba.commands.map.map_error.MapError`. ``trajectory`` has rows t, x,
-y, theta, ten a second: true poses; ``believed`` what the robot took them to be. ``wall_s`` is what
-it took on the clock; all else is the same for the same trial, bit for bit.
+y, theta, ten a second: true poses; ``believed`` what the robot took them to be. ``unseen`` are
+places that were given up, ``open_edges`` the longer edges that the map still has there. ``wall_s``
+is what it took on the clock; all else is the same for the same trial, bit for bit.
 """
 
 from __future__ import annotations
@@ -39,6 +40,15 @@ def run_as_json(run: MapRun) -> dict[str, Any]:
         "distance_m": round(result.distance, 3),
         "known_m2": round(result.known, 4),
         "unseen": [[round(x, 3), round(y, 3)] for x, y in result.unseen],
+        "open_edges": [
+            {
+                "length_m": round(edge.length, 3),
+                "x": round(edge.x, 3),
+                "y": round(edge.y, 3),
+                "reason": edge.reason.value,
+            }
+            for edge in result.open_edges
+        ],
         "hits": run.record.hits,
         "wall_s": round(run.record.wall, 3),
         "times_real_time": round(run.times_real_time, 1),

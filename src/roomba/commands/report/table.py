@@ -156,13 +156,16 @@ def weeks_table(runs: Sequence[KeptRun]) -> Table:
 
 
 def run_table(run: KeptRun) -> Table:
-    """Return the figures of one run, and what it missed."""
+    """Return the figures of one run, what it missed, and where its map stays open."""
     rows = [*words.figure_rows(run.figures)]
     if run.figures.message:
         rows.append(("Message", run.figures.message))
     for miss in run.figures.missed:
         where = f" in {miss.room}" if miss.room else ""
         rows.append(("Left", f"{miss.area:.2f} m²{where}: {miss.reason}"))
+    for edge in run.figures.open_edges:
+        at = words.place(edge.x, edge.y)
+        rows.append(("Open", f"{edge.length:.1f} m at {at}: {edge.reason.value}"))
     if run.figures.source.repeat:
         rows.append(("Repeat", run.figures.source.repeat))
     return named_table(rows)

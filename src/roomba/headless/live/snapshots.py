@@ -128,8 +128,7 @@ class Snapshots:
         if ended.clean is not None:
             self._last = ended.clean
         if ended.exploration is not None:
-            end = ended.exploration
-            self._last = exploration_as_clean(end.outcome, end.message, end.distance, end.duration)
+            self._last = exploration_as_clean(ended.exploration)
         if exploration is not None and exploration.is_completed:
             robot.brain.finish_map()
 

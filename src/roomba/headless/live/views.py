@@ -220,6 +220,7 @@ def clean_report(result: CleanResult) -> CleanReport:
         ),
         result.times,
         result.rooms,
+        result.open_edges,
     )
 
 
@@ -231,4 +232,5 @@ def exploration_report(result: ExploreResult) -> ExploreReport:
         result.known,
         result.distance,
         result.duration,
+        result.open_edges,
     )

@@ -19,7 +19,7 @@ from roomba.history.report.picture import floor_svg
 from roomba.history.report.style import STYLE
 from roomba.history.run import REQUEST, RunFigures, RunRecording
 from roomba.history.totals import totals_by_week
-from roomba.vocabulary import places_told
+from roomba.vocabulary import OpenEdge, places_told
 
 _RATE_WINDOW: Final = 20.0
 """s over which the rate of dirt is the mean."""
@@ -48,6 +48,7 @@ def report_of(run: KeptRun, recording: RunRecording | None, others: Iterable[Kep
         + _times(figures)
         + _floor(figures, recording)
         + _missed(figures.missed)
+        + _open_edges(figures.open_edges)
         + _charts(recording)
         + _over_time([other.figures for other in others])
         + _again(figures),
@@ -147,6 +148,15 @@ def _missed(missed: Sequence[MissedFloor]) -> str:
         for number, miss in enumerate(missed, 1)
     )
     return _section("Missed", _table(("Number", "Room", "Area", "Why"), rows, "reasons"))
+
+
+def _open_edges(edges: Sequence[OpenEdge]) -> str:
+    rows = [
+        (words.number(edge.length, 1, "m"), words.place(edge.x, edge.y), edge.reason.value)
+        for edge in edges
+    ]
+    table = _table(("Length", "Place, m", "Why"), rows, "reasons") if rows else ""
+    return _section("Where the map stays open", table)
 
 
 def _charts(recording: RunRecording | None) -> str:

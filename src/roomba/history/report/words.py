@@ -28,6 +28,11 @@ def area(value: float) -> str:
     return number(value, 2, "m²") if not value < _SMALLEST else f"< {_SMALLEST} m²"
 
 
+def place(x: float, y: float) -> str:
+    """Return a place, m."""
+    return f"({x:.1f}, {y:.1f})"
+
+
 def share(value: float) -> str:
     """Return a share, 0..1, in percent."""
     return number(100.0 * value, 1, "%")
@@ -69,6 +74,7 @@ def time_rows(run: RunFigures) -> list[tuple[str, str, str]]:
 def figure_rows(run: RunFigures) -> list[tuple[str, str]]:
     """Return what a run achieved: names, and numbers with units."""
     source = run.source
+    mapped = [("Mapped", area(run.mapped))] if math.isfinite(run.mapped) else []
     return [
         ("Began", moment(run.began)),
         ("Home", source.home),
@@ -78,6 +84,7 @@ def figure_rows(run: RunFigures) -> list[tuple[str, str]]:
         ("Clean", f"{number(run.covered, 2, 'm²')} of {number(run.wanted, 2, 'm²')}"),
         ("Share", share(run.fraction)),
         ("Missed", places_told(len(run.missed))),
+        *mapped,
         ("Time", duration(run.duration)),
         ("Rate", rate_of(run)),
         ("Way", number(run.distance, 1, "m")),

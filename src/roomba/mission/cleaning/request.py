@@ -16,6 +16,7 @@ from roomba.vocabulary import (
     CleanMode,
     EdgeOrder,
     FanLevel,
+    OpenEdge,
     RoomDirt,
     RoomWay,
     fault_of_name,
@@ -134,7 +135,10 @@ class Missed:
 
 @dataclass(frozen=True, slots=True)
 class CleanResult:
-    """What a clean achieved: areas in m2, dirt in g, m, s of robot time, Wh."""
+    """What a clean achieved: areas in m2, dirt in g, m, s of robot time, Wh.
+
+    ``open_edges`` are where the map that it made on the way still ends, the longest first.
+    """
 
     outcome: CleanOutcome
     message: str
@@ -147,6 +151,7 @@ class CleanResult:
     missed: tuple[Missed, ...] = field(default=())
     times: TimeSpent = NOT_COUNTED
     rooms: tuple[RoomDirt, ...] = ()
+    open_edges: tuple[OpenEdge, ...] = ()
 
     @property
     def fraction(self) -> float:

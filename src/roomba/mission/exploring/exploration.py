@@ -18,11 +18,12 @@ from roomba.configuration.mission import ExploringConfig
 from roomba.geometry import Pose, RoundObstacle
 from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome
-from roomba.mission.exploring.open_edges import open_edges, what_is_not_seen
+from roomba.mission.exploring.open_edges import open_edges
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.frontiers.frontiers import Frontier, FrontierChoice, frontiers, is_frontier
 from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError
+from roomba.vocabulary import OpenEdge
 
 _MOST_TRIES: Final = 12
 """Frontiers to which a way is planned before the next tick has its turn."""
@@ -33,6 +34,7 @@ class ExploreResult:
     """How an exploration ended: the floor that is ``known``, m2, ``distance`` m, ``duration`` s.
 
     ``unseen`` are frontiers that were given up: no place from which they are seen can be reached.
+    ``open_edges`` are the longer ones that the map still has, the longest first.
     """
 
     outcome: CleanOutcome
@@ -41,6 +43,7 @@ class ExploreResult:
     distance: float
     duration: float
     unseen: tuple[Point, ...] = ()
+    open_edges: tuple[OpenEdge, ...] = ()
 
     @property
     def is_completed(self) -> bool:
@@ -197,9 +200,9 @@ class Exploration:
         """Return the frontiers that it gave up and that are some on this map, which is newer."""
         return tuple(point for point in self.unseen if self._is_left(occupancy, point))
 
-    def what_is_not_seen(self, occupancy: OccupancyMap) -> str:
-        """Return where this newer map still ends, and why; empty where it ends nowhere."""
-        return what_is_not_seen(open_edges(occupancy, self.unseen, self._looked_at, self._config))
+    def open_edges(self, occupancy: OccupancyMap) -> tuple[OpenEdge, ...]:
+        """Return where this newer map still ends, the longest edge first."""
+        return open_edges(occupancy, self.unseen, self._looked_at, self._config)
 
     def wants_another(self, occupancy: OccupancyMap) -> bool:
         """Whether nothing is left of the frontier that it is on its way to, as the map is now."""

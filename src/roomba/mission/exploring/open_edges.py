@@ -4,30 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from enum import Enum
-from typing import Final, NamedTuple
+from typing import Final
 
 from roomba.configuration.mission import ExploringConfig
 from roomba.grid import OccupancyMap
 from roomba.planning.frontiers.frontiers import lengths_near
 from roomba.planning.path.costmap import Point
+from roomba.vocabulary import EdgeReason, OpenEdge
 
 _MOST_TOLD: Final = 3
-
-
-class EdgeReason(Enum):
-    """Why the map goes on no further."""
-
-    NOT_LOOKED_AT = "it got to no place from which to look there"
-    NO_ECHO = "it looked there and the lidar met nothing: too far away, black, or of glass"
-
-
-class OpenEdge(NamedTuple):
-    """A frontier that was given up: a place on it, m, map frame, and its length, m."""
-
-    place: Point
-    length: float
-    reason: EdgeReason
 
 
 def open_edges(
@@ -35,7 +20,7 @@ def open_edges(
     given_up: Sequence[Point],
     looked_at: Collection[Point],
     config: ExploringConfig,
-) -> list[OpenEdge]:
+) -> tuple[OpenEdge, ...]:
     """Return the longer frontiers of a map at places that were ``given_up``, the longest first.
 
     Some of the places were ``looked_at``. One frontier is told once. Those shorter than
@@ -45,11 +30,11 @@ def open_edges(
     places = sorted(given_up, key=lambda place: place not in looked_at)
     lengths = lengths_near(occupancy, places, config.frontier_radius, config.least_unknown)
     edges = [
-        OpenEdge(place, length, _reason(place, looked_at))
+        OpenEdge(length, *place, _reason(place, looked_at))
         for place, length in zip(places, lengths.tolist(), strict=True)
         if length >= config.open_edge
     ]
-    return sorted(edges, key=lambda edge: -edge.length)
+    return tuple(sorted(edges, key=lambda edge: -edge.length))
 
 
 def what_is_not_seen(edges: Sequence[OpenEdge]) -> str:
@@ -57,8 +42,8 @@ def what_is_not_seen(edges: Sequence[OpenEdge]) -> str:
     if not edges:
         return ""
     told = [
-        f"for {length:.1f} m at ({x:.1f}, {y:.1f}) ({reason.value})"
-        for (x, y), length, reason in edges[:_MOST_TOLD]
+        f"for {edge.length:.1f} m at ({edge.x:.1f}, {edge.y:.1f}) ({edge.reason.value})"
+        for edge in edges[:_MOST_TOLD]
     ]
     rest = edges[_MOST_TOLD:]
     if rest:

@@ -14,6 +14,7 @@ from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanRes
 from roomba.mission.cleaning.room_dirt import dirt_of_rooms
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.exploring.exploration import Exploration, ExploreResult
+from roomba.mission.exploring.open_edges import what_is_not_seen
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.dust_bin import DustBin
@@ -21,6 +22,7 @@ from roomba.mission.phases.energy import EnergyLedger
 from roomba.mission.phases.time_ledger import TimeLedger
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.swept.dirt_map import DirtMap
+from roomba.vocabulary import OpenEdge
 
 _DOUBTFUL: Final = 0.05
 """Share of its way; from more on it is told that its place was known roughly."""
@@ -49,8 +51,8 @@ class Job:
         self._is_told = False
         self._cleaned: CleanResult | None = None
         self._explored: ExploreResult | None = None
-        self.not_seen = ""
-        """Where the map was still open when there was nothing left to look for, and why."""
+        self.open_edges: tuple[OpenEdge, ...] = ()
+        """Where the map was still open when there was nothing left to look for."""
         self.rough_way = 0.0
         """m; driven while it swept and its place was known roughly."""
 
@@ -72,7 +74,7 @@ class Job:
         self._begin(senses)
 
     def _begin(self, senses: Senses) -> None:
-        self.outcome, self._is_told, self.not_seen = None, False, ""
+        self.outcome, self._is_told, self.open_edges = None, False, ()
         self.rough_way = 0.0
         self.ledger.begin(senses)
         self.times.begin()
@@ -82,7 +84,7 @@ class Job:
         """On the whole map, as it is ``known``, a clean has nothing left to look for."""
         if self.exploration is None or self.cleaning is None or self.cleaning.explores:
             return
-        self.not_seen = self.exploration.what_is_not_seen(known)
+        self.open_edges = self.exploration.open_edges(known)
         self.exploration = None
 
     def take_up(self) -> None:
@@ -169,8 +171,9 @@ class Job:
                 self.cleaning, outcome, message, context, obstacles, senses
             )
         elif self.exploration is not None:
+            edges = self.exploration.open_edges(context.known)
             if outcome is CleanOutcome.COMPLETED:
-                message = message or self.exploration.what_is_not_seen(context.known)
+                message = message or what_is_not_seen(edges)
             self._explored = ExploreResult(
                 outcome,
                 message,
@@ -178,6 +181,7 @@ class Job:
                 self.ledger.distance,
                 self.duration(senses.now),
                 self.exploration.still_unseen(context.known),
+                edges,
             )
         self._is_told = True
 
@@ -197,7 +201,7 @@ class Job:
         if outcome is CleanOutcome.COMPLETED:
             reasons = (
                 message or what_is_not_clean(wanted, covered, missed),
-                self.not_seen,
+                what_is_not_seen(self.open_edges),
                 self._what_is_doubtful(),
             )
             message = "; ".join(filter(None, reasons))
@@ -213,6 +217,7 @@ class Job:
             missed=missed,
             times=self.times.spent(cleaning.mean_passes * covered, context.tool_width),
             rooms=dirt_of_rooms(cleaning.ledger.clean, context, self.dirt),
+            open_edges=self.open_edges,
         )
 
     def _what_is_doubtful(self) -> str:

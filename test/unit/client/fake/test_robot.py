@@ -29,7 +29,7 @@ from roomba.client.protocol import (
     WalkOutcome,
 )
 from roomba.mission.cleaning import request as clean_request
-from roomba.vocabulary import CleanMode
+from roomba.vocabulary import CleanMode, EdgeReason, OpenEdge
 
 COORDINATE = st.floats(min_value=-100.0, max_value=100.0)
 
@@ -339,6 +339,18 @@ def test_errands_that_end_badly() -> None:
     frozen = FakeRobot(errands=[ErrandScript(after=2.0, freezes=True)]).clean()
     assert [frozen.next_feedback(50.0) is None for _ in range(3)] == [False, False, True]
     assert frozen.report() is None
+
+
+def test_where_a_map_stays_open_is_told_at_the_end() -> None:
+    edges = (OpenEdge(2.0, 1.0, 3.0, EdgeReason.NO_ECHO),)
+    script = ErrandScript(open_edges=edges)
+    exploring = FakeRobot(errands=[script]).explore()
+    while exploring.next_feedback(100.0) is not None:
+        pass
+    report = exploring.report()
+    assert report is not None
+    assert report.open_edges == edges
+    assert ended(FakeRobot(errands=[script]).clean()).open_edges == edges
 
 
 def test_a_silent_vacuum_uses_up_the_timeout() -> None:

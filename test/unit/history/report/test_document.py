@@ -12,6 +12,7 @@ import pytest
 from roomba.history.database import KeptRun
 from roomba.history.report.document import comparison_of, report_of
 from roomba.history.run import RunFigures, RunRecording
+from roomba.vocabulary import EdgeReason
 
 VOID = ("meta", "link", "br", "img", "input")
 
@@ -74,6 +75,17 @@ def test_the_figures_are_those_of_the_run(kept: KeptRun, recording: RunRecording
     assert told["Energy"] == "–"
     assert told["Seed"] == "7"
     assert ["1", "hall", "1.00 m²", "a thing <stood> in the way"] in read.rows
+    assert "Mapped" not in told
+    assert ["1.5 m", "(4.0, 1.0)", EdgeReason.NO_ECHO.value] in read.rows
+
+
+def test_of_an_exploration_it_tells_what_was_mapped_and_nothing_open_where_nothing_is(
+    kept: KeptRun, recording: RunRecording
+) -> None:
+    explored = replace(kept.figures, kind="explore", mapped=34.5, open_edges=())
+    document = report_of(replace(kept, figures=explored), recording)
+    assert ["Mapped", "34.50 m²"] in Read(document).rows
+    assert "stays open" not in document
 
 
 def test_it_stands_alone(kept: KeptRun, recording: RunRecording) -> None:

@@ -11,7 +11,8 @@ import pytest
 from roomba.configuration.mission import MissionConfig
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.mission.exploring.exploration import Exploration
-from roomba.mission.exploring.open_edges import EdgeReason, OpenEdge, open_edges, what_is_not_seen
+from roomba.mission.exploring.open_edges import open_edges, what_is_not_seen
+from roomba.vocabulary import EdgeReason, OpenEdge
 
 CONFIG = MissionConfig().exploring
 CELL = 0.05
@@ -34,7 +35,7 @@ WIDE, DOOR = (4.0, 2.0), (4.0, 0.5)
 
 def test_open_edges_are_told_with_their_length_and_reason_the_longest_first() -> None:
     edges = open_edges(room((0.1, 0.9), (1.0, 3.0)), [DOOR, WIDE], {WIDE}, CONFIG)
-    assert [edge.place for edge in edges] == [WIDE, DOOR]
+    assert [(edge.x, edge.y) for edge in edges] == [WIDE, DOOR]
     assert [edge.length for edge in edges] == pytest.approx([2.0, 0.8], abs=2.1 * CELL)
     assert [edge.reason for edge in edges] == [EdgeReason.NO_ECHO, EdgeReason.NOT_LOOKED_AT]
 
@@ -42,14 +43,14 @@ def test_open_edges_are_told_with_their_length_and_reason_the_longest_first() ->
 def test_an_edge_that_was_given_up_in_several_places_is_one() -> None:
     below = (4.0, 1.2)
     (edge,) = open_edges(room((1.0, 3.0)), [below, WIDE], {WIDE}, CONFIG)
-    assert edge.place == WIDE
+    assert (edge.x, edge.y) == WIDE
     assert edge.reason is EdgeReason.NO_ECHO
 
 
 def test_what_is_closed_by_now_or_short_is_not_told() -> None:
-    assert open_edges(room(), [WIDE], {WIDE}, CONFIG) == []
-    assert open_edges(room((1.8, 2.2)), [WIDE], {WIDE}, CONFIG) == []
-    assert open_edges(room((1.0, 3.0)), [], [], CONFIG) == []
+    assert open_edges(room(), [WIDE], {WIDE}, CONFIG) == ()
+    assert open_edges(room((1.8, 2.2)), [WIDE], {WIDE}, CONFIG) == ()
+    assert open_edges(room((1.0, 3.0)), [], [], CONFIG) == ()
 
 
 def test_what_was_looked_at_once_stays_so_when_it_is_given_up_for_another_reason() -> None:
@@ -59,16 +60,14 @@ def test_what_was_looked_at_once_stays_so_when_it_is_given_up_for_another_reason
     exploration.give_up(DOOR)
     again = Exploration.of(json.loads(json.dumps(exploration.values())), CONFIG)
     for each in (exploration, again):
-        told = each.what_is_not_seen(room((0.1, 0.9), (1.0, 3.0)))
+        told = what_is_not_seen(each.open_edges(room((0.1, 0.9), (1.0, 3.0))))
         assert re.search(r"at \(4.0, 2.0\) \(it looked there", told)
         assert re.search(r"at \(4.0, 0.5\) \(it got to no place", told)
 
 
 def test_it_is_told_in_a_sentence() -> None:
     assert what_is_not_seen([]) == ""
-    edges = [
-        OpenEdge((1.0, 2.0), 3.0 - 0.5 * index, EdgeReason.NOT_LOOKED_AT) for index in range(5)
-    ]
+    edges = [OpenEdge(3.0 - 0.5 * index, 1.0, 2.0, EdgeReason.NOT_LOOKED_AT) for index in range(5)]
     assert what_is_not_seen(edges[:1]) == (
         "the map is open for 3.0 m at (1.0, 2.0) (it got to no place from which to look there)"
     )

@@ -25,6 +25,7 @@ from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
+from roomba.vocabulary import EdgeReason
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
 SITE = PlanningContext(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())
@@ -193,6 +194,8 @@ def test_an_exploration_that_left_the_map_open_tells_where() -> None:
     assert result is not None
     assert result.message.startswith("the map is open for ")
     assert "the lidar met nothing" in result.message
+    (edge,) = result.open_edges
+    assert ((edge.x, edge.y), edge.reason) == (EDGE, EdgeReason.NO_ECHO)
 
 
 def test_a_clean_of_a_home_that_it_explored_tells_where_the_map_stayed_open() -> None:
@@ -206,3 +209,5 @@ def test_a_clean_of_a_home_that_it_explored_tells_where_the_map_stayed_open() ->
     assert result is not None
     assert "the map is open for " in result.message
     assert "it got to no place from which to look there" in result.message
+    (edge,) = result.open_edges
+    assert ((edge.x, edge.y), edge.reason) == (EDGE, EdgeReason.NOT_LOOKED_AT)

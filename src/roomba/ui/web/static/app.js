@@ -11,6 +11,7 @@ import * as keys from "./panels/keys.js";
 import * as lowThings from "./panels/low_things.js";
 import * as maps from "./panels/maps.js";
 import { tapped } from "./panels/offer.js";
+import * as openEdges from "./panels/open_edges.js";
 import * as opened from "./panels/opened.js";
 import * as plans from "./panels/plans.js";
 import * as play from "./panels/play.js";
@@ -27,5 +28,5 @@ import { connect } from "./link.js";
 
 draw.begin();
 gestures.begin({ tapped, drawn: zones.drawn, changed: zones.change, mayCarry: play.mayCarry, carried: play.carried });
-for (const panel of [opened, status, stop, card, actions, rooms, queue, zones, drive, play, tools, keys, replay, maps, lowThings, plans, upkeep, camera, charts, history, sheet]) panel.begin();
+for (const panel of [opened, status, openEdges, stop, card, actions, rooms, queue, zones, drive, play, tools, keys, replay, maps, lowThings, plans, upkeep, camera, charts, history, sheet]) panel.begin();
 connect();

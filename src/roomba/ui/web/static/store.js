@@ -3,8 +3,8 @@
 /** @type {Record<string, any>} */
 const values = {
   link: "connecting", age: 0, state: null, home: null, limits: null, mayChange: null, hasHistory: false, hasCamera: false, hasMaps: false,
-  trail: [], chosen: [], hows: {}, drawing: null, zone: null, carried: null,
-  layers: { coverage: true, trail: true, path: true, rooms: true, furniture: true, zones: true, carpets: true, scan: false, dirt: false, truth: false },
+  trail: [], chosen: [], hows: {}, drawing: null, zone: null, edge: null, carried: null,
+  layers: { coverage: true, trail: true, path: true, rooms: true, furniture: true, zones: true, carpets: true, edges: true, scan: false, dirt: false, truth: false },
 };
 const listeners = new Map();
 
@@ -25,6 +25,9 @@ export function on(names, listener) {
   }
   listener();
 }
+
+/** Return where the map of the last run stays open. */
+export function openEdges() { return get("state")?.last?.open_edges ?? []; }
 
 /** Whether the server is there. */
 export function isConnected() { return ["live", "stale"].includes(get("link")); }

@@ -6,12 +6,14 @@ const MOVES = 0.02; // m/s
 const FULL = 0.995; // of a battery
 const NOTHING = 0.01; // of the floor that was wanted
 const MOST_TOLD = 3; // rooms that a sentence lists
+const OPEN = "the map is open"; // how a message begins that tells of open edges
 const UNTOLD = ["stopped", "refused", "disconnected"]; // ends that were wished for, or are told elsewhere
 const EARLY = { interrupted: "interrupted", "not docked": "done, but not docked" }; // how a run ended, where it did not merely end early
 const HELPS = [ // what is to be done: by what stands in the reason
   ["a door is shut", "Open it or clear the way, then clean there again."],
   ["something stands there", "Take it away, then clean there again."],
   ["the program that kept this run ended", "Clean again what is left."],
+  ["it got to no place from which to look there", "Open doors and clear the way before it makes a map anew."],
 ];
 const TROUBLES = [ // of a robot on a line: how its message begins, and the headline
   ["the robot cannot be reached", "Cannot reach the robot"],
@@ -107,14 +109,15 @@ export function duration(seconds) {
   return `${Math.floor(shown / 60)} h ${shown % 60} min`;
 }
 
-/** Return how the last run ended. */
+/** Return how the last run ended; what the map's open edges say is listed beside it. */
 export function lastRun(report) {
-  const parts = [title(report.outcome)];
+  const parts = [title(report.outcome)], isListed = report.open_edges?.length && report.message.startsWith(OPEN);
+  if (report.mapped) parts.push(`${report.mapped.toFixed(1)} m² mapped`);
   if (report.wanted) parts.push(`${report.covered.toFixed(1)} of ${report.wanted.toFixed(1)} m²`);
   if (report.duration) parts.push(duration(report.duration));
   if (report.wanted && report.rate) parts.push(`${report.rate.toFixed(2)} m² a minute`);
   if (report.dirt) parts.push(`${report.dirt.toFixed(1)} g of dirt`);
-  return parts.join(" · ") + (report.message ? `. ${sentence(report.message)}` : "");
+  return parts.join(" · ") + (report.message && !isListed ? `. ${sentence(report.message)}` : "");
 }
 
 /** Return why a clean achieved nothing; empty when it was told to stop, or achieved something. */
@@ -131,9 +134,24 @@ export function shortfall(report) {
   return [text, HELPS.find(([reason]) => text.toLowerCase().includes(reason))?.[1]].filter(Boolean).join(" ");
 }
 
+/** Return by which letter an open edge of the map is called: rooms have numbers. */
+export function letter(index) { return index < 26 ? String.fromCharCode(65 + index) : String(index + 1); }
+
+/** Return how an open edge is told. */
+export function edgeText({ length, reason }) { return `${length.toFixed(1)} m: ${reason}`; }
+
+/** Return where the map stays open after an exploration, and why; empty where it is whole. */
+function openMap({ mapped, open_edges: edges }) {
+  if (!mapped || !edges.length) return "";
+  const reasons = new Set(edges.map((edge) => edge.reason)), length = edges.reduce((sum, edge) => sum + edge.length, 0);
+  const where = `The map stays open for ${length.toFixed(1)} m in ${edges.length === 1 ? "one place" : `${edges.length} places`}`;
+  return `${where}: ${reasons.size === 1 ? sentence(edges[0].reason).replace(/^./, (first) => first.toLowerCase()) : "“Last run” lists why."}`;
+}
+
 /** Return what of a run that came to its end the robot finds worth telling: where floor was left, and why. */
-function notAll({ covered, wanted, message, missed }) {
-  if (!message || !wanted) return "";
+function notAll({ covered, wanted, message, missed, ...report }) {
+  if (!wanted) return openMap(report);
+  if (!message) return "";
   const [{ reason, room } = {}] = missed, rooms = [...new Set(missed.filter((miss) => miss.reason === reason && miss.room).map((miss) => miss.room))];
   const more = rooms.length > MOST_TOLD ? ` and ${rooms.length - MOST_TOLD} more` : "";
   const why = room ? `${rooms.slice(0, MOST_TOLD).map(title).join(", ")}${more}: ${reason}` : message;

@@ -1,5 +1,5 @@
 /** Puts the map together: layers that are drawn anew only when their data changed, and what moves. */
-import { get } from "../store.js";
+import { get, openEdges } from "../store.js";
 import { grid, repaint, version } from "./grids.js";
 import { drawDraft, drawState, drawTrail } from "./moving.js";
 import { palette } from "./palette.js";
@@ -21,7 +21,7 @@ let colours = null; // those by which all is drawn
 const LAYERS = [
   { when: () => [version("map"), get("home")?.version], paint: drawGround },
   { when: () => [version("coverage"), version("dirt"), version("true dirt"), get("trail").length, get("trail").at(-1)], paint: drawSwept },
-  { when: () => [get("home")?.version, get("chosen"), JSON.stringify(get("zone"))], paint: drawThings },
+  { when: () => [get("home")?.version, get("chosen"), JSON.stringify(get("zone")), JSON.stringify(openEdges()), get("edge")], paint: drawThings },
 ].map((layer) => ({ ...layer, canvas: document.createElement("canvas"), key: "" }));
 
 /** Draw whenever something moved. */

@@ -1,6 +1,6 @@
 /** Draws what seldom changes: walls, floors, furniture, rooms, zones, station. */
-import { get } from "../store.js";
-import { title } from "../words.js";
+import { get, openEdges } from "../store.js";
+import { letter, title } from "../words.js";
 import { floorFill } from "./floors.js";
 import { grid } from "./grids.js";
 import { palette } from "./palette.js";
@@ -9,6 +9,8 @@ import { toScreen, view } from "./view.js";
 
 const WIDE = 45; // pixels per metre from which rooms tell their area as well
 const LABEL = 96; // pixels that a name has at least
+const BADGE = 11; // pixels; the radius of an open edge's letter
+const WIDEST = 1; // m; the radius of what is drawn around an open edge
 const CORNER = 6; // pixels; half the side of a zone's corner
 
 /** Draw a grid; soft where its cells are shares of floor and not walls. */
@@ -53,6 +55,7 @@ export function drawThings(context) {
   if (layers.zones) home.zones.forEach((zone) => drawZone(context, get("zone")?.name === zone.name ? get("zone") : zone));
   (home.changes ?? []).forEach((change) => drawChange(context, change));
   (home.low_things ?? []).forEach((thing) => drawLow(context, thing));
+  if (layers.edges) openEdges().forEach((edge, index) => drawEdge(context, edge, index));
   drawStation(context, home);
   if (layers.rooms) home.rooms.forEach((room) => drawName(context, room));
 }
@@ -170,6 +173,26 @@ function drawLow(context, { times, corners }) {
   trace(context, corners, true);
   dashed(context, palette().warn);
   write(context, `felt ${times} times`, ...toScreen(...middleOf(corners)), { colour: palette().warn, isBold: true });
+}
+
+/** Draw where the map is open, with the letter by which it is listed: around a short edge as wide as that is long. */
+function drawEdge(context, { x, y, length }, index) {
+  const colours = palette(), isChosen = get("edge") === index, [px, py] = toScreen(x, y);
+  context.beginPath();
+  context.arc(px, py, Math.max(BADGE + 4, Math.min(0.5 * length, WIDEST) * view.scale), 0, 2 * Math.PI);
+  context.fillStyle = colours.warnTint;
+  context.fill();
+  dashed(context, colours.warn, isChosen ? 4 : 2);
+  context.beginPath();
+  context.arc(px, py, BADGE, 0, 2 * Math.PI);
+  context.fillStyle = colours.warn;
+  context.fill();
+  context.fillStyle = colours.paper;
+  context.font = "700 14px system-ui, sans-serif";
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  context.fillText(letter(index), px, py + 1);
+  if (isChosen) write(context, `open for ${length.toFixed(1)} m`, px, py + BADGE + 14, { colour: colours.warn, isBold: true });
 }
 
 /** The middle of a zone around a low thing. */

@@ -25,6 +25,9 @@ export function pan(dx, dy) {
   view.isFitted = true;
 }
 
+/** Bring a place, m, into the middle. */
+export function centre(x, y) { pan((view.x - x) * view.scale, (y - view.y) * view.scale); }
+
 /** Zoom around pixels, which stay where they are. */
 export function zoom(factor, px = view.width / 2, py = view.height / 2) {
   const [x, y] = toFloor(px, py);

@@ -3,9 +3,9 @@ import { $ } from "../dom.js";
 import * as draw from "../map/draw.js";
 import { onColours, palette } from "../map/palette.js";
 import { view, zoom } from "../map/view.js";
-import { get, on, set } from "../store.js";
+import { get, on, openEdges, set } from "../store.js";
 
-const NAMES = { coverage: "Clean: once, twice, more", trail: "Way so far", path: "Way to go", rooms: "Rooms", furniture: "Furniture", zones: "Zones", carpets: "Carpets it felt", dirt: "Dirt found", scan: "Lidar", truth: "The truth" };
+const NAMES = { coverage: "Clean: once, twice, more", trail: "Way so far", path: "Way to go", rooms: "Rooms", furniture: "Furniture", zones: "Zones", carpets: "Carpets it felt", edges: "Where the map is open", dirt: "Dirt found", scan: "Lidar", truth: "The truth" };
 const STEP = 1.4;
 
 /** Connect the tools. */
@@ -26,7 +26,10 @@ export function begin() {
   }
   boxes.coverage.append(swatches());
   on("layers", () => { for (const [name, label] of Object.entries(boxes)) label.firstElementChild.checked = get("layers")[name]; });
-  on("state", () => { boxes.truth.hidden = !get("state")?.truth; });
+  on("state", () => {
+    boxes.truth.hidden = !get("state")?.truth;
+    boxes.edges.hidden = openEdges().length === 0;
+  });
   setInterval(scale, 250);
 }
 

@@ -1,0 +1,34 @@
+"""What a page shows as values for JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+
+from roomba.client.plain import report_of
+from roomba.client.protocol import CleanReport, ErrandOutcome, ExploreReport
+from roomba.client.view import exploration_as_clean
+from roomba.vocabulary import EdgeReason, OpenEdge
+
+
+def told(report: CleanReport) -> dict[str, object]:
+    """Return what a program reads of it."""
+    read = json.loads(json.dumps(report_of(report), allow_nan=False))
+    assert isinstance(read, dict)
+    return read
+
+
+def test_an_exploration_tells_what_it_mapped_and_each_edge_that_stayed_open() -> None:
+    edge = OpenEdge(2.0, 1.0, 3.0, EdgeReason.NO_ECHO)
+    report = ExploreReport(ErrandOutcome.COMPLETED, "", 34.5, 30.0, 40.0, (edge,))
+    read = told(exploration_as_clean(report))
+    assert read["mapped"] == 34.5
+    assert read["open_edges"] == [
+        {"length": 2.0, "x": 1.0, "y": 3.0, "reason": EdgeReason.NO_ECHO.value}
+    ]
+
+
+def test_a_clean_mapped_nothing() -> None:
+    clean = CleanReport(ErrandOutcome.COMPLETED, "", 9.0, 10.0, 2.0, 30.0, 40.0, math.nan)
+    read = told(clean)
+    assert (read["mapped"], read["open_edges"]) == (None, [])
