@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from fixtures.waiting import wait_until
 from PIL import Image
-from playwright.sync_api import Page
+from playwright.sync_api import Page, Route
 from web.conftest import Opened, in_each_scheme
 
 from roomba.client.view import ZoneView
@@ -196,6 +196,27 @@ def test_a_room_gets_another_name_and_a_cut_that_is_none_is_refused(opened: Open
     opened.drag((x, y), (x + 0.2, y))
     page.wait_for_selector("#refusal:not([hidden])")
     assert page.inner_text("#refusal")
+
+
+def test_a_name_that_is_taken_after_cancel_is_told_and_can_be_taken_back(opened: Opened) -> None:
+    page, robot, held = opened.page, opened.robot, list[Route]()
+    page.route("**/rooms/rename", lambda route: held.append(route))
+    page.keyboard.press("1")
+    opened.show("rooms")
+    before = robot.home().rooms[0].name
+    page.get_by_role("button", name="Rename").click()
+    page.get_by_role("textbox", name="Name").fill("Den")
+    page.get_by_role("button", name="OK").click()
+    wait_until(lambda: page.evaluate("true") and held != [], DEADLINE, "a wish on its way")
+    page.locator("#ask").get_by_role("button", name="Cancel").click()
+    page.wait_for_selector("#ask:not([open])", state="attached")
+    held[0].continue_()
+    page.unroute("**/rooms/rename")
+    told = f"It was too late to cancel: {before} is Den now."
+    page.locator("#note-text").get_by_text(told).wait_for()
+    wait_until(lambda: robot.home().rooms[0].name == "Den", DEADLINE, "another name")
+    page.get_by_role("button", name="Undo").click()
+    wait_until(lambda: robot.home().rooms[0].name == before, DEADLINE, "the name of before")
 
 
 def test_a_choice_outlives_another_name_and_what_is_gone_is_told(opened: Opened) -> None:

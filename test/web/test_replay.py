@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 
 import pytest
 from fixtures.pages.windows import Windows
@@ -18,6 +19,7 @@ from roomba.commands.trials.runs import run_trial
 from roomba.commands.trials.trial import Trial
 from roomba.history.replay import RecordedRobot
 from roomba.history.run import RunFigures, RunRecording, RunSource
+from roomba.history.unfinished import INTERRUPTED, WHY
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
 
@@ -62,17 +64,26 @@ class Replayed:
         return int(self.page.evaluate(SWEPT))
 
 
-@pytest.fixture
-def replayed(
-    windows: Windows, recorded: tuple[RunFigures, RunRecording], size: tuple[int, int]
+@contextmanager
+def replaying(
+    windows: Windows, run: tuple[RunFigures, RunRecording], size: tuple[int, int]
 ) -> Iterator[Replayed]:
-    robot, guard = RecordedRobot(*recorded), Guard(new_token())
+    """Open the page over a recording."""
+    robot, guard = RecordedRobot(*run), Guard(new_token())
     with (
         serving(create_app(robot, guard)) as server,
         page_at(windows, f"{server.address}#token={guard.token}", size) as page,
     ):
         page.wait_for_selector("#timeline:not([hidden])")
-        yield Replayed(page, robot, recorded[1])
+        yield Replayed(page, robot, run[1])
+
+
+@pytest.fixture
+def replayed(
+    windows: Windows, recorded: tuple[RunFigures, RunRecording], size: tuple[int, int]
+) -> Iterator[Replayed]:
+    with replaying(windows, recorded, size) as replayed:
+        yield replayed
 
 
 def test_dragging_shows_another_time(replayed: Replayed) -> None:
@@ -98,6 +109,27 @@ def test_dragging_shows_another_time(replayed: Replayed) -> None:
     assert 0 < trail <= len(replayed.recording.trace) // 2 + 2
     replayed.drag_to(0.0)
     replayed.wait_for_swept(0, 40)
+
+
+@pytest.fixture
+def interrupted(recorded: tuple[RunFigures, RunRecording]) -> tuple[RunFigures, RunRecording]:
+    """The clean, as it is kept when its program ended in the middle of it."""
+    figures, recording = recorded
+    return replace(figures, outcome=INTERRUPTED, message=WHY), recording
+
+
+def test_a_run_that_was_interrupted_is_called_so_and_no_fault(
+    windows: Windows, interrupted: tuple[RunFigures, RunRecording], size: tuple[int, int]
+) -> None:
+    with replaying(windows, interrupted, size) as replayed:
+        page = replayed.page
+        replayed.drag_to(replayed.recording.duration)
+        tab = page.locator("[data-tab=more]")
+        if tab.is_visible():
+            tab.click()
+        page.wait_for_selector("#last:not([hidden])")
+        assert page.inner_text("#last-text").startswith("Interrupted · ")
+        assert "fault" not in page.inner_text("body").lower()
 
 
 def test_the_time_line_is_whole_on_the_smallest_phone(replayed: Replayed) -> None:

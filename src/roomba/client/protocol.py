@@ -119,6 +119,9 @@ class ErrandOutcome(Enum):
     DISCONNECTED = "disconnected"
     """The connection to the action server was lost. The robot itself resumes a clean once its
     mission node is back: :meth:`RobotClient.vacuum` reports it, this errand does not."""
+    INTERRUPTED = "interrupted"
+    """Of a run that is looked back at: the program that kept it ended in the middle of it. No
+    errand reports this."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -170,7 +170,7 @@ class HistoryKeeper:
         source = self._recorder.source
         runs = (run.figures for run in self.history.runs(limit=_LOOKED_THROUGH, home=source.home))
         newest = next((run for run in runs if run.source.program == source.program), None)
-        return None if newest is None or newest.outcome != INTERRUPTED else _end_of(newest)
+        return None if newest is None or newest.outcome != INTERRUPTED else report_of(newest.report)
 
     def _has_kept(self, run: RunSoFar) -> bool:
         """Whether the program was killed only after it had kept the run."""
@@ -262,11 +262,6 @@ class _RunUnderWay:
     def recording(self, home: HomeView, layer: Layers) -> RunRecording:
         """Return what was seen."""
         return RunRecording(self.so_far().trace, tuple(self._words), home_of(home), _cells(layer))
-
-
-def _end_of(run: RunFigures) -> dict[str, Any]:
-    """Return how a run ended as the plain values of a report; no robot tells its outcome."""
-    return {**report_of(run.report), "outcome": run.outcome}
 
 
 def _cells(layer: Layers) -> dict[str, CellLayer]:

@@ -84,7 +84,7 @@ class RunFigures:
 
     @property
     def report(self) -> CleanReport:
-        """How it ended as a robot tells it; of a run that was interrupted none could: FAULT."""
+        """How it ended as a robot tells it; FAULT for an outcome of a newer program."""
         outcomes = {outcome.value: outcome for outcome in ErrandOutcome}
         return CleanReport(
             outcomes.get(self.outcome, ErrandOutcome.FAULT),

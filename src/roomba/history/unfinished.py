@@ -22,6 +22,7 @@ from typing import Any, Final
 import numpy as np
 
 from roomba.arrays import Floats32
+from roomba.client.protocol import ErrandOutcome
 from roomba.files.atomic import make_private
 from roomba.files.journal import append_line, read_lines
 from roomba.history.run import (
@@ -37,7 +38,7 @@ from roomba.history.run import (
     turning_of,
 )
 
-INTERRUPTED: Final = "interrupted"
+INTERRUPTED: Final = ErrandOutcome.INTERRUPTED.value
 """The outcome of a run whose program ended in the middle of it."""
 WHY: Final = "the program that kept this run ended in the middle of it"
 _EVERY: Final = 0.5

@@ -58,7 +58,7 @@ def test_a_run_that_was_interrupted_is_shown_to_its_end(
     robot.seek(1e9)
     last = robot.robot().last
     assert last is not None
-    assert (last.outcome, last.message) == (ErrandOutcome.FAULT, WHY)
+    assert (last.outcome, last.message) == (ErrandOutcome.INTERRUPTED, WHY)
 
 
 def test_coverage_grows_and_shrinks_with_the_time(robot: RecordedRobot) -> None:

@@ -3,16 +3,19 @@ import { $, put } from "../dom.js";
 import { sentence } from "../words.js";
 import { showDialog } from "./opened.js";
 
+const LATE = "It was too late to cancel: "; // what the robot did before it heard of that is told
+
 /**
- * Ask for a name until it is taken: `take(name)` returns why it is refused, empty when it is not. Returns the name, or
- * null. What was entered stays, with the reason.
+ * Ask for a name until it is taken: `take(name)` returns why it is refused, empty when it is not. What was entered stays,
+ * with the reason. `taken(name, late)` is called when it is; where Cancel came before the answer, `late` says so.
  */
-export function askName(title, text, take) { return ask(title, text, take); }
+export function askName(title, text, take, taken) { return ask(title, text, take, taken); }
 
 /** Return whether the answer was yes. */
-export async function askYes(title) { return (await ask(title, null, async () => "")) !== null; }
+export function askYes(title) { return ask(title, null, async () => "", () => {}); }
 
-function ask(title, text, take) {
+/** Return whether it was taken before the dialog was closed. */
+function ask(title, text, take, taken) {
   const dialog = $("ask");
   let isAnswered = false; // an answer may come when the dialog asks for something else
   $("ask-title").textContent = title;
@@ -22,16 +25,17 @@ function ask(title, text, take) {
   dialog.querySelector("form").onsubmit = async (event) => {
     if (event.submitter?.value === "no") return;
     event.preventDefault();
-    const fault = await take($("ask-text").value);
-    if (isAnswered || fault === null) return;
-    showFault(fault);
-    if (!fault) dialog.close("yes");
+    const name = $("ask-text").value, fault = await take(name), isLate = isAnswered;
+    if (fault === null) return;
+    if (!isLate) showFault(fault);
+    if (!isLate && !fault) dialog.close("yes");
+    if (!fault) taken(name, isLate ? LATE : "");
   };
   showFault("");
   dialog.returnValue = "";
   showDialog(dialog);
   return new Promise((resolve) => {
-    dialog.onclose = () => { isAnswered = true; resolve(dialog.returnValue === "yes" ? $("ask-text").value : null); };
+    dialog.onclose = () => { isAnswered = true; resolve(dialog.returnValue === "yes"); };
   });
 }
 

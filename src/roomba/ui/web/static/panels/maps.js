@@ -54,6 +54,9 @@ function button(text, label, act) {
   return made;
 }
 
-async function save() {
-  if (await askName("Save the map as", "", (name) => askFor("maps/save", { name }))) await showMaps();
+function save() {
+  return askName("Save the map as", "", (name) => askFor("maps/save", { name }), (name, late) => {
+    if (late) note(`${late}the map is saved as ${name}.`);
+    showMaps();
+  });
 }

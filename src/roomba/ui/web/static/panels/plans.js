@@ -131,7 +131,10 @@ async function edit(heading, given, isPlan) {
 }
 
 async function changeZone() {
-  if (await known()) await askName("Time zone, such as Europe/Berlin", told.zone, (zone) => change("household/zone", { zone }, askFor));
+  if (!await known()) return;
+  await askName("Time zone, such as Europe/Berlin", told.zone, (zone) => change("household/zone", { zone }, askFor), (zone, late) => {
+    if (late) note(`${late}the time zone is ${zone} now.`);
+  });
 }
 
 function quiet(hours) { return change("household/quiet", { quiet: hours }); }

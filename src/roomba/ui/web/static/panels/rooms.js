@@ -38,13 +38,14 @@ export function toggleNumber(number) {
   if (room) toggle(room.name);
 }
 
-async function rename() {
+function rename() {
   const [name] = get("chosen");
   const take = async (given) => (given === name ? "" : askFor("rooms/rename", { name, new_name: given }));
-  const given = await askName(`Another name for ${name}`, name, take);
-  if (!given || given === name) return;
-  set("chosen", []);
-  note(`${name} is ${given} now.`, () => wish("rooms/rename", { name: given, new_name: name }));
+  return askName(`Another name for ${name}`, name, take, (given, late) => {
+    if (given === name) return;
+    if (!late) set("chosen", []);
+    note(`${late}${name} is ${given} now.`, () => wish("rooms/rename", { name: given, new_name: name }));
+  });
 }
 
 async function join() {
