@@ -15,6 +15,7 @@ from roomba.perception.rooms.low_things import LowThing, LowThings
 
 DESKTOP = pytest.mark.parametrize("size", [SIZES["desktop"]])
 CORNERS = ((1.0, 1.6), (2.0, 1.6), (2.0, 2.4), (1.0, 2.4))
+ELSEWHERE = tuple((x + 2.0, y) for x, y in CORNERS)
 VIEW = """async () => {
     const { toFloor, view } = await import("/map/view.js");
     return { scale: view.scale, at: toFloor(200, 150) };
@@ -154,3 +155,32 @@ def test_carpets_that_it_felt_are_a_layer_of_the_map(opened: Opened) -> None:
 
     # All is asked for again: the map may come after the page.
     wait_until(is_hidden_without_it, DEADLINE, "it is drawn, and hidden")
+
+
+def test_a_zone_gets_another_name_on_the_map_and_in_the_list(opened: Opened) -> None:
+    page, robot = opened.page, opened.robot
+    first, other = ZoneView("Zone 1", "no-go", CORNERS), ZoneView("Zone 2", "no-go", ELSEWHERE)
+    robot.put_zone(first)
+    robot.put_zone(other)
+    opened.show_map()
+    page.locator("#zones li", has_text="Zone 2").wait_for(state="attached")
+    opened.tap(1.5, 2.0)
+    page.locator("#offer").get_by_role("button", name="Rename").click()
+    name = page.get_by_role("textbox", name="Name")
+    name.fill("Zone 2")
+    page.get_by_role("button", name="OK").click()
+    page.locator("#ask-fault").get_by_text("There is a zone “Zone 2” already.").wait_for()
+    name.fill("Cat's bowl")
+    page.get_by_role("button", name="OK").click()
+    page.locator("#note-text").get_by_text("Zone 1 is Cat's bowl now.").wait_for()
+    bowl = ZoneView("Cat's bowl", "no-go", CORNERS)
+    wait_until(lambda: set(robot.home().zones) == {bowl, other}, DEADLINE, "another name")
+    page.get_by_role("button", name="Undo").click()
+    wait_until(lambda: set(robot.home().zones) == {first, other}, DEADLINE, "the name of before")
+    opened.show("zones")
+    page.get_by_role("button", name="Move Zone 2", exact=True).click()
+    page.get_by_role("button", name="Rename Zone 2").click()
+    name.fill("Rug")
+    page.get_by_role("button", name="OK").click()
+    page.locator("#zones li", has_text="Rug").wait_for()
+    assert {zone.name for zone in robot.home().zones} == {"Zone 1", "Rug"}

@@ -1,11 +1,12 @@
 /** Zones: what the robot must not enter, and what is to be cleaned once. */
 import { $, button } from "../dom.js";
-import { note, wish } from "../link.js";
+import { askFor, note, refuse, wish } from "../link.js";
 import { toFloor, view } from "../map/view.js";
 import { shifted, withCorner } from "../map/zones.js";
 import { get, on, set } from "../store.js";
 import { title, ZONES } from "../words.js";
 import { beginClean } from "./actions.js";
+import { askName } from "./ask.js";
 import * as card from "./card.js";
 import { closed, opened } from "./opened.js";
 import { undo } from "./rooms.js";
@@ -79,10 +80,30 @@ export async function remove(zone) {
   note(`${zone.name} is removed.`, () => wish("zones", zone, "PUT"));
 }
 
+/** Let a zone have another name. */
+function rename(zone) {
+  const isTaken = (name) => get("home").zones.some((one) => one.name === name);
+  const take = async (name) => {
+    if (name === zone.name) return "";
+    return isTaken(name) ? `there is a zone “${name}” already` : giveName(zone, name);
+  };
+  return askName(`Another name for ${zone.name}`, zone.name, take, (name, late) => {
+    if (name === zone.name) return;
+    const back = async () => { const fault = await giveName({ ...zone, name }, zone.name); if (fault) refuse(fault); };
+    note(`${late}${zone.name} is ${name} now.`, back);
+  });
+}
+
+/** Returns why it is refused; the zone of the old name goes last, so that the robot is kept out all the time. */
+async function giveName(zone, name) {
+  return await askFor("zones", { ...zone, name }, "PUT") || askFor(path(zone.name), {}, "DELETE");
+}
+
 /** Offer what can be done with the zone that is chosen. */
 export function offerZone(zone) {
   select(zone);
-  card.open(`${zone.name}: drag it, or a corner`, [["Remove", () => remove(get("zone") ?? zone)], ["Done", () => set("zone", null)]], zone.points[0]);
+  const now = () => get("zone") ?? zone;
+  card.open(`${zone.name}: drag it, or a corner`, [["Rename", () => rename(now())], ["Remove", () => remove(now())], ["Done", () => set("zone", null)]], zone.points[0]);
 }
 
 /** Draw or move with keys; returns whether the key meant something here. */
@@ -147,8 +168,10 @@ function showZones() {
     pick.className = "pick";
     pick.dataset.zone = zone.name;
     pick.setAttribute("aria-pressed", String(selected?.name === zone.name));
-    item.append(pick, button("Remove", () => remove(zone), `Remove ${zone.name}`));
-    item.lastElementChild.classList.add("live-only");
+    const acts = [button("Remove", () => remove(zone), `Remove ${zone.name}`)];
+    if (selected?.name === zone.name) acts.unshift(button("Rename", () => rename(zone), `Rename ${zone.name}`));
+    for (const act of acts) act.classList.add("live-only");
+    item.append(pick, ...acts);
     return item;
   }));
   if (focused) [...$("zones").querySelectorAll("button")].find((one) => one.dataset.zone === focused)?.focus();
