@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from fixtures.pages.windows import Windows
+from fixtures.waiting import wait_until
 from playwright.sync_api import Page
 from web.conftest import PIXELS, SIZES
 
@@ -89,11 +90,11 @@ def test_from_the_command_to_the_report_in_five_minutes(windows: Windows, tmp_pa
     assert "`./roomba play`" in told
     began = time.monotonic()
     with playing(tmp_path) as address, phone(windows, address) as page:
-        page.wait_for_function(ANCHORS)
+        wait_until(lambda: page.evaluate(ANCHORS), MET / 1000, "rooms")
         for anchor in page.evaluate(ANCHORS)[:2]:
             page.touchscreen.tap(*page.evaluate(PIXELS, anchor))
         page.get_by_role("button", name=STEPS[1]).tap()
-        page.wait_for_function(IS_SWEPT)
+        wait_until(lambda: page.evaluate(IS_SWEPT), MET / 1000, "swept floor")
         page.get_by_role("button", name=STEPS[2]).tap()
         page.wait_for_selector("body[data-phase='paused']")
         page.wait_for_timeout(DOUBLE)
