@@ -169,7 +169,7 @@ def test_before_it_ends_it_tries_all(monkeypatch: pytest.MonkeyPatch) -> None:
     rig.mission.driver = None
 
     def give_one_up(exploration: Exploration, *asked: object) -> None:
-        if len(exploration.unseen) < 3:
+        if exploration.times_given_up < 3:
             exploration.give_up((0.0, 0.0))
 
     monkeypatch.setattr(Exploration, "next_path", give_one_up)
@@ -186,7 +186,7 @@ def test_stuck_again_and_again_it_asks_for_help(monkeypatch: pytest.MonkeyPatch)
         stuck(rig, monkeypatch, DriveState.STUCK)
         assert rig.mission.exploration is not None
         assert rig.mission.exploration.times_stuck == times + 1
-        rig.mission.exploration.unseen.clear()
+        rig.mission.exploration.given_up.clear()
         rig.tick(2)
     stuck(rig, monkeypatch, DriveState.STUCK)
     assert rig.phase is Phase.ERROR

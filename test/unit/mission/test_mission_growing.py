@@ -29,6 +29,7 @@ from roomba.mission.cleaning.request import (
     CleanRequest,
     CleanResult,
 )
+from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.phases.machine import Event
 from roomba.mission.ticks import MissionStep
 from roomba.perception.swept.coverage_bits import SWEPT, TRIED
@@ -64,6 +65,11 @@ def result(rig: Rig) -> CleanResult:
     return found
 
 
+def give_up_the_door(exploration: Exploration) -> None:
+    for y in np.arange(0.7, 1.8, 0.1).tolist():
+        exploration.give_up((WALL_X + 0.1, y))
+
+
 def test_it_looks_first_at_what_is_near_and_sweeps_on_the_way() -> None:
     rig = cleaning()
     assert rig.phase is Phase.CLEANING
@@ -78,7 +84,7 @@ def test_with_nothing_near_to_look_at_it_cleans_what_is_known() -> None:
     rig = cleaning()
     assert rig.mission.exploration is not None
     rig.mission.exploration.cut_off()
-    rig.mission.exploration.unseen += [(WALL_X + 0.1, y) for y in np.arange(0.7, 1.8, 0.1).tolist()]
+    give_up_the_door(rig.mission.exploration)
     rig.mission.driver = None
     rig.tick(4)
     assert not rig.mission.exploration.is_under_way
@@ -93,7 +99,7 @@ def test_while_the_map_grows_it_keeps_farther_from_walls_and_leaves_the_edges() 
     mission = rig.mission
     assert mission.exploration is not None
     mission.exploration.cut_off()
-    mission.exploration.unseen += [(WALL_X + 0.1, y) for y in np.arange(0.7, 1.8, 0.1).tolist()]
+    give_up_the_door(mission.exploration)
     mission.driver = None
     rig.tick(4)
     assert mission.driver is not None

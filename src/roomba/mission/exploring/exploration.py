@@ -18,7 +18,7 @@ from roomba.configuration.mission import ExploringConfig
 from roomba.geometry import Pose, RoundObstacle
 from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome
-from roomba.mission.exploring.open_edges import open_edges
+from roomba.mission.exploring.open_edges import GivenUp, open_edges
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.frontiers.frontiers import Frontier, FrontierChoice, frontiers, is_frontier
 from roomba.planning.path.costmap import Point
@@ -52,7 +52,7 @@ class ExploreResult:
 
 
 class Exploration:
-    """Chooses where to go; ``unseen`` are the frontiers that it gave up, m, map frame."""
+    """Chooses where to go; ``given_up`` are the frontiers that it gave up, by their places."""
 
     def __init__(self, config: ExploringConfig) -> None:
         """Begin with nothing given up."""
@@ -69,11 +69,9 @@ class Exploration:
             config.tight_cost,
         )
         self.goal: Frontier | None = None
-        self.unseen: list[Point] = []
-        self._seen_from: dict[Point, float] = {}
-        """From how far it looked at those last, m; 0 where it shall not look again."""
-        self._looked_at: set[Point] = set()
-        """Those that it looked at from a viewpoint, and that stayed open."""
+        self.given_up: dict[Point, GivenUp] = {}
+        self.times_given_up = 0
+        """Also of frontiers that it had given up before, and looked at from nearer."""
         self._vanished: list[Point] = []
         self._sought: tuple[Point, float] | None = None
         self.is_as_near_as_it_gets = False
@@ -85,7 +83,8 @@ class Exploration:
     def values(self) -> list[list[float]]:
         """Return what must be remembered to go on, as plain values."""
         return [
-            [x, y, self._seen_from[x, y], float((x, y) in self._looked_at)] for x, y in self.unseen
+            [*each.place, each.seen_from, float(each.was_looked_at)]
+            for each in self.given_up.values()
         ]
 
     @staticmethod
@@ -97,17 +96,22 @@ class Exploration:
         exploration = Exploration(config)
         for x, y, *told in values:
             seen_from, was_looked_at = (*told, *(0.0, 0.0)[len(told) :])
-            exploration.give_up((float(x), float(y)), float(seen_from))
-            if was_looked_at:
-                exploration._looked_at.add((float(x), float(y)))
+            place = float(x), float(y)
+            exploration.given_up[place] = GivenUp(place, float(seen_from), bool(was_looked_at))
         return exploration
 
     def give_up(self, middle: Point, seen_from: float = 0.0) -> None:
         """Go there no more, but to a place that is nearer than that it was ``seen_from``, m."""
-        self.unseen.append(middle)
-        self._seen_from[middle] = min(seen_from, self._seen_from.get(middle, math.inf))
-        if seen_from > 0.0:
-            self._looked_at.add(middle)
+        self.times_given_up += 1
+        known = self.given_up.get(middle, GivenUp(middle, math.inf, was_looked_at=False))
+        self.given_up[middle] = GivenUp(
+            middle, min(seen_from, known.seen_from), known.was_looked_at or seen_from > 0.0
+        )
+
+    @property
+    def unseen(self) -> list[Point]:
+        """The frontiers that it gave up, m, map frame."""
+        return list(self.given_up)
 
     def next_path(
         self,
@@ -160,7 +164,7 @@ class Exploration:
         flat angle, is seen from near alone.
         """
         nearest = self._config.look_nearer
-        left_out = [point for point in self.unseen if self._seen_from[point] <= nearest]
+        left_out = [each.place for each in self.given_up.values() if each.seen_from <= nearest]
         for _ in range(_MOST_TRIES):
             found = frontiers(context.known, fits, roomy, at, left_out, self._choice)
             large = [each for each in found if each.length >= self._config.small_frontier]
@@ -174,9 +178,9 @@ class Exploration:
         """Whether the viewpoint is clearly nearer than those that this place was seen from."""
         distance = math.dist(frontier.viewpoint, frontier.middle) + self._config.look_nearer
         return all(
-            distance < seen_from
-            for middle, seen_from in self._seen_from.items()
-            if math.dist(middle, frontier.middle) <= self._config.same_frontier
+            distance < each.seen_from
+            for each in self.given_up.values()
+            if math.dist(each.place, frontier.middle) <= self._config.same_frontier
         )
 
     def _way_to_one_of(
@@ -202,7 +206,7 @@ class Exploration:
 
     def open_edges(self, occupancy: OccupancyMap) -> tuple[OpenEdge, ...]:
         """Return where this newer map still ends, the longest edge first."""
-        return open_edges(occupancy, self.unseen, self._looked_at, self._config)
+        return open_edges(occupancy, self.given_up.values(), self._config)
 
     def wants_another(self, occupancy: OccupancyMap) -> bool:
         """Whether nothing is left of the frontier that it is on its way to, as the map is now."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
-from typing import Final
+from collections.abc import Iterable, Sequence
+from typing import Final, NamedTuple
 
 from roomba.configuration.mission import ExploringConfig
 from roomba.grid import OccupancyMap
@@ -15,23 +15,38 @@ from roomba.vocabulary import EdgeReason, OpenEdge
 _MOST_TOLD: Final = 3
 
 
+class GivenUp(NamedTuple):
+    """A frontier that was given up: a ``place`` on it, m, map frame, and from how far it was looked
+    at last, m; 0 where it shall not be looked at again.
+
+    ``was_looked_at``: from a viewpoint, and it stayed open.
+    """
+
+    place: Point
+    seen_from: float
+    was_looked_at: bool
+
+
 def open_edges(
     occupancy: OccupancyMap,
-    given_up: Sequence[Point],
-    looked_at: Collection[Point],
+    given_up: Iterable[GivenUp],
     config: ExploringConfig,
 ) -> tuple[OpenEdge, ...]:
-    """Return the longer frontiers of a map at places that were ``given_up``, the longest first.
+    """Return the longer frontiers of a map that were ``given_up``, the longest first.
 
-    Some of the places were ``looked_at``. One frontier is told once. Those shorter than
-    ``config.open_edge`` are left out.
+    One frontier is told once. Those shorter than ``config.open_edge`` are left out.
     """
     # Of the places of one frontier the first counts.
-    places = sorted(given_up, key=lambda place: place not in looked_at)
-    lengths = lengths_near(occupancy, places, config.frontier_radius, config.least_unknown)
+    places = sorted(given_up, key=lambda each: not each.was_looked_at)
+    lengths = lengths_near(
+        occupancy,
+        [each.place for each in places],
+        config.frontier_radius,
+        config.least_unknown,
+    )
     edges = [
-        OpenEdge(length, *place, _reason(place, looked_at))
-        for place, length in zip(places, lengths.tolist(), strict=True)
+        OpenEdge(length, *each.place, _reason(each))
+        for each, length in zip(places, lengths.tolist(), strict=True)
         if length >= config.open_edge
     ]
     return tuple(sorted(edges, key=lambda edge: -edge.length))
@@ -52,5 +67,5 @@ def what_is_not_seen(edges: Sequence[OpenEdge]) -> str:
     return f"the map is open {', '.join(told)}"
 
 
-def _reason(place: Point, looked_at: Collection[Point]) -> EdgeReason:
-    return EdgeReason.NO_ECHO if place in looked_at else EdgeReason.NOT_LOOKED_AT
+def _reason(given_up: GivenUp) -> EdgeReason:
+    return EdgeReason.NO_ECHO if given_up.was_looked_at else EdgeReason.NOT_LOOKED_AT

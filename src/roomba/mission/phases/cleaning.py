@@ -118,11 +118,11 @@ class CleanPhase:
         """Explore further when all that is known is clean; ask for the whole map at the end."""
         exploration, drives = self._job.exploration, self._drives
         assert exploration is not None
-        given_up = len(exploration.unseen)
+        given_up = exploration.times_given_up
         if self._begin_look(senses, math.inf):
             return None
         # It may have given up before it tried all.
-        if len(exploration.unseen) > given_up or exploring.forget_obstacles_once(
+        if exploration.times_given_up > given_up or exploring.forget_obstacles_once(
             exploration, drives
         ):
             return PhaseStep()

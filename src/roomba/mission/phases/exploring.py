@@ -23,11 +23,11 @@ def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: 
     if drives.driver is not None:
         return look_on(exploration, drives, senses, limit, most_stuck)
     obstacles = drives.obstacles.standing(senses.now)
-    given_up = len(exploration.unseen)
+    given_up = exploration.times_given_up
     points = exploration.next_path(senses.pose, drives.context, obstacles)
     if points is None:
         # It may have given up before it tried all.
-        is_done = len(exploration.unseen) == given_up and not forget_obstacles_once(
+        is_done = exploration.times_given_up == given_up and not forget_obstacles_once(
             exploration, drives
         )
         return PhaseStep(event=Event.FINISHED if is_done else None)

@@ -11,7 +11,8 @@ import pytest
 from roomba.configuration.mission import MissionConfig
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.mission.exploring.exploration import Exploration
-from roomba.mission.exploring.open_edges import open_edges, what_is_not_seen
+from roomba.mission.exploring.open_edges import GivenUp, open_edges, what_is_not_seen
+from roomba.planning.path.costmap import Point
 from roomba.vocabulary import EdgeReason, OpenEdge
 
 CONFIG = MissionConfig().exploring
@@ -33,8 +34,16 @@ def room(*openings: tuple[float, float]) -> OccupancyMap:
 WIDE, DOOR = (4.0, 2.0), (4.0, 0.5)
 
 
+def looked_at(place: Point) -> GivenUp:
+    return GivenUp(place, 0.6, was_looked_at=True)
+
+
+def passed(place: Point) -> GivenUp:
+    return GivenUp(place, 0.0, was_looked_at=False)
+
+
 def test_open_edges_are_told_with_their_length_and_reason_the_longest_first() -> None:
-    edges = open_edges(room((0.1, 0.9), (1.0, 3.0)), [DOOR, WIDE], {WIDE}, CONFIG)
+    edges = open_edges(room((0.1, 0.9), (1.0, 3.0)), [passed(DOOR), looked_at(WIDE)], CONFIG)
     assert [(edge.x, edge.y) for edge in edges] == [WIDE, DOOR]
     assert [edge.length for edge in edges] == pytest.approx([2.0, 0.8], abs=2.1 * CELL)
     assert [edge.reason for edge in edges] == [EdgeReason.NO_ECHO, EdgeReason.NOT_LOOKED_AT]
@@ -42,15 +51,15 @@ def test_open_edges_are_told_with_their_length_and_reason_the_longest_first() ->
 
 def test_an_edge_that_was_given_up_in_several_places_is_one() -> None:
     below = (4.0, 1.2)
-    (edge,) = open_edges(room((1.0, 3.0)), [below, WIDE], {WIDE}, CONFIG)
+    (edge,) = open_edges(room((1.0, 3.0)), [passed(below), looked_at(WIDE)], CONFIG)
     assert (edge.x, edge.y) == WIDE
     assert edge.reason is EdgeReason.NO_ECHO
 
 
 def test_what_is_closed_by_now_or_short_is_not_told() -> None:
-    assert open_edges(room(), [WIDE], {WIDE}, CONFIG) == ()
-    assert open_edges(room((1.8, 2.2)), [WIDE], {WIDE}, CONFIG) == ()
-    assert open_edges(room((1.0, 3.0)), [], [], CONFIG) == ()
+    assert open_edges(room(), [looked_at(WIDE)], CONFIG) == ()
+    assert open_edges(room((1.8, 2.2)), [looked_at(WIDE)], CONFIG) == ()
+    assert open_edges(room((1.0, 3.0)), [], CONFIG) == ()
 
 
 def test_what_was_looked_at_once_stays_so_when_it_is_given_up_for_another_reason() -> None:
