@@ -44,6 +44,17 @@ def read_image(path: Path) -> Image:
     return _read_with_pillow(path, content)
 
 
+def is_picture(path: Path) -> bool:
+    """Whether a file begins as a picture that :func:`read_image` reads."""
+    try:
+        PIL.Image.open(io.BytesIO(read_bytes(path)), formats=FORMATS)
+    except PIL.Image.DecompressionBombError:
+        return True
+    except (OSError, SyntaxError, ValueError):
+        return False
+    return True
+
+
 def _require_size(path: Path, width: int, height: int) -> None:
     """Refuse a picture that would take the memory before it is unpacked."""
     if width * height > MOST_CELLS:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator
 
 from roomba.errors import HomeError
-from roomba.files.image import Image, read_image
+from roomba.files.image import Image, is_picture, read_image
 from roomba.files.kept import write_kept
 from roomba.files.strict_yaml import YamlFile, read_yaml
 from roomba.grid import COARSEST_CELL, FINEST_CELL, FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
@@ -32,6 +32,9 @@ Threshold = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 MAP_SAVER_PIXELS = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}
 """Grey values that map_saver writes, and that the usual thresholds read back."""
 RAW_UNKNOWN = 255
+_WRITE_ONE: Final = (
+    "write one beside it with image, resolution (m for each pixel) and origin: [0.0, 0.0, 0.0]"
+)
 _NEARLY_ALL: Final = 0.95
 _TURNED: Final = 1e-6
 """rad; less is what a program's rounding makes of 0: a map of 1 km is off by a millimetre."""
@@ -79,7 +82,7 @@ def load_map(path: Path) -> OccupancyMap:
     Row 0 of the values is the lowest y. Raises :class:`HomeError`, which names the file, the line
     and the reason, for a file that is missing, broken, or turned off the axes by an origin's yaw.
     """
-    file = read_yaml(path)
+    file = _yaml_of(path)
     description = file.validated(MapDescription)
     quarters = _quarters(description.origin[2])
     if quarters is None:
@@ -90,6 +93,19 @@ def load_map(path: Path) -> OccupancyMap:
         )
     image = _image_of(file, description)
     return _turned(_occupancy(image, description)[::-1], description, quarters)
+
+
+def _yaml_of(path: Path) -> YamlFile:
+    try:
+        return read_yaml(path)
+    except HomeError as error:
+        if not is_picture(path):
+            raise
+        beside = path.with_suffix(".yaml")
+        raise HomeError(
+            f"{path}: expected the YAML file of a map, got a picture; "
+            + (f"name {beside}" if beside.is_file() else _WRITE_ONE)
+        ) from error
 
 
 def _quarters(yaw: float) -> int | None:

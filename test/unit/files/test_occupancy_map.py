@@ -220,6 +220,19 @@ def test_yaml_runs_no_code(tmp_path: Path) -> None:
         load_map(path)
 
 
+@pytest.mark.parametrize(
+    "image",
+    [b"P5\n3 1\n255\n\x00\xcd\xfe", b"P2\n3 1\n255\n0 205 254\n", b"P5\n99999 99999\n255\n\x00"],
+)
+def test_a_picture_in_place_of_a_map_is_told_as_one(tmp_path: Path, image: bytes) -> None:
+    beside = written(tmp_path, USUAL, image)
+    with pytest.raises(HomeError, match=r"got a picture; name .*map\.yaml"):
+        load_map(tmp_path / "map.pgm")
+    beside.unlink()
+    with pytest.raises(HomeError, match="got a picture; write one beside it with image, resol"):
+        load_map(tmp_path / "map.pgm")
+
+
 def test_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(HomeError, match=r"nowhere\.yaml"):
         load_map(tmp_path / "nowhere.yaml")

@@ -53,7 +53,7 @@ def automatic_station(
     if not floor.any():
         raise HomeError(
             f"expected floor on which a body of {body_radius:.3f} m radius fits, got none; "
-            "check the map's resolution and thresholds"
+            "check the map's resolution, thresholds, negate and mode"
         )
     reach = body_radius + STATION_GAP + PLATE_DEPTH
     for choices in _choices(occupancy, floor, reach):

@@ -22,11 +22,16 @@ _MOST: Final = 0.5
 """0..1; where more than this of a picture's end is floor it is paper: a map that was cut off within
 a home has walls and what is not known there as well."""
 
+_ALONG: Final = 0.5
+"""Times the side of a square as large as a floor; along so much of the end it is paper: what is
+around a home has four times as much and more, a gap in the wall of a home a tenth."""
+
 
 def paper_end(drawn: OccupancyMap, frame: GridFrame) -> Mask:
     """Return the end of the paper on which a map was ``drawn``, over the cells of ``frame``.
 
-    That is in the same cells. Nothing where the map does not end in floor for the most part.
+    That is in the same cells, and as wide as FENCE. Nothing where the map does not end in floor
+    for the most part.
     """
     # A thin line may frame the paper.
     wide = math.ceil(FENCE / drawn.frame.resolution - 1e-9)
@@ -45,34 +50,49 @@ def paper_end(drawn: OccupancyMap, frame: GridFrame) -> Mask:
 
 
 def off_paper(floor: Mask, end: Mask, reach: float, resolution: float) -> Mask:
-    """Return the largest part of a floor that does not come within ``reach``, m, of the ``end``.
+    """Return the largest part of a floor that is no paper: see :func:`is_on_paper`.
 
     Where none is large enough for a home it is the largest of all.
     """
     largest = largest_component(floor)
     if not end.any():
         return largest
-    away = largest_component(floor & ~_by(floor, end, reach, resolution))
+    away = largest_component(floor & ~_papers(floor, end, reach, resolution))
     cells = np.count_nonzero(largest)
     least = min(LEAST_HOME / resolution**2, LEAST_SHARE * cells)
     return away if np.count_nonzero(away) >= max(least, 1.0) else largest
 
 
 def is_on_paper(frame: GridFrame, solid: Mask, radius: float, pose: Pose, end: Mask) -> bool:
-    """Whether a body of ``radius``, m, gets from a pose to the ``end`` of the paper."""
+    """Whether a body of ``radius``, m, stands on floor that reaches much of the paper's ``end``.
+
+    A home that has a gap there, as where a corridor is drawn open, is no paper.
+    """
     if not end.any():
         return False
     floor = where_body_fits(frame, solid, radius)
     row, column = frame.cell_of(pose.x, pose.y)
     reach = radius + 2.0 * frame.resolution
-    return bool(_by(floor, end, reach, frame.resolution)[row, column])
+    return bool(_papers(floor, end, reach, frame.resolution)[row, column])
 
 
-def _by(floor: Mask, end: Mask, reach: float, resolution: float) -> Mask:
-    """Return the parts of a floor that come within ``reach``, m, of the ``end``."""
+def _papers(floor: Mask, end: Mask, reach: float, resolution: float) -> Mask:
+    """Return the parts of a floor that come within ``reach``, m, of much of the ``end``."""
     parts = numbered_regions(floor)
-    cells = math.ceil(reach / resolution)
-    away = np.arange(-cells, cells + 1) * resolution
-    near = dilated(end, np.hypot(away[:, None], away[None, :]) <= reach)
-    numbers = np.unique(parts[near & floor])
-    return np.isin(parts, numbers[numbers > 0])
+    numbers = np.unique(parts[_near(end, reach, resolution) & floor])
+    sizes = np.bincount(parts.ravel())
+    wide = math.ceil(FENCE / resolution - 1e-9)
+    papers = [
+        number
+        for number in numbers[numbers > 0]
+        if np.count_nonzero(_near(parts == number, reach, resolution) & end) / wide
+        >= _ALONG * math.sqrt(sizes[number])
+    ]
+    return np.isin(parts, papers)
+
+
+def _near(cells: Mask, reach: float, resolution: float) -> Mask:
+    """Return what lies within ``reach``, m, of some cells."""
+    most = math.ceil(reach / resolution)
+    away = np.arange(-most, most + 1) * resolution
+    return dilated(cells, np.hypot(away[:, None], away[None, :]) <= reach)

@@ -66,6 +66,22 @@ def test_a_map_that_is_all_floor_is_a_home(tmp_path: Path) -> None:
     assert home.station_place is StationPlace.ON_PAPER
 
 
+@pytest.mark.parametrize("has_closet", [False, True])
+def test_a_home_with_a_gap_at_the_end_of_the_paper_is_no_paper(
+    tmp_path: Path, has_closet: bool
+) -> None:
+    drawn = plan(home=6.0)
+    # A corridor of 1 m that is drawn open, and a room to which no door leads.
+    drawn.values[70:90, 20:] = FREE
+    drawn.values[[68, 69, 90, 91], 138:] = OCCUPIED
+    if has_closet:
+        drawn.values[20:62, 96:100] = drawn.values[58:62, 96:140] = OCCUPIED
+    home = home_of(drawn, tmp_path)
+    assert is_inside(home, 6.0)
+    assert not (home.station.x > 4.9 and home.station.y < 3.0)
+    assert home.station_place is StationPlace.FOUND
+
+
 def test_a_person_may_put_it_on_the_paper(tmp_path: Path) -> None:
     home = home_of(plan(), tmp_path, Pose(1.0, 1.0, 0.0))
     assert home.station_place is StationPlace.TOLD
@@ -75,7 +91,7 @@ def test_of_small_plans_a_share_is_enough() -> None:
     floor = np.zeros((20, 40), np.bool_)
     floor[2:18, 2:12] = floor[4:12, 20:26] = True  # 0.4 and 0.12 m²
     end = np.zeros_like(floor)
-    end[0] = True
+    end[:2] = True
     found = off_paper(floor, end, 0.1, 0.05)
     assert found[5, 22]
     assert not found[5, 5]
