@@ -33,7 +33,7 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.carpet import CarpetSense
 from roomba.mission.phases.job import Job
-from roomba.mission.phases.machine import Event, MissionState
+from roomba.mission.phases.machine import Errand, Event, MissionState
 from roomba.mission.phases.monitor import Monitor
 from roomba.mission.steady import Steady
 from roomba.mission.ticks import MissionStep, MissionTicks
@@ -65,7 +65,9 @@ class Mission:
         config.require_possible(robot.body)
         self._config = config
         self.obstacles = Obstacles(things, robot.walk, robot.body, config.driving)
-        self._job = Job(dirt, config, robot.brush.bin_capacity, senses)
+        self._job = Job(
+            dirt, config, robot.brush.bin_capacity, senses, robot.localization.known_deviation
+        )
         self.ledger = self._job.ledger
         self._drives = Drives(context, robot, config.driving, self.obstacles)
         self.trail = self._drives.trail
@@ -280,11 +282,14 @@ class Mission:
         return self._ticks.speed_limit(senses)
 
     def seconds_to_go(self) -> float:
-        """Return about how long the clean still takes, s of robot time; charging left out."""
+        """Return about how long the clean still takes, s of robot time; charging left out.
+
+        While it charges, waits or is paused that is what comes afterwards.
+        """
         if self.cleaning is None:
             return 0.0
         driving = 0.0 if self.driver is None else self.driver.left
-        if self.state.phase is Phase.CLEANING:
+        if self.state.errand is Errand.CLEAN and self.state.phase is not Phase.EXPLORING:
             driving = max(driving, self.cleaning.ledger.left / self.context.tool_width)
         speed = min(self._config.driving.speed, self.max_speed)
         return driving / (self._config.driving.mean_speed * speed)

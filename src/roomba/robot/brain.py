@@ -266,7 +266,8 @@ class Brain:
     def senses(self) -> Senses:
         """Return what the mission senses now."""
         estimate = self.keeper.place.estimate
-        return senses_of(self.readings, estimate.pose, estimate.knowledge, estimate.reason)
+        how_well = estimate.knowledge, estimate.reason, estimate.position_deviation
+        return senses_of(self.readings, estimate.pose, *how_well)
 
     @property
     def max_speed(self) -> float:

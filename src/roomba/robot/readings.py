@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -93,10 +94,16 @@ class Readings:
         return self.dropped_left and self.dropped_right
 
 
-def senses_of(readings: Readings, pose: Pose, knowledge: Knowledge, trouble: str = "") -> Senses:
+def senses_of(
+    readings: Readings,
+    pose: Pose,
+    knowledge: Knowledge,
+    trouble: str = "",
+    unsure: float = math.inf,
+) -> Senses:
     """Return what the robot senses, of what its body tells and what is known of its place.
 
-    ``trouble`` says why the place is not known better.
+    ``trouble`` says why the place is not known better, ``unsure`` is its standard deviation, m.
     """
     turning = readings.twist.angular if readings.turning is None else readings.turning
     return Senses(
@@ -116,4 +123,5 @@ def senses_of(readings: Readings, pose: Pose, knowledge: Knowledge, trouble: str
         readings.in_bin,
         readings.brush_current,
         readings.emptying,
+        unsure,
     )

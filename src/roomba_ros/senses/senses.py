@@ -54,7 +54,8 @@ class HeardSenses:
         pose = self.place.at(now)
         if pose is None or self._readings is None:
             return None
-        return senses_of(replace(self._readings, time=now), pose, *self.place.knowledge)
+        how_well = *self.place.knowledge, self.place.deviation
+        return senses_of(replace(self._readings, time=now), pose, *how_well)
 
     def show(self, lookout: Lookout) -> None:
         """Let things be looked for in the scan that came last, if it is one to be looked at."""

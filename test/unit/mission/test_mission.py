@@ -108,6 +108,15 @@ def test_it_goes_and_reckons_no_faster_than_the_robot() -> None:
     assert rig.mission.speed_limit(rough) == 0.02
 
 
+def test_while_it_waits_it_reckons_with_what_comes_afterwards() -> None:
+    rig = cleaning()
+    left = rig.mission.seconds_to_go()
+    rig.command(Event.PAUSE)
+    assert rig.mission.seconds_to_go() == pytest.approx(left, rel=0.5)
+    rig.command(Event.DOCK)
+    assert rig.mission.seconds_to_go() == 0.0
+
+
 def test_speeds_that_the_robot_cannot_do_are_refused() -> None:
     fast = MissionConfig(driving=DrivingConfig(speed=0.8))
     parts = ThingLayer(FIELD), DirtMap(HOME.map)

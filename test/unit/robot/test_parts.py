@@ -68,10 +68,10 @@ def passed(robot: SimulatedBody) -> Readings:
 
 def test_senses_are_what_sensors_tell_and_where_it_believes_to_be() -> None:
     robot = body()
-    believed = Pose(9.0, 8.0, 7.0), Knowledge.ROUGH, "fog"
+    believed = Pose(9.0, 8.0, 7.0), Knowledge.ROUGH, "fog", 0.3
     senses = senses_of(passed(robot), *believed)
     assert senses.pose == believed[0]
-    assert (senses.knowledge, senses.trouble) == (Knowledge.ROUGH, "fog")
+    assert (senses.knowledge, senses.trouble, senses.unsure) == (Knowledge.ROUGH, "fog", 0.3)
     assert senses.battery.is_docked
     assert senses.battery.capacity == NOISY.battery.capacity
     assert not any(senses.touches)

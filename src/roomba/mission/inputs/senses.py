@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from roomba.geometry import STANDSTILL, Pose, Twist
@@ -39,10 +40,11 @@ _FULL = Battery()
 class Senses:
     """What the robot senses: time s of its clock, pose in the map frame as it is believed.
 
-    ``knowledge`` is how well the pose is known, ``trouble`` why not better; ``twist`` is by the
-    wheels; ``cliff_left`` tells that the left cliff sensors see no floor; ``lifted`` that wheels
-    hang in the air; ``grains`` is what the dirt sensor counts, 1/s; ``in_bin`` what was picked up,
-    g; ``brush_current`` what the brush's motor takes, A; ``emptying`` what the station tells that
+    ``knowledge`` is how well the pose is known, ``trouble`` why not better, ``unsure`` the standard
+    deviation of its place, m, infinite where none is told; ``twist`` is by the wheels;
+    ``cliff_left`` tells that the left cliff sensors see no floor; ``lifted`` that wheels hang in
+    the air; ``grains`` is what the dirt sensor counts, 1/s; ``in_bin`` what was picked up, g;
+    ``brush_current`` what the brush's motor takes, A; ``emptying`` what the station tells that
     empties the bin, None of one that does not.
     """
 
@@ -62,6 +64,7 @@ class Senses:
     in_bin: float = 0.0
     brush_current: float = 0.0
     emptying: EmptyingTold | None = None
+    unsure: float = math.inf
 
     @property
     def cliff(self) -> bool:

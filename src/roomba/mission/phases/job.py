@@ -37,9 +37,17 @@ class Job:
     """
 
     def __init__(
-        self, dirt: DirtMap, config: MissionConfig, bin_capacity: float, senses: Senses
+        self,
+        dirt: DirtMap,
+        config: MissionConfig,
+        bin_capacity: float,
+        senses: Senses,
+        known_deviation: float = 0.0,
     ) -> None:
-        """Begin with nothing to do, and with a dust bin that takes ``bin_capacity`` g."""
+        """Begin with nothing to do, and with a dust bin that takes ``bin_capacity`` g.
+
+        What is swept by a place that is unsure by more than ``known_deviation``, m, is doubtful.
+        """
         self.dirt, self._config = dirt, config
         self.cleaning: Cleaning | None = None
         self.exploration: Exploration | None = None
@@ -47,6 +55,7 @@ class Job:
         self.ledger = EnergyLedger(config.energy, senses)
         self.times = TimeLedger()
         self.bin = DustBin(config.bin, bin_capacity)
+        self._known_deviation = known_deviation
         self._started = senses.now
         self._is_told = False
         self._cleaned: CleanResult | None = None
@@ -121,7 +130,9 @@ class Job:
         coverage = self.cleaning.ledger.coverage
         swept = coverage.swept_cells
         coverage.sweep(pose.x, pose.y)
-        self.rough_way += way if senses.knowledge is Knowledge.ROUGH else 0.0
+        if senses.knowledge is Knowledge.ROUGH and senses.unsure > self._known_deviation:
+            # A lidar that is slow, or a home that changed, alone says nothing against the place.
+            self.rough_way += way
         self.bin.note(pose.x, pose.y, senses.grains, way, coverage.swept_cells - swept)
         self.dirt.note(pose.x, pose.y, senses.grains * elapsed, way)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -50,7 +51,7 @@ def obstacles() -> Obstacles:
 
 
 def cleaning_job() -> Job:
-    job = Job(DirtMap(HOME.map), CONFIG, 100.0, AWAY)
+    job = Job(DirtMap(HOME.map), CONFIG, 100.0, AWAY, ROBOT.localization.known_deviation)
     clean = Cleaning(CleanRequest(), SITE, job.dirt, CONFIG.cleaning, AWAY.pose)
     job.begin_clean(clean, AWAY)
     return job
@@ -134,14 +135,22 @@ def test_what_it_passes_is_swept_where_its_place_is_known_and_it_drives() -> Non
 
 
 @pytest.mark.parametrize(
-    ("knowledge", "is_told"), [(Knowledge.KNOWN, False), (Knowledge.ROUGH, True)]
+    ("knowledge", "unsure", "is_told"),
+    [
+        (Knowledge.KNOWN, 0.01, False),
+        (Knowledge.ROUGH, 0.07, True),
+        (Knowledge.ROUGH, math.inf, True),
+        # As by a lidar whose scans come a second late.
+        (Knowledge.ROUGH, 0.02, False),
+    ],
 )
 def test_a_way_on_which_the_place_was_hardly_known_is_told(
-    knowledge: Knowledge, is_told: bool
+    knowledge: Knowledge, unsure: float, is_told: bool
 ) -> None:
     job, last = cleaning_job(), AWAY
     for step in range(1, 60):
-        senses = Senses(0.1 * step, Pose(1.0 + 0.02 * step, 0.6, 0.0), knowledge=knowledge)
+        here = Pose(1.0 + 0.02 * step, 0.6, 0.0)
+        senses = Senses(0.1 * step, here, knowledge=knowledge, unsure=unsure)
         job.account(senses, last, sweeps=True)
         last = senses
     end(job, CleanOutcome.COMPLETED)
