@@ -18,6 +18,8 @@ from running.suites import SUITES
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE, TEST = ROOT / "src", ROOT / "test"
 MOST_FILES = 15
+MOST_LINES = 400
+MOST_LONG_FILES = 32
 
 LIVE = "lives under a client"
 PART = "a compiled or private part of one stage, tested through it"
@@ -399,6 +401,14 @@ def test_folders_can_be_looked_over() -> None:
         and sum(path.name != "__init__.py" for path in folder.glob("*.py")) > MOST_FILES
     }
     assert large == set(LARGE_FOLDERS)
+
+
+def test_files_fit_in_the_head() -> None:
+    """A file of more than 300 lines has two subjects, most likely; no more such ones come."""
+    lines = {path: len(path.read_text("utf-8").splitlines()) for path in SOURCE.rglob("*.py")}
+    long = {path.relative_to(ROOT).as_posix() for path, count in lines.items() if count > 300}
+    assert len(long) <= MOST_LONG_FILES, long
+    assert max(lines.values()) <= MOST_LINES
 
 
 def test_no_comment_is_a_banner() -> None:

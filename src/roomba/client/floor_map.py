@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from roomba.client.view import GridLayer, HomeView, Point, RoomView
-from roomba.files.valetudo import ValetudoHome, compose
+from roomba.files.valetudo.home import ValetudoHome
+from roomba.files.valetudo.writing import compose
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 

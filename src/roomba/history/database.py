@@ -5,23 +5,28 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import json
-import math
 import os
 import sqlite3
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from roomba.client.protocol import MissedFloor
 from roomba.errors import RoombaError
 from roomba.files.atomic import make_private
 from roomba.files.journal import append_line, read_lines, write_lines
-from roomba.history.run import RunFigures, RunRecording, RunSource
+from roomba.history.run import RunFigures, RunRecording
 from roomba.history.run_file import packed, unpacked
-from roomba.time_spent import TimeSpent
-from roomba.vocabulary import EdgeReason, OpenEdge
+from roomba.history.run_rows import (
+    ADDED,
+    COLUMNS,
+    MIGRATIONS,
+    KeptRun,
+    insert,
+    insert_row,
+    row_of,
+    select,
+)
 
 if TYPE_CHECKING:
     from roomba.client.household import TotalsView
@@ -37,62 +42,11 @@ _MOST_RECORDINGS: Final = 200
 _LARGEST_NUMBER: Final = 2**63 - 1
 """Of a run: larger ones SQLite does not know."""
 
-MIGRATIONS: Final = (
-    """
-    CREATE TABLE runs (
-        id INTEGER PRIMARY KEY AUTOINCREMENT,
-        program TEXT NOT NULL, home TEXT NOT NULL, seed INTEGER, repeat TEXT NOT NULL,
-        configuration TEXT NOT NULL, kind TEXT NOT NULL, began REAL NOT NULL,
-        outcome TEXT NOT NULL, message TEXT NOT NULL, duration REAL, covered REAL, wanted REAL,
-        distance REAL, turning REAL, dirt REAL, energy REAL
-    );
-    CREATE INDEX runs_by_time ON runs (began);
-    CREATE TABLE missed (
-        run INTEGER NOT NULL REFERENCES runs (id) ON DELETE CASCADE,
-        area REAL NOT NULL, x REAL NOT NULL, y REAL NOT NULL, room TEXT NOT NULL,
-        reason TEXT NOT NULL
-    );
-    CREATE INDEX missed_by_run ON missed (run);
-    """,
-    """
-    CREATE TABLE recordings (
-        run INTEGER PRIMARY KEY REFERENCES runs (id) ON DELETE CASCADE, content BLOB NOT NULL
-    );
-    """,
-    """
-    ALTER TABLE runs ADD COLUMN times TEXT NOT NULL DEFAULT '{}';
-    """,
-    """
-    ALTER TABLE runs ADD COLUMN mapped REAL;
-    ALTER TABLE runs ADD COLUMN open_edges TEXT NOT NULL DEFAULT '[]';
-    """,
-)
-"""What makes each version of the schema of the one before; the first one of nothing."""
-
-_COLUMNS: Final = (
-    "program", "home", "seed", "repeat", "configuration", "kind", "began", "outcome", "message",
-    "duration", "covered", "wanted", "distance", "turning", "dirt", "energy",
-    "times", "mapped", "open_edges",
-)  # fmt: skip
-_ADDED: Final = {"times": "{}", "mapped": None, "open_edges": "[]"}
-"""Columns that rows of older journals do not have, with what they are then."""
 _SUMS: Final = ("covered", "duration", "distance", "dirt", "energy")
-_NUMBERS: Final = (
-    "duration", "covered", "wanted", "distance", "turning", "dirt", "energy", "mapped",
-)  # fmt: skip
 
 
 class HistoryError(RoombaError):
     """The history cannot be used; the message names the file and says what to do."""
-
-
-@dataclass(frozen=True, slots=True)
-class KeptRun:
-    """A run of the history by its number; ``is_recorded`` whether it can be looked at again."""
-
-    number: int
-    figures: RunFigures
-    is_recorded: bool
 
 
 class History:
@@ -113,8 +67,8 @@ class History:
         """Keep a run, and return its number; it is on the disk then."""
         content = None if recording is None else packed(figures, recording)
         with self._opened() as database, _transaction(database):
-            number = _insert(database, figures)
-            append_line(self._journal, {"number": number, **_row(figures)})
+            number = insert(database, figures)
+            append_line(self._journal, {"number": number, **row_of(figures)})
             if content is not None:
                 database.execute("INSERT INTO recordings VALUES (?, ?)", (number, content))
                 database.execute(
@@ -130,8 +84,8 @@ class History:
             return 0
         with self._opened() as database, _transaction(database):
             for figures in runs:
-                number = _insert(database, figures)
-                append_line(self._journal, {"number": number, **_row(figures)})
+                number = insert(database, figures)
+                append_line(self._journal, {"number": number, **row_of(figures)})
         return len(runs)
 
     def configured(self, program: str, name: str) -> set[str]:
@@ -146,7 +100,7 @@ class History:
     def runs(self, limit: int = 1000, home: str | None = None) -> list[KeptRun]:
         """Return the newest runs, the newest first; ``home`` chooses those of one home."""
         with self._opened() as database:
-            return _select(
+            return select(
                 database,
                 "(? IS NULL OR home = ?) ORDER BY began DESC, id DESC LIMIT ?",
                 (home, home, limit),
@@ -169,7 +123,7 @@ class History:
         found: list[KeptRun] = []
         if 0 < number <= _LARGEST_NUMBER:
             with self._opened() as database:
-                found = _select(database, "id = ?", (number,))
+                found = select(database, "id = ?", (number,))
         if not found:
             newest = self.named(LAST).number
             raise HistoryError(
@@ -261,17 +215,17 @@ class History:
     def _begin_journal(self) -> None:
         """Write the figures of a database that an older program made."""
         with contextlib.closing(self._connect()) as database:
-            runs = _select(database, "TRUE ORDER BY id", ())
-        write_lines(self._journal, ({"number": run.number, **_row(run.figures)} for run in runs))
+            runs = select(database, "TRUE ORDER BY id", ())
+        write_lines(self._journal, ({"number": run.number, **row_of(run.figures)} for run in runs))
 
     def _restore(self) -> None:
         """Fill a new database with the figures of the journal."""
         # Of a number that was given twice the first writer was killed before it was kept.
-        rows = {row.pop("number", None): _ADDED | row for row in read_lines(self._journal)}
+        rows = {row.pop("number", None): ADDED | row for row in read_lines(self._journal)}
         with contextlib.closing(self._connect()) as database, _transaction(database):
             for number, row in rows.items():
-                if isinstance(number, int) and set(row) == {*_COLUMNS, "missed"}:
-                    _insert_row(database, row, number)
+                if isinstance(number, int) and set(row) == {*COLUMNS, "missed"}:
+                    insert_row(database, row, number)
 
     def _set_aside(self) -> None:
         stamp = time.strftime("%Y%m%d-%H%M%S")
@@ -292,84 +246,3 @@ def _transaction(database: sqlite3.Connection) -> Iterator[None]:
         database.execute("ROLLBACK")
         raise
     database.execute("COMMIT")
-
-
-def _insert(database: sqlite3.Connection, figures: RunFigures) -> int:
-    return _insert_row(database, _row(figures))
-
-
-def _row(figures: RunFigures) -> dict[str, Any]:
-    """Return the columns of a run, with its missed floor as rows of their own."""
-    source = figures.source
-    return {
-        "program": source.program,
-        "home": source.home,
-        "seed": source.seed,
-        "repeat": source.repeat,
-        "configuration": json.dumps(dict(source.configuration), sort_keys=True),
-        "kind": figures.kind,
-        "began": figures.began,
-        "outcome": figures.outcome,
-        "message": figures.message,
-        "times": json.dumps(asdict(figures.times), sort_keys=True),
-        "open_edges": json.dumps([asdict(edge) for edge in figures.open_edges], sort_keys=True),
-        **{name: _known(getattr(figures, name)) for name in _NUMBERS},
-        "missed": [[miss.area, miss.x, miss.y, miss.room, miss.reason] for miss in figures.missed],
-    }
-
-
-def _insert_row(
-    database: sqlite3.Connection, row: dict[str, Any], number: int | None = None
-) -> int:
-    """Keep the columns of a run, by its number or the next one; return the number."""
-    names = ", ".join(_COLUMNS)
-    places = ", ".join(f":{name}" for name in _COLUMNS)
-    values = {name: row[name] for name in _COLUMNS} | {"id": number}
-    added = database.execute(f"INSERT INTO runs (id, {names}) VALUES (:id, {places})", values)
-    given = added.lastrowid
-    assert given is not None
-    database.executemany(
-        "INSERT INTO missed VALUES (?, ?, ?, ?, ?, ?)", [(given, *miss) for miss in row["missed"]]
-    )
-    return given
-
-
-def _known(value: float) -> float | None:
-    return value if math.isfinite(value) else None
-
-
-def _select(database: sqlite3.Connection, which: str, values: tuple[Any, ...]) -> list[KeptRun]:
-    names = ", ".join(_COLUMNS)
-    rows = database.execute(
-        f"SELECT id, id IN (SELECT run FROM recordings), {names} FROM runs WHERE {which}", values
-    ).fetchall()
-    return [
-        KeptRun(
-            row[0], _figures_of(database, row[0], dict(zip(_COLUMNS, row[2:], strict=True))), row[1]
-        )
-        for row in rows
-    ]
-
-
-def _figures_of(database: sqlite3.Connection, number: int, row: dict[str, Any]) -> RunFigures:
-    missed = database.execute(
-        "SELECT area, x, y, room, reason FROM missed WHERE run = ? ORDER BY area DESC", (number,)
-    )
-    source = RunSource(
-        row["program"], row["home"], row["seed"], row["repeat"], json.loads(row["configuration"])
-    )
-    return RunFigures(
-        source,
-        row["kind"],
-        row["began"],
-        row["outcome"],
-        row["message"],
-        **{name: math.nan if row[name] is None else row[name] for name in _NUMBERS},
-        missed=tuple(MissedFloor(*miss) for miss in missed),
-        times=TimeSpent(**json.loads(row["times"])),
-        open_edges=tuple(_edge_of(**edge) for edge in json.loads(row["open_edges"])),
-    )
-
-
-def _edge_of(length: float, x: float, y: float, reason: str) -> OpenEdge:
-    return OpenEdge(length, x, y, EdgeReason(reason))

@@ -14,8 +14,9 @@ import pytest
 
 from roomba.client.household import TotalsView
 from roomba.files.journal import read_lines, write_lines
-from roomba.history.database import MIGRATIONS, History, HistoryError
+from roomba.history.database import History, HistoryError
 from roomba.history.run import RunFigures, RunRecording
+from roomba.history.run_rows import MIGRATIONS
 from roomba.time_spent import TimeSpent
 
 WRITER = """

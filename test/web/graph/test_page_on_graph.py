@@ -15,8 +15,9 @@ from fixtures.waiting import wait_until
 from playwright.sync_api import Page, sync_playwright
 from std_msgs.msg import Bool
 
-from roomba.history.database import History, KeptRun
+from roomba.history.database import History
 from roomba.history.folder import history_folder
+from roomba.history.run_rows import KeptRun
 
 WORKS_WITHIN = 60_000
 """ms of wall time for what the robot does by its own clock."""

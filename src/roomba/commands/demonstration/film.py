@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 from roomba.commands.demonstration.listener import HeardMessage
-from roomba.files.valetudo import parse
+from roomba.files.valetudo.reading import parse
 from roomba.grid import UNKNOWN
 from roomba.plots.canvas import Picture
 

@@ -20,11 +20,12 @@ from roomba.commands.sim.state_samples import StateSamples
 from roomba.commands.trials.runs import run_trial
 from roomba.commands.trials.trial import Trial
 from roomba.errors import RoombaError
-from roomba.history.database import History, KeptRun
+from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.replay import RecordedRobot
 from roomba.history.report.document import report_of
 from roomba.history.run import RunFigures, RunRecording, RunSource
+from roomba.history.run_rows import KeptRun
 from roomba.plots.canvas import Picture
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token

@@ -16,11 +16,12 @@ from roomba.commands.program_name import spelled
 from roomba.commands.report.table import csv_of, json_of, run_table, runs_table, weeks_table
 from roomba.errors import RoombaError
 from roomba.files.atomic import write_whole
-from roomba.history.database import LAST, History, KeptRun
+from roomba.history.database import LAST, History
 from roomba.history.folder import history_folder
 from roomba.history.report.document import comparison_of, report_of
 from roomba.history.run import RunRecording
 from roomba.history.run_file import write_run
+from roomba.history.run_rows import KeptRun
 
 PROGRAM: Final = spelled("report")
 _LISTED: Final = 20

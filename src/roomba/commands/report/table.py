@@ -15,8 +15,8 @@ from rich.text import Text
 
 from roomba.client.protocol import MissedFloor
 from roomba.commands.output import named_table
-from roomba.history.database import KeptRun
 from roomba.history.report import words
+from roomba.history.run_rows import KeptRun
 from roomba.history.totals import totals_by_week
 
 COLUMNS: Final = (

@@ -12,7 +12,7 @@ from roomba.commands.valetudo.homes import read_home
 from roomba.commands.valetudo.options import parser_of, reason_of
 from roomba.errors import RoombaError
 from roomba.files.atomic import write_whole
-from roomba.files.valetudo import compose
+from roomba.files.valetudo.writing import compose
 
 PROGRAM: Final = spelled("export")
 

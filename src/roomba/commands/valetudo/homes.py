@@ -18,7 +18,7 @@ from roomba.files.atomic import write_whole
 from roomba.files.home_layer import LAYER_NAME, MAP_NAME
 from roomba.files.occupancy_map import save_map
 from roomba.files.shipped import HOMES
-from roomba.files.valetudo import ValetudoHome
+from roomba.files.valetudo.home import ValetudoHome
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.rooms.outlines import outline_of

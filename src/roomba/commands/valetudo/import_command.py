@@ -12,7 +12,7 @@ from roomba.commands.valetudo.options import parser_of, reason_of
 from roomba.errors import RoombaError
 from roomba.files.bounded import read_text
 from roomba.files.home_layer import MAP_NAME
-from roomba.files.valetudo import parse
+from roomba.files.valetudo.reading import parse
 
 PROGRAM: Final = spelled("import")
 
@@ -35,7 +35,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"{PROGRAM}: {given.file}: {reason_of(error)}", file=sys.stderr)
         return 2
     zones = len(found.no_go) + len(found.walls)
-    put = "" if found.station is not None else ", where it was put: the map has no charger"
+    put = "" if found.station is not None else ", where it was put: the map has no charger on it"
     print(
         f"{folder}: {home.map.free_area:.1f} m² of floor, {len(home.rooms)} rooms, {zones} zones, "
         f"station at ({home.station.x:.2f}, {home.station.y:.2f}){put}"

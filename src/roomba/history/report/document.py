@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.client.protocol import MissedFloor
-from roomba.history.database import KeptRun
 from roomba.history.report import words
 from roomba.history.report.chart import chart_svg
 from roomba.history.report.picture import floor_svg
 from roomba.history.report.style import STYLE
 from roomba.history.run import REQUEST, RunFigures, RunRecording
+from roomba.history.run_rows import KeptRun
 from roomba.history.totals import totals_by_week
 from roomba.vocabulary import OpenEdge, places_told
 

@@ -22,7 +22,7 @@ from roomba.client.observed import ObservedRobot
 from roomba.client.told_once import ToldOnce
 from roomba.client.view import GridLayer, HomeView, LayerName, Point, RobotView
 from roomba.errors import RoombaError
-from roomba.files.valetudo import ValetudoError
+from roomba.files.valetudo.home import ValetudoError
 from roomba.ui.smart_home.announcement import announcements
 from roomba.ui.smart_home.broker import Broker
 from roomba.ui.smart_home.commands import SmartCommands

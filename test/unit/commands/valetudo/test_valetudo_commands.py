@@ -16,7 +16,8 @@ from roomba.commands.valetudo.homes import read_home, write_home
 from roomba.commands.valetudo.import_command import main as bring
 from roomba.configuration.body import BodyConfig
 from roomba.files.shipped import HOMES
-from roomba.files.valetudo import ValetudoHome, parse
+from roomba.files.valetudo.home import ValetudoHome
+from roomba.files.valetudo.reading import parse
 from roomba.geometry import Pose
 from roomba.grid import FREE
 from roomba.world.layers.layer import load_home

@@ -9,9 +9,9 @@ from html.parser import HTMLParser
 
 import pytest
 
-from roomba.history.database import KeptRun
 from roomba.history.report.document import comparison_of, report_of
 from roomba.history.run import RunFigures, RunRecording
+from roomba.history.run_rows import KeptRun
 from roomba.vocabulary import EdgeReason
 
 VOID = ("meta", "link", "br", "img", "input")

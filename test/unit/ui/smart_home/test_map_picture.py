@@ -13,7 +13,7 @@ from PIL import Image
 
 from roomba.client.floor_map import FloorMap, valetudo_of
 from roomba.client.view import GridLayer, RoomView, ZoneView
-from roomba.files.valetudo import parse
+from roomba.files.valetudo.reading import parse
 from roomba.ui.smart_home.map_picture import picture_of
 
 CELLS = np.zeros((40, 60), np.uint8)

@@ -15,7 +15,7 @@ from fixtures.waiting import unchanged, wait_until
 
 from roomba.commands.play.living import live_client
 from roomba.errors import RoombaError
-from roomba.files.valetudo import parse
+from roomba.files.valetudo.reading import parse
 from roomba.headless.live.client import LiveClient
 from roomba.ui.smart_home.switch import switched_on
 

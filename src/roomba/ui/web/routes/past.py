@@ -15,10 +15,11 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from roomba.client.observed import ObservedRobot
 from roomba.client.plain import known
 from roomba.errors import RoombaError
-from roomba.history.database import History, KeptRun
+from roomba.history.database import History
 from roomba.history.replay import RecordedRobot
 from roomba.history.report.document import comparison_of, report_of
 from roomba.history.run import RunRecording
+from roomba.history.run_rows import KeptRun
 from roomba.history.totals import totals_by_week
 
 REPORT_POLICY: Final = (

@@ -1,20 +1,8 @@
-"""Valetudo's map format (``ValetudoMap``, version 2; version 1 is read as well): a home in JSON.
-
-Its pixels are counted from the upper left corner, ``y`` downwards; a layer has them as runs, x, y
-and count. Entities have whole cm from that corner; their angles are degrees, 0 up, clockwise. The
-source is Valetudo's ``backend/lib/entities/map``, with the schemas in its folder ``doc``.
-
-Files that were written here name the map's own corner (``metaData.origin``, m), so that they come
-back in the same frame. Other maps are cut to what they show, and begin at their station; the
-seams and doorways that some robots leave out (:mod:`roomba.raster.seams`) are floor.
-"""
+"""Maps of Valetudo are read: what they must have, and where it lies in the robot's frame."""
 
 from __future__ import annotations
 
-import json
 import math
-import uuid
-from dataclasses import dataclass
 from typing import Annotated, Any, Final, Literal
 
 import numpy as np
@@ -22,50 +10,20 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from roomba.arrays import Mask
-from roomba.errors import RoombaError
 from roomba.files.plain_json import load_json
+from roomba.files.valetudo.home import CM, VERSION, Points, ValetudoError, ValetudoHome
 from roomba.geometry import Pose
 from roomba.grid import FREE, MOST_CELLS, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.raster.seams import without_seams
 
-Points = tuple[tuple[float, float], ...]
-
-VERSION: Final = 2
-_CM: Final = 0.01
 _MARGIN: Final = 2
 """Cells around what a map shows."""
 _MOST_LAYERS: Final = 100
 """Rooms, floor and walls; each takes a cell's byte of memory for all cells."""
 _FARTHEST: Final = 1_000_000
 """cm, and pixels; no home has a place farther from its corner."""
-_NAMES: Final = uuid.UUID("6f1c1a3e-2f0a-4f57-9d52-6a1f5d0b7c11")
-
-
-class ValetudoError(RoombaError):
-    """A file that is no such map, or a home that cannot be written as one."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ValetudoHome:
-    """A home as such a map tells it: m and rad, map frame.
-
-    ``rooms`` are names with masks, bool over the map; ``no_go`` are corners of areas, ``walls``
-    those of virtual walls. ``station`` is the docked robot; ``has_own_frame`` whether the file said
-    where its corner lies. Without that only the station's place is to be relied on, at (0, 0), not
-    its heading: that means something else with each vendor.
-
-    ``robot`` is where the robot is, if not on its station, and ``way`` how it came there; both are
-    only written.
-    """
-
-    occupancy: OccupancyMap
-    rooms: tuple[tuple[str, Mask], ...] = ()
-    station: Pose | None = None
-    no_go: tuple[Points, ...] = ()
-    walls: tuple[Points, ...] = ()
-    has_own_frame: bool = True
-    robot: Pose | None = None
-    way: Points = ()
+_NEAR: Final = 500
+"""cm around a map."""
 
 
 class _Part(BaseModel):
@@ -139,7 +97,7 @@ def parse(text: str) -> ValetudoHome:
         for name, mask in _named(list(zip(found.layers, layers, strict=True)))
     ]
     if found.metaData.origin is None:
-        values, rooms = _without_seams(values, rooms, found.pixelSize * _CM)
+        values, rooms = _without_seams(values, rooms, found.pixelSize * CM)
     return _placed(found, values, rooms)
 
 
@@ -152,6 +110,7 @@ def _validated(text: str) -> _Map:
         raise ValetudoError(f"expected a map of Valetudo in JSON: {error}") from error
     if not isinstance(raw, dict) or "layers" not in raw or "pixelSize" not in raw:
         got = ", ".join(list(raw)[:6]) if isinstance(raw, dict) else type(raw).__name__
+        got = got or "nothing"
         raise ValetudoError(
             "expected a map of Valetudo with size, pixelSize, layers, entities and metaData, got "
             f"{got}; it is what Valetudo gives at api/v2/robot/state/map"
@@ -159,14 +118,21 @@ def _validated(text: str) -> _Map:
     try:
         found = _Map.model_validate(raw)
     except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
-        raise ValetudoError(f"{where}: {first['msg']}, got {str(first['input'])[:60]!r}") from error
+        raise ValetudoError(_reason(dict(error.errors()[0]))) from error
     if found.metaData.version not in (1, VERSION):
         raise ValetudoError(
             f"metaData.version: expected 1 or {VERSION}, got {found.metaData.version}"
         )
     return found
+
+
+def _reason(error: dict[str, Any]) -> str:
+    """Return what was expected and what came, of pydantic's error."""
+    where = ".".join(str(part) for part in error["loc"])
+    if error["type"] == "missing":
+        return f"{where}: expected a value, got nothing"
+    expected = str(error["msg"]).replace("Input should be", "expected")
+    return f"{where}: {expected}, got {str(error['input'])[:60]!r}"
 
 
 def _mask(layer: _Layer, number: int, rows: int, columns: int) -> Mask:
@@ -231,10 +197,12 @@ def _without_seams(
 
 def _placed(found: _Map, values: NDArray[np.int8], rooms: list[tuple[str, Mask]]) -> ValetudoHome:
     """Return all in the map's frame."""
-    cell = found.pixelSize * _CM
+    cell = found.pixelSize * CM
     rows, columns = values.shape
     cut = (slice(0, rows), slice(0, columns))
     charger = next((e for e in found.entities if e.type == "charger_location"), None)
+    if charger is not None and not _is_on_map(charger, found.size):
+        charger = None
     origin = found.metaData.origin
     if origin is None:
         cut = _around(values != UNKNOWN)
@@ -267,6 +235,17 @@ def _placed(found: _Map, values: NDArray[np.int8], rooms: list[tuple[str, Mask]]
     )
 
 
+def _is_on_map(entity: _Entity, size: _Size) -> bool:
+    """Whether a place lies on the map, or near it, as on one that was cut.
+
+    Some programs tell a place far away for what is not known.
+    """
+    if len(entity.points) != 2:
+        raise ValetudoError(f"entities: expected points of two numbers each, got {entity.points}")
+    x, y = entity.points
+    return -_NEAR <= x <= size.x + _NEAR and -_NEAR <= y <= size.y + _NEAR
+
+
 def _around(mask: Mask) -> tuple[slice, slice]:
     """Return the rows and columns around a mask, with a margin."""
     bounds = []
@@ -282,101 +261,8 @@ def _point(points: list[float], rows: int, cell: float) -> tuple[float, float]:
     """Return a point, m from the lower left corner."""
     if len(points) != 2:
         raise ValetudoError(f"entities: expected points of two numbers each, got {points}")
-    return points[0] * _CM, rows * cell - points[1] * _CM
+    return points[0] * CM, rows * cell - points[1] * CM
 
 
 def _wrapped(angle: float) -> float:
     return math.remainder(angle, 2.0 * math.pi)
-
-
-def compose(home: ValetudoHome) -> dict[str, Any]:
-    """Return a home as plain values of the format; raises ValetudoError for cells of half a cm.
-
-    Places are rounded to whole cm, the station's heading to whole degrees.
-    """
-    frame, values = home.occupancy.frame, home.occupancy.values
-    pixel = round(frame.resolution / _CM)
-    if pixel < 1 or abs(pixel * _CM - frame.resolution) > 1e-9:
-        raise ValetudoError(
-            f"expected a map with cells of whole cm, got {frame.resolution} m; map it again with "
-            "cells of 0.05 m"
-        )
-    free, in_rooms = values == FREE, np.zeros(values.shape, np.bool_)
-    layers = []
-    for number, (name, mask) in enumerate(home.rooms, start=1):
-        mask = mask & free & ~in_rooms
-        in_rooms |= mask
-        meta = {"segmentId": str(number), "name": name, "active": False}
-        layers.append(_layer("segment", mask, pixel, meta))
-    layers.insert(0, _layer("floor", free & ~in_rooms, pixel, {}))
-    layers.append(_layer("wall", values == OCCUPIED, pixel, {}))
-    told = [layer for layer in layers if layer["dimensions"]["pixelCount"]]
-    entities = _entities(home)
-    content = json.dumps([told, entities], sort_keys=True)
-    return {
-        "__class": "ValetudoMap",
-        "metaData": {
-            "version": VERSION,
-            "nonce": str(uuid.uuid5(_NAMES, content)),
-            "origin": [frame.origin_x, frame.origin_y],
-        },
-        "size": {"x": frame.columns * pixel, "y": frame.rows * pixel},
-        "pixelSize": pixel,
-        "layers": told,
-        "entities": entities,
-    }
-
-
-def _layer(kind: str, mask: Mask, pixel: int, meta: dict[str, Any]) -> dict[str, Any]:
-    above = mask[::-1]
-    edges = np.diff(np.pad(above, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    y, x = np.nonzero(edges == 1)
-    count = np.nonzero(edges == -1)[1] - x
-    rows, columns = np.nonzero(above)
-    return {
-        "__class": "MapLayer",
-        "metaData": {**meta, "area": len(rows) * pixel * pixel},
-        "type": kind,
-        "pixels": [],
-        "compressedPixels": np.column_stack((x, y, count)).ravel().tolist(),
-        "dimensions": {
-            "x": _dimension(columns),
-            "y": _dimension(rows),
-            "pixelCount": len(rows),
-        },
-    }
-
-
-def _dimension(cells: NDArray[np.int64]) -> dict[str, int]:
-    if not cells.size:
-        return {"min": 0, "max": 0, "mid": 0, "avg": 0}
-    least, most = int(cells.min()), int(cells.max())
-    middle, mean = math.floor((least + most) / 2.0 + 0.5), math.floor(float(cells.mean()) + 0.5)
-    return {"min": least, "max": most, "mid": middle, "avg": mean}
-
-
-def _entities(home: ValetudoHome) -> list[dict[str, Any]]:
-    entities = []
-    robot = home.station if home.robot is None else home.robot
-    for pose, name in ((robot, "robot_position"), (home.station, "charger_location")):
-        if pose is not None:
-            degrees = round(90.0 - math.degrees(pose.theta)) % 360
-            place = _points(home, ((pose.x, pose.y),))
-            entities.append(_entity("PointMapEntity", name, place, {"angle": degrees}))
-    for kind, name, shapes in (
-        ("PathMapEntity", "path", (home.way,) if len(home.way) > 1 else ()),
-        ("PolygonMapEntity", "no_go_area", home.no_go),
-        ("LineMapEntity", "virtual_wall", home.walls),
-    ):
-        entities += [_entity(kind, name, _points(home, shape), {}) for shape in shapes]
-    return entities
-
-
-def _entity(kind: str, name: str, points: list[int], meta: dict[str, Any]) -> dict[str, Any]:
-    return {"__class": kind, "metaData": meta, "points": points, "type": name}
-
-
-def _points(home: ValetudoHome, points: Points) -> list[int]:
-    frame = home.occupancy.frame
-    top = frame.origin_y + frame.rows * frame.resolution
-    return [round(value / _CM) for x, y in points for value in (x - frame.origin_x, top - y)]

@@ -1,0 +1,147 @@
+"""Runs as rows of the database: its tables, and figures that are put in and taken out."""
+
+from __future__ import annotations
+
+import json
+import math
+import sqlite3
+from dataclasses import asdict, dataclass
+from typing import Any, Final
+
+from roomba.client.protocol import MissedFloor
+from roomba.history.run import RunFigures, RunSource
+from roomba.time_spent import TimeSpent
+from roomba.vocabulary import EdgeReason, OpenEdge
+
+MIGRATIONS: Final = (
+    """
+    CREATE TABLE runs (
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
+        program TEXT NOT NULL, home TEXT NOT NULL, seed INTEGER, repeat TEXT NOT NULL,
+        configuration TEXT NOT NULL, kind TEXT NOT NULL, began REAL NOT NULL,
+        outcome TEXT NOT NULL, message TEXT NOT NULL, duration REAL, covered REAL, wanted REAL,
+        distance REAL, turning REAL, dirt REAL, energy REAL
+    );
+    CREATE INDEX runs_by_time ON runs (began);
+    CREATE TABLE missed (
+        run INTEGER NOT NULL REFERENCES runs (id) ON DELETE CASCADE,
+        area REAL NOT NULL, x REAL NOT NULL, y REAL NOT NULL, room TEXT NOT NULL,
+        reason TEXT NOT NULL
+    );
+    CREATE INDEX missed_by_run ON missed (run);
+    """,
+    """
+    CREATE TABLE recordings (
+        run INTEGER PRIMARY KEY REFERENCES runs (id) ON DELETE CASCADE, content BLOB NOT NULL
+    );
+    """,
+    """
+    ALTER TABLE runs ADD COLUMN times TEXT NOT NULL DEFAULT '{}';
+    """,
+    """
+    ALTER TABLE runs ADD COLUMN mapped REAL;
+    ALTER TABLE runs ADD COLUMN open_edges TEXT NOT NULL DEFAULT '[]';
+    """,
+)
+"""What makes each version of the schema of the one before; the first one of nothing."""
+
+COLUMNS: Final = (
+    "program", "home", "seed", "repeat", "configuration", "kind", "began", "outcome", "message",
+    "duration", "covered", "wanted", "distance", "turning", "dirt", "energy",
+    "times", "mapped", "open_edges",
+)  # fmt: skip
+ADDED: Final = {"times": "{}", "mapped": None, "open_edges": "[]"}
+"""Columns that rows of older journals do not have, with what they are then."""
+_NUMBERS: Final = (
+    "duration", "covered", "wanted", "distance", "turning", "dirt", "energy", "mapped",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class KeptRun:
+    """A run of the history by its number; ``is_recorded`` whether it can be looked at again."""
+
+    number: int
+    figures: RunFigures
+    is_recorded: bool
+
+
+def insert(database: sqlite3.Connection, figures: RunFigures) -> int:
+    """Keep a run by the next number; return that."""
+    return insert_row(database, row_of(figures))
+
+
+def row_of(figures: RunFigures) -> dict[str, Any]:
+    """Return the columns of a run, with its missed floor as rows of their own."""
+    source = figures.source
+    return {
+        "program": source.program,
+        "home": source.home,
+        "seed": source.seed,
+        "repeat": source.repeat,
+        "configuration": json.dumps(dict(source.configuration), sort_keys=True),
+        "kind": figures.kind,
+        "began": figures.began,
+        "outcome": figures.outcome,
+        "message": figures.message,
+        "times": json.dumps(asdict(figures.times), sort_keys=True),
+        "open_edges": json.dumps([asdict(edge) for edge in figures.open_edges], sort_keys=True),
+        **{name: _known(getattr(figures, name)) for name in _NUMBERS},
+        "missed": [[miss.area, miss.x, miss.y, miss.room, miss.reason] for miss in figures.missed],
+    }
+
+
+def insert_row(database: sqlite3.Connection, row: dict[str, Any], number: int | None = None) -> int:
+    """Keep the columns of a run, by its number or the next one; return the number."""
+    names = ", ".join(COLUMNS)
+    places = ", ".join(f":{name}" for name in COLUMNS)
+    values = {name: row[name] for name in COLUMNS} | {"id": number}
+    added = database.execute(f"INSERT INTO runs (id, {names}) VALUES (:id, {places})", values)
+    given = added.lastrowid
+    assert given is not None
+    database.executemany(
+        "INSERT INTO missed VALUES (?, ?, ?, ?, ?, ?)", [(given, *miss) for miss in row["missed"]]
+    )
+    return given
+
+
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def select(database: sqlite3.Connection, which: str, values: tuple[Any, ...]) -> list[KeptRun]:
+    """Return the runs of which a condition of SQL is true, as its order says."""
+    names = ", ".join(COLUMNS)
+    rows = database.execute(
+        f"SELECT id, id IN (SELECT run FROM recordings), {names} FROM runs WHERE {which}", values
+    ).fetchall()
+    return [
+        KeptRun(
+            row[0], _figures_of(database, row[0], dict(zip(COLUMNS, row[2:], strict=True))), row[1]
+        )
+        for row in rows
+    ]
+
+
+def _figures_of(database: sqlite3.Connection, number: int, row: dict[str, Any]) -> RunFigures:
+    missed = database.execute(
+        "SELECT area, x, y, room, reason FROM missed WHERE run = ? ORDER BY area DESC", (number,)
+    )
+    source = RunSource(
+        row["program"], row["home"], row["seed"], row["repeat"], json.loads(row["configuration"])
+    )
+    return RunFigures(
+        source,
+        row["kind"],
+        row["began"],
+        row["outcome"],
+        row["message"],
+        **{name: math.nan if row[name] is None else row[name] for name in _NUMBERS},
+        missed=tuple(MissedFloor(*miss) for miss in missed),
+        times=TimeSpent(**json.loads(row["times"])),
+        open_edges=tuple(_edge_of(**edge) for edge in json.loads(row["open_edges"])),
+    )
+
+
+def _edge_of(length: float, x: float, y: float, reason: str) -> OpenEdge:
+    return OpenEdge(length, x, y, EdgeReason(reason))

@@ -1,0 +1,41 @@
+"""Runs as rows of a database."""
+
+from __future__ import annotations
+
+import math
+import sqlite3
+from dataclasses import replace
+
+import pytest
+from unit.history.made import made_figures
+
+from roomba.history.run_rows import ADDED, COLUMNS, MIGRATIONS, insert, row_of, select
+
+
+@pytest.fixture
+def database() -> sqlite3.Connection:
+    made = sqlite3.connect(":memory:")
+    for script in MIGRATIONS:
+        made.executescript(script)
+    return made
+
+
+def test_what_is_put_in_comes_out_again(database: sqlite3.Connection) -> None:
+    figures = made_figures()
+    assert insert(database, figures) == 1
+    assert insert(database, replace(figures, kind="explore", mapped=20.5)) == 2
+    first, second = select(database, "TRUE ORDER BY id", ())
+    assert (first.number, first.is_recorded) == (1, False)
+    # What is not known equals nothing.
+    assert math.isnan(first.figures.energy)
+    known = replace(first.figures, energy=0.0, mapped=0.0)
+    assert known == replace(figures, energy=0.0, mapped=0.0)
+    assert (second.figures.kind, second.figures.mapped) == ("explore", 20.5)
+    assert [run.number for run in select(database, "kind = ?", ("explore",))] == [2]
+
+
+def test_a_row_has_all_columns_and_what_was_added_is_one_of_them() -> None:
+    row = row_of(made_figures())
+    assert set(row) == {*COLUMNS, "missed"}
+    assert set(ADDED) < set(COLUMNS)
+    assert row["energy"] is None
