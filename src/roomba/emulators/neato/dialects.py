@@ -1,13 +1,14 @@
 """How Neatos of two ages tell what they measure: the same things under other names.
 
 Sources: OpenNeato's page of the serial protocol (Botvac D3 to D7); the labels that
-mikeferguson/neato_robot reads (XV-11).
+mikeferguson/neato_robot reads (XV-11). What they keep of themselves is in ``records``.
 """
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
@@ -15,7 +16,7 @@ from typing import Final
 from roomba.world.observation import Observation
 from roomba.world.power import BatteryState
 
-Rows = list[str]
+Rows = Sequence[str]
 _FLOOR, _DEEP = 19, 200
 """mm, what the drop sensors tell over the floor, and beyond an edge."""
 _FAR: Final = 255
@@ -61,10 +62,6 @@ class Dialect(ABC):
     """The rows of each answer, without its heading."""
 
     @abstractmethod
-    def version(self) -> Rows:
-        """Return the rows of the answer to GetVersion."""
-
-    @abstractmethod
     def charger(self, battery: BatteryState) -> Rows:
         """Return the rows of the answer to GetCharger."""
 
@@ -83,16 +80,6 @@ class Dialect(ABC):
 
 class Botvac(Dialect):
     """Botvac D3 to D7."""
-
-    def version(self) -> Rows:
-        """Return a D5's."""
-        return [
-            "ModelID,-1,BotVacD5Connected,,",
-            "Serial Number,EMULATED,000000000000,P",
-            "Software,4,5,3",
-            "BatteryType,1,LITHIUM_ION_4CELL,",
-            "SideBrushType,1,SIDE_BRUSH_PRESENT,",
-        ]
 
     def charger(self, battery: BatteryState) -> Rows:
         """Return the newer firmware's labels."""
@@ -157,10 +144,6 @@ class Botvac(Dialect):
 
 class XV11(Dialect):
     """XV-11."""
-
-    def version(self) -> Rows:
-        """Return one of the first robots'."""
-        return ["ModelID,0,XV11,", "Serial Number,EMULATED,0000000,D", "Software,2,1,15499"]
 
     def charger(self, battery: BatteryState) -> Rows:
         """Return seventeen values."""
@@ -242,6 +225,20 @@ class XV11(Dialect):
 
 
 DIALECTS: Final[dict[Model, Dialect]] = {Model.BOTVAC: Botvac(), Model.XV11: XV11()}
+
+
+def accelerometer(seen: Observation) -> Rows:
+    """Return the rows of the answer to GetAccel, which all of them have: of a robot that is level.
+
+    Pitch is negative while it speeds up, as at a D6 that tells -2.33 degrees and 0.039 g.
+    """
+    ahead, up = seen.acceleration / 9.81, 1.0
+    angles = {"Pitch": -math.degrees(math.atan2(ahead, up)), "Roll": 0.0}
+    parts = {"X": ahead, "Y": 0.0, "Z": up, "Sum": math.hypot(ahead, up)}
+    return [
+        *(f"{name}InDegrees,{angle:6.2f}" for name, angle in angles.items()),
+        *(f"{name}InG,{part:6.3f}" for name, part in parts.items()),
+    ]
 
 
 def _fuel(battery: BatteryState) -> Rows:

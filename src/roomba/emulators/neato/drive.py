@@ -33,6 +33,11 @@ class WheelDrive:
     acceleration: float = 0.3
     _now: float = field(default=0.0, init=False)
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether no way is left."""
+        return self.left == self.right == 0.0
+
     def go(self, left: int, right: int, speed: int, acceleration: int | None) -> None:
         """Drive distances, mm, at ``speed``, mm/s, in place of what was under way.
 

@@ -8,46 +8,25 @@ from typing import Final
 import numpy as np
 
 from roomba.configuration.simulation import SimulatedRobotConfig
-from roomba.emulators.neato.dialects import DIALECTS, Model, Power, Wheel
+from roomba.emulators.neato.cleaning import OwnCleaning
+from roomba.emulators.neato.dialects import DIALECTS, Model, Power, Wheel, accelerometer
 from roomba.emulators.neato.drive import WheelDrive
-from roomba.emulators.neato.words import CommandError, Grammar, Words, understood
+from roomba.emulators.neato.grammars import GRAMMARS
+from roomba.emulators.neato.records import DAYS, RECORDS, SETTINGS, schedule
+from roomba.emulators.neato.words import CommandError, Words, understood
 from roomba.world.simulator import Simulator
 
 STEP: Final = 0.025
 """s of the world; commands come between two."""
 _NEWLINE: Final = "\r\n"
-_MOTOR_FLAGS: Final = (
-    "Brush", "VacuumOn", "VacuumOff", "RWheelDisable", "RWheelEnable", "LWheelDisable",
-    "LWheelEnable", "BrushDisable", "BrushEnable", "SideBrushEnable", "SideBrushDisable",
-    "SideBrushOn", "SideBrushOff",
-)  # fmt: skip
-_MOTOR_VALUES: Final = (
-    "LWheelDist", "RWheelDist", "Speed", "Accel", "RPM", "VacuumSpeed", "SideBrushPower",
-)  # fmt: skip
-GRAMMARS: Final = (
-    Grammar("Help"),
-    Grammar("GetVersion"),
-    Grammar("GetCharger"),
-    Grammar("GetAnalogSensors", ("raw", "stats")),
-    Grammar("GetDigitalSensors"),
-    Grammar("GetMotors", ("Brush", "Vacuum", "LeftWheel", "RightWheel", "Laser", "Charger")),
-    Grammar("GetLDSScan"),
-    Grammar("GetState"),
-    Grammar("GetErr", ("Clear",)),
-    Grammar("GetTime"),
-    Grammar("TestMode", ("On", "Off")),
-    Grammar("SetLDSRotation", ("On", "Off")),
-    Grammar("SetMotor", _MOTOR_FLAGS, _MOTOR_VALUES),
-    Grammar("SetLED", ("BacklightOn", "BacklightOff", "ButtonAmber", "ButtonGreen", "LEDRed",
-                       "LEDGreen", "ButtonAmberDim", "ButtonGreenDim", "ButtonOff")),
-    Grammar("PlaySound", ("Stop",), ("SoundID",)),
-)  # fmt: skip
 _WIDTH: Final = 0.34
 """m, of the D; of a D5."""
 _LEAST_RPM: Final = 500
 _USUAL_VACUUM: Final = 90
 """%, of VacuumOn without VacuumSpeed."""
 _MOST_RPM: Final = 10_000
+_SWEEPING: Final = Power(brush=1200, fan=70, side_brush=1500)
+"""While it cleans by itself; of a D5."""
 
 
 def made_up(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
@@ -62,33 +41,49 @@ def made_up(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
 class NeatoRobot:
     """The robot: :meth:`answer` what is asked, :meth:`advance` lets time pass.
 
-    ``seen`` is what is so since then. ``sound`` is the number of the sound that it plays.
+    ``seen`` is what is so since then, ``cleaning`` what it does by itself. ``sound`` is the number
+    of the sound that it plays.
     """
 
     def __init__(self, simulator: Simulator, model: Model = Model.BOTVAC) -> None:
         """Live in the body of ``simulator``, which it drives, and speak as ``model`` does."""
-        self.simulator, self.model, self._rows = simulator, model, DIALECTS[model]
+        self.simulator, self.model = simulator, model
+        self._rows, self._kept, self._grammars = DIALECTS[model], RECORDS[model], GRAMMARS[model]
         self.drive = WheelDrive(simulator.config.body.wheel_separation)
+        self.cleaning = OwnCleaning(self.drive)
         self.is_testing = self.is_turning = False
         self.sound: int | None = None
         self._brush_rpm = self._vacuum = self._side_brush = 0
         self._has_brush = False
         self._answers: dict[str, Callable[[Words], str]] = {
             "Help": self._help,
-            "GetVersion": self._version,
+            "Clean": self._clean,
+            "GetAccel": lambda words: _lines("Label,Value", *accelerometer(self.seen)),
+            "GetVersion": lambda words: _lines(*self._kept.version),
+            "GetButtons": lambda words: _lines(*self._kept.buttons),
+            "GetCalInfo": lambda words: _lines(*self._kept.calibration),
+            "GetUserSettings": lambda words: _lines(*SETTINGS),
+            "GetSchedule": self._schedule,
+            "GetWarranty": lambda words: _lines(*self._kept.warranty(self.cleaning.seconds)),
             "GetCharger": self._charger,
             "GetAnalogSensors": self._analog,
             "GetDigitalSensors": self._digital,
             "GetMotors": self._motors,
             "GetLDSScan": self._scan,
             "GetState": self._state,
-            "GetErr": self._error,
+            "GetErr": lambda words: _lines(*self._kept.no_error),
             "GetTime": lambda words: "Sunday 0:00:00",
             "TestMode": self._test_mode,
             "SetLDSRotation": self._lds_rotation,
             "SetMotor": self._set_motor,
             "SetLED": lambda words: "",
             "PlaySound": self._play,
+        }
+        self._cleans = {
+            "Start": self.cleaning.press_start,
+            "House": self.cleaning.clean_house,
+            "Spot": self.cleaning.clean_spot,
+            "Stop": self.cleaning.stop,
         }
         self.advance()
 
@@ -99,21 +94,34 @@ class NeatoRobot:
         self.seen = self.simulator.observe()
         if self.seen.wheels.dropped:
             self.drive.halt()
+        self.cleaning.steer(self.seen, STEP)
 
     def answer(self, line: str) -> str:
         """Return what the robot says to a line, its echo and its end included."""
         try:
-            words = understood(line, GRAMMARS)
+            words = understood(line, self._grammars)
             said = self._answers[words.name](words)
         except CommandError as error:
             said = str(error)
         return f"{line}{_NEWLINE}{said}{_NEWLINE if said else ''}\x1a"
 
     def _help(self, words: Words) -> str:
-        return _lines("Help Strlen = 1024", *(grammar.name for grammar in GRAMMARS))
+        return _lines("Help Strlen = 1024", *(grammar.name for grammar in self._grammars))
 
-    def _version(self, words: Words) -> str:
-        return _lines("Component,Major,Minor,Build", *self._rows.version())
+    def _clean(self, words: Words) -> str:
+        """Do what a press of its button does; in the test mode its buttons do nothing."""
+        kinds = words.flags or {"Start"}
+        if len(kinds) > 1:
+            raise CommandError("Choose only 1 of House,Spot,Stop")
+        if not self.is_testing:
+            self._cleans[next(iter(kinds))]()
+        return ""
+
+    def _schedule(self, words: Words) -> str:
+        day = words.values.get("Day")
+        if day is not None and not 0 <= day < len(DAYS):
+            raise CommandError(f"expected a Day from 0 to {len(DAYS) - 1}")
+        return _lines(*schedule(day))
 
     def _charger(self, words: Words) -> str:
         return _lines("Label,Value", *self._rows.charger(self.seen.battery))
@@ -135,18 +143,21 @@ class NeatoRobot:
 
     @property
     def _power_now(self) -> Power:
+        if self.cleaning.phase.is_running:
+            return _SWEEPING
         return Power(self._brush_rpm, self._vacuum, self._side_brush)
 
     def _scan(self, words: Words) -> str:
         ranges = self.simulator.ranges
+        is_turning = self.is_turning or self.cleaning.phase.is_running
         rows = []
         for angle in range(360):
-            found = float(ranges[angle]) if self.is_turning else np.inf
+            found = float(ranges[angle]) if is_turning else np.inf
             if np.isfinite(found):
                 rows.append(f"{angle},{round(1e3 * found)},{round(2000.0 / (1.0 + found))},0")
             else:
                 rows.append(f"{angle},0,0,{_NO_ECHO}")
-        rotation = self.simulator.config.lidar.rate if self.is_turning else 0.0
+        rotation = self.simulator.config.lidar.rate if is_turning else 0.0
         return _lines(
             "AngleInDegrees,DistInMM,Intensity,ErrorCodeHEX",
             *rows,
@@ -154,15 +165,13 @@ class NeatoRobot:
         )
 
     def _state(self, words: Words) -> str:
-        ui = "UIMGR_STATE_TESTMODE" if self.is_testing else "UIMGR_STATE_STANDBY"
-        state = "ST_T_Test" if self.is_testing else "ST_C_Standby"
+        testing = "UIMGR_STATE_TESTMODE", "ST_T_Test"
+        ui, state = testing if self.is_testing else self.cleaning.phase.value
         return _lines(f"Current UI State is: {ui}", f"Current Robot State is: {state}")
-
-    def _error(self, words: Words) -> str:
-        return _lines("Error", "200 -  (UI_ALERT_INVALID)", "Alert", "200 -  (UI_ALERT_INVALID)")
 
     def _test_mode(self, words: Words) -> str:
         self.is_testing = "On" in words.flags
+        self.cleaning.end()
         if not self.is_testing:
             self.drive.halt()
             self._brush_rpm = self._vacuum = self._side_brush = 0
@@ -220,7 +229,8 @@ class NeatoRobot:
             raise CommandError("TestMode must be on to use this command.")
 
     def _power(self) -> None:
-        self.simulator.set_power(brush=min(1.0, self._brush_rpm / 1200.0), fan=0.01 * self._vacuum)
+        power = self._power_now
+        self.simulator.set_power(brush=min(1.0, power.brush / 1200.0), fan=0.01 * power.fan)
 
 
 _NO_ECHO: Final = "8035"

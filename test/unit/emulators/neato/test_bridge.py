@@ -36,7 +36,7 @@ def told(bridge: NeatoBridge, what: str) -> Any:
 def test_commands_are_handed_on_as_they_are(bridge: NeatoBridge) -> None:
     status, text = ask(bridge, "POST", "/api/serial?cmd=GetVersion")
     assert status == 200
-    assert text.startswith("GetVersion\r\nComponent,Major,Minor,Build\r\n")
+    assert text.startswith("GetVersion\r\nComponent,Major,Minor,Build,Aux\r\n")
     assert "\x1a" not in text
     assert ask(bridge, "POST", "/api/serial?cmd=Fly%20High")[1].startswith("Fly High\r\n")
 

@@ -118,3 +118,15 @@ def test_it_sweeps_with_the_brush_and_the_fan_that_were_switched_on(robot: Neato
 def test_every_command_that_it_helps_with_is_answered(robot: NeatoRobot) -> None:
     for name in lines_of(robot, "Help")[1:]:
         assert "Unknown" not in robot.answer(name)
+
+
+def test_it_tells_how_it_stands_as_its_accelerometer_feels_it(robot: NeatoRobot) -> None:
+    values = answers.values_of(lines_of(robot, "GetAccel"))
+    assert list(values) == ["PitchInDegrees", "RollInDegrees", "XInG", "YInG", "ZInG", "SumInG"]
+    assert values["ZInG"] == pytest.approx(1.0, abs=0.01)
+    robot.answer("TestMode On")
+    robot.answer("SetMotor 2000 2000 300 300")
+    live(robot, 0.5)
+    speeding = answers.values_of(lines_of(robot, "GetAccel"))
+    assert speeding["XInG"] > 0.01
+    assert speeding["PitchInDegrees"] < -0.5

@@ -8,8 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.emulators.neato.robot import GRAMMARS
+from roomba.emulators.neato.dialects import Model
+from roomba.emulators.neato.grammars import GRAMMARS as OF_MODELS
 from roomba.emulators.neato.words import CommandError, understood
+
+GRAMMARS = OF_MODELS[Model.BOTVAC]
 
 
 @pytest.mark.parametrize(
