@@ -21,6 +21,7 @@ from roomba.commands.play.owned import (
     owned_life,
     require_fitting,
 )
+from roomba.commands.play.remote import remote_client
 from roomba.commands.play.serving import add_page_options, listen_at, serve_page
 from roomba.commands.play.told_to_end import ToldToEnd
 from roomba.commands.program_name import spelled
@@ -32,6 +33,7 @@ from roomba.files.shipped import CONFIGURATION
 from roomba.headless.live.bumping.client import BumpingClient
 from roomba.headless.live.client import LiveClient
 from roomba.headless.live.kept_floor_plan import FOLDER as FLOOR_PLANS
+from roomba.headless.live.remote.client import RemoteClient
 from roomba.history.database import History
 from roomba.history.folder import history_folder
 from roomba.history.recorder import HistoryKeeper
@@ -70,7 +72,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _robot(
     wanted: argparse.Namespace, until_end: contextlib.ExitStack, repeat: str
-) -> tuple[LiveClient | BumpingClient, RunSource, str]:
+) -> tuple[LiveClient | BumpingClient | RemoteClient, RunSource, str]:
     """Return the robot, whose life it is, and what is told of it; raises RoombaError."""
     if wanted.robot is None:
         client = wanted_robot(wanted)
@@ -80,15 +82,18 @@ def _robot(
             client.keep_plan(household_folder() / FLOOR_PLANS, floors, _warn)
         source = RunSource("play", wanted.home, wanted.seed, repeat)
         return client, source, f"The robot lives in {wanted.home!r}. Its page:"
+    source = RunSource("play", wanted.robot, None, repeat)
+    if remote := remote_client(wanted, _warn):
+        until_end.callback(remote.end)
+        return remote, source, f"Your {wanted.robot} on {wanted.line} cleans by itself. Its page:"
     life = bumping_life(wanted) if wanted.lidar == "none" else owned_life(wanted, _warn)
     until_end.callback(life.end)
-    source = RunSource("play", wanted.robot, None, repeat)
     return life.client, source, f"Your {wanted.robot} on {wanted.line} is taken over. Its page:"
 
 
 def _live(
     wanted: argparse.Namespace,
-    client: LiveClient | BumpingClient,
+    client: LiveClient | BumpingClient | RemoteClient,
     bound: socket.socket,
     source: RunSource,
     told: str,

@@ -2,7 +2,8 @@
 
 The bridge hands a command on as it is (``POST /api/serial?cmd=…``) and answers with what the robot
 said, without its end. It does one at a time and rests for 50 ms after each. Its other addresses
-tell what was so up to a second before, and nothing of where the floor ends: they are not asked.
+tell what was so up to a second before, and nothing of where the floor ends: no robot is driven by
+them. What is behind a bridge that hands nothing on is told to clean by itself (``bridge_remote``).
 Source: OpenNeato's user guide and firmware.
 """
 
@@ -11,15 +12,14 @@ from __future__ import annotations
 import http.client
 import time
 from typing import Final
-from urllib.parse import quote, urlsplit
+from urllib.parse import quote
 
 from roomba.drivers.line import LineError
+from roomba.drivers.neato.bridge_requests import MOST, BridgeAddress, gone
 from roomba.drivers.neato.conversation import END
 
 _CONNECT: Final = 1.0
 """s; in a home network a connection is there at once."""
-_MOST: Final = 65_536
-"""Bytes of an answer; a scan has some 6,000."""
 _BUSY: Final = 503
 _SOONEST: Final = 0.001
 """s; a wait of 0 would be none for connections."""
@@ -42,23 +42,15 @@ class BridgeLine:
 
         Raises LineError for one that is none.
         """
-        try:
-            parts = urlsplit(f"//{address}")
-            host, port = parts.hostname, parts.port
-        except ValueError:
-            host, port = None, None
-        if not host or parts.path or parts.query or "@" in address:
-            raise LineError(
-                f"expected the address of OpenNeato's bridge, such as neato.local, got {address!r}"
-            )
-        self._address, self._place = address, (host, port or http.client.HTTP_PORT)
+        self._address = BridgeAddress.of(address)
         self._asked: http.client.HTTPConnection | None = None
 
     def write(self, data: bytes) -> None:
         """Send a command; raises LineError when the bridge is not reached."""
         self.discard()
         command = quote(data.decode("ascii", "replace").strip())
-        asked = http.client.HTTPConnection(*self._place, timeout=_CONNECT)
+        place = self._address
+        asked = http.client.HTTPConnection(place.host, place.port, timeout=_CONNECT)
         self._asked = asked
         try:
             asked.request("POST", f"/api/serial?cmd={command}")
@@ -75,7 +67,7 @@ class BridgeLine:
         asked.sock.settimeout(max(seconds, _SOONEST))
         try:
             response = asked.getresponse()
-            body = response.read(_MOST)
+            body = response.read(MOST)
         except TimeoutError:
             return b""
         except (OSError, http.client.HTTPException) as error:
@@ -87,7 +79,8 @@ class BridgeLine:
         if response.status != http.client.OK:
             raise LineError(
                 f"expected OpenNeato's bridge at {self._address}, got status {response.status} of "
-                "/api/serial; is another program there, or its firmware an older one?"
+                "/api/serial; is another program there, or one that hands on no commands? Behind "
+                "such a one ./roomba play can tell a robot to clean by itself"
             )
         return body if body.endswith(END) else body + END
 
@@ -103,7 +96,4 @@ class BridgeLine:
 
     def _gone(self, error: Exception) -> LineError:
         self.discard()
-        return LineError(
-            f"expected OpenNeato's bridge at {self._address}, got: {error}. Is the robot switched "
-            "on, and in this network?"
-        )
+        return gone(self._address, error)

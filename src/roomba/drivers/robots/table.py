@@ -20,16 +20,24 @@ from roomba.drivers.line import SerialLine
 from roomba.drivers.line_body import LineBody
 from roomba.drivers.neato.body import NeatoBody
 from roomba.drivers.neato.bridge_line import PATIENCE, PER_BYTE, BridgeLine
+from roomba.drivers.neato.bridge_remote import BridgeRemote, hands_on_commands
+from roomba.drivers.neato.bridge_requests import BridgeAddress
 from roomba.drivers.neato.conversation import Conversation
 from roomba.drivers.reopened_line import ReopenedLine
 from roomba.errors import RoombaError
 from roomba.files.shipped import CONFIGURATION
+from roomba.robot.remote import RemoteRobot
 
 _NEATO_BAUD: Final = 115_200
 _LD19_BAUD: Final = 230_400
 
 MakeBody = Callable[[str, str, RobotConfig], LineBody]
 """Makes the body of a robot on a line, whose lidar may be on another one; raises LineError."""
+FindRemote = Callable[[str, RobotConfig], RemoteRobot | None]
+"""Returns the robot on a line that cleans by its own brain alone; None of one that can be driven.
+
+Raises LineError where it is not reached.
+"""
 
 
 class LidarLineError(RoombaError):
@@ -42,7 +50,8 @@ class OwnedRobot:
 
     ``lidar`` names the lidar that stands on it with a line of its own; empty: its own tells by the
     robot's line. ``goes_without``: it can also do without a lidar, by bumps and beams. ``numbers``
-    is the name of the file of its numbers, where that is not its own.
+    is the name of the file of its numbers, where that is not its own. ``find_remote`` is there
+    where a line may lead to a robot that can be told what to do, and not be driven.
     """
 
     name: str
@@ -51,6 +60,7 @@ class OwnedRobot:
     lidar: str = ""
     numbers: str = ""
     goes_without: bool = False
+    find_remote: FindRemote | None = None
 
     @property
     def file(self) -> Path:
@@ -60,6 +70,13 @@ class OwnedRobot:
     def config(self) -> RobotConfig:
         """Return its numbers; raises ConfigError."""
         return load_robot_config(self.file)
+
+    def remote_on(self, line: str, config: RobotConfig) -> RemoteRobot | None:
+        """Return the robot on a line that cannot be driven, only told; None where it can be.
+
+        Raises LineError where it is not reached.
+        """
+        return None if self.find_remote is None else self.find_remote(line, config)
 
     def body_on(
         self, line: str, config: RobotConfig, lidar_line: str = "", *, has_lidar: bool = True
@@ -95,6 +112,11 @@ def _openneato(address: str, _: str, config: RobotConfig) -> LineBody:
     return _neato_on(ReopenedLine(lambda: BridgeLine(address)), config, PATIENCE, PER_BYTE)
 
 
+def _openneato_remote(address: str, config: RobotConfig) -> RemoteRobot | None:
+    place = BridgeAddress.of(address)
+    return None if hands_on_commands(place) else BridgeRemote(place, config.lidar)
+
+
 def _neato_on(
     line: ReopenedLine, config: RobotConfig, patience: float = 0.0, per_byte: float = 0.0
 ) -> LineBody:
@@ -125,7 +147,13 @@ def _create2(port: str, lidar_port: str, config: RobotConfig) -> LineBody:
 
 _ALL: Final = (
     OwnedRobot("neato", "Neato (XV, Botvac D3 to D7)", _neato),
-    OwnedRobot("openneato", "Neato behind OpenNeato's bridge", _openneato, numbers="neato"),
+    OwnedRobot(
+        "openneato",
+        "Neato behind OpenNeato's bridge",
+        _openneato,
+        numbers="neato",
+        find_remote=_openneato_remote,
+    ),
     OwnedRobot(
         "create2", "Create 2 or Roomba 500 to 900", _create2, lidar="LD19", goes_without=True
     ),

@@ -1,7 +1,9 @@
 """A made-up bridge of OpenNeato: an HTTP server before a made-up Neato.
 
 It hands commands on, one at a time (``POST /api/serial?cmd=…``), and tells some of what the robot
-tells as JSON, which it asks for at most once a second. Source: OpenNeato's description of its API,
+tells as JSON, which it asks for at most once a second. It starts, pauses and ends the robot's own
+cleans (``POST /api/clean?action=…``); home it does not send it: the made-up robot drives there by
+no program of its own. Source: OpenNeato's description of its API,
 user guide and firmware.
 """
 
@@ -11,12 +13,13 @@ import contextlib
 import json
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any, Final
 from urllib.parse import parse_qs, urlsplit
 
 from roomba.emulators.living import LivingWorld
+from roomba.emulators.neato.cleaning import OwnCleaning
 from roomba.emulators.neato.robot import STEP, NeatoRobot
 from roomba.emulators.neato.server import LATENCY
 
@@ -29,8 +32,23 @@ _QUEUE: Final = 16
 _KEPT: Final = 1.0
 """s for which an answer is told again (1 to 30 s, by its kind; here one for all)."""
 _END: Final = "\x1a"
+_NO_ERROR: Final[Mapping[str, object]] = {
+    "hasError": False,
+    "kind": "",
+    "errorCode": 200,
+    "errorMessage": "",
+    "displayMessage": "",
+}
 _CELLS: Final = 4
 """Of a line of a scan."""
+
+_CLEANS: Final[Mapping[str, Callable[[OwnCleaning], None]]] = {
+    "house": OwnCleaning.press_start,
+    "spot": OwnCleaning.clean_spot,
+    "pause": OwnCleaning.pause,
+    "stop": OwnCleaning.end,
+}
+"""What an action does: as the firmware does it, which goes on with a clean that is paused."""
 
 Label = tuple[str, type]
 _FIELDS: Final[Mapping[str, tuple[str, Mapping[str, Label]]]] = {
@@ -134,12 +152,23 @@ class NeatoBridge:
             with self._counting:
                 self._waiting -= 1
 
+    def clean(self, action: str) -> bool:
+        """Let the robot begin, pause or end a clean; return whether there is such an action."""
+        if action not in _CLEANS:
+            return False
+        with self._world.lock:
+            _CLEANS[action](self.robot.cleaning)
+        self._kept.pop("GetState", None)
+        return True
+
     def told(self, what: str) -> Mapping[str, object] | None:
         """Return what it tells as JSON of something, None where there is no such thing."""
         if what == "lidar":
             return _scan_of(self._recent("GetLDSScan"))
         if what == "state":
             return _state_of(self._recent("GetState"))
+        if what == "error":
+            return _NO_ERROR
         if what not in _FIELDS:
             return None
         command, fields = _FIELDS[what]
@@ -174,6 +203,9 @@ def _handler_of(bridge: NeatoBridge) -> type[BaseHTTPRequestHandler]:
         def do_POST(self) -> None:
             """Hand a command on."""
             asked = urlsplit(self.path)
+            if asked.path == "/api/clean":
+                self._clean(asked.query)
+                return
             if asked.path != "/api/serial":
                 self._tell(404, {"error": "not found"})
                 return
@@ -186,6 +218,14 @@ def _handler_of(bridge: NeatoBridge) -> type[BaseHTTPRequestHandler]:
                 self._tell(503, {"error": "unavailable"})
             else:
                 self._send(200, "text/plain", said.encode("ascii", "replace"))
+
+        def _clean(self, query: str) -> None:
+            """Begin, pause or end a clean."""
+            action = parse_qs(query).get("action", [""])[0]
+            if bridge.clean(action):
+                self._tell(200, {"ok": True})
+            else:
+                self._tell(503, {"error": "unavailable"})
 
         def _tell(self, status: int, values: Mapping[str, object]) -> None:
             self._send(status, "application/json", json.dumps(values).encode())

@@ -93,6 +93,10 @@ class OwnCleaning:
             self._begin_anew()
         self._run(OwnState.SPOT)
 
+    def pause(self) -> None:
+        """Stand, and keep what is under way."""
+        self._stand(_PAUSES.get(self.phase, self.phase))
+
     def stop(self) -> None:
         """Pause; what is paused already ends."""
         self._stand(_PAUSES.get(self.phase, OwnState.STANDBY))

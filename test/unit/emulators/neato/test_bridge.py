@@ -79,3 +79,22 @@ def test_it_asks_the_robot_at_most_once_a_second(bridge: NeatoBridge) -> None:
     before = told(bridge, "charger")
     assert told(bridge, "charger") == before
     assert told(bridge, "motors") == first
+
+
+def test_it_begins_pauses_and_ends_the_robots_own_cleans(bridge: NeatoBridge) -> None:
+    ask(bridge, "POST", "/api/serial?cmd=TestMode%20Off")
+
+    def after(action: str) -> str:
+        assert ask(bridge, "POST", f"/api/clean?action={action}")[0] == 200
+        return str(told(bridge, "state")["uiState"]).removeprefix("UIMGR_STATE_")
+
+    assert after("pause") == "STANDBY"
+    assert after("house") == "HOUSECLEANINGRUNNING"
+    assert after("pause") == "HOUSECLEANINGPAUSED"
+    assert after("pause") == "HOUSECLEANINGPAUSED"
+    assert after("house") == "HOUSECLEANINGRUNNING"
+    assert after("stop") == "STANDBY"
+    assert after("spot") == "SPOTCLEANINGRUNNING"
+    assert after("stop") == "STANDBY"
+    assert told(bridge, "error")["hasError"] is False
+    assert ask(bridge, "POST", "/api/clean?action=dock")[0] == 503

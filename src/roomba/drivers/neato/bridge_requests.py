@@ -1,0 +1,106 @@
+"""Where OpenNeato's bridge is, and what it answers to one request."""
+
+from __future__ import annotations
+
+import http.client
+import json
+from dataclasses import dataclass
+from typing import Any, Final
+from urllib.parse import urlsplit
+
+from roomba.drivers.line import LineError
+
+MOST: Final = 65_536
+"""Bytes of an answer; a scan has some 6,000, and as JSON some 20,000."""
+_WITHIN: Final = 4.5
+"""s; the bridge itself gives the robot 3 s for each command."""
+_WITHOUT: Final = (http.client.NOT_FOUND, http.client.METHOD_NOT_ALLOWED)
+"""What a bridge answers that has no such address."""
+
+
+@dataclass(frozen=True, slots=True)
+class BridgeAddress:
+    """A name or a number of the home network, and a port."""
+
+    host: str
+    port: int
+
+    @staticmethod
+    def of(text: str) -> BridgeAddress:
+        """Return what is written as a name or a number, with a port where it is not 80.
+
+        Raises LineError for what is none.
+        """
+        try:
+            parts = urlsplit(f"//{text}")
+            host, port = parts.hostname, parts.port
+        except ValueError:
+            host, port = None, None
+        if not host or parts.path or parts.query or "@" in text:
+            raise LineError(
+                f"expected the address of OpenNeato's bridge, such as neato.local, got {text!r}"
+            )
+        return BridgeAddress(host, port or http.client.HTTP_PORT)
+
+    def __str__(self) -> str:
+        """Return it as people write it."""
+        return self.host if self.port == http.client.HTTP_PORT else f"{self.host}:{self.port}"
+
+
+class MissingError(LineError):
+    """The bridge is there, and has no such address."""
+
+
+class RefusedError(LineError):
+    """The bridge is there, and cannot do it now: its robot is silent, or too much waits."""
+
+
+def gone(address: BridgeAddress, error: Exception) -> LineError:
+    """Return that a bridge is not reached, and what helps."""
+    return LineError(
+        f"expected OpenNeato's bridge at {address}, got: {error}. Is the robot switched on, and in "
+        "this network?"
+    )
+
+
+def asked(address: BridgeAddress, method: str, path: str) -> bytes:
+    """Return what a bridge answers to a request.
+
+    Raises MissingError where it has no such address, RefusedError with the reason that it tells,
+    LineError where it is not reached.
+    """
+    connection = http.client.HTTPConnection(address.host, address.port, timeout=_WITHIN)
+    try:
+        connection.request(method, path, headers={"Connection": "close"})
+        response = connection.getresponse()
+        body = response.read(MOST)
+    except (OSError, http.client.HTTPException) as error:
+        raise gone(address, error) from error
+    finally:
+        connection.close()
+    if response.status in _WITHOUT:
+        raise MissingError(f"OpenNeato's bridge at {address} has no {path.partition('?')[0]}")
+    if response.status != http.client.OK:
+        raise RefusedError(
+            f"OpenNeato's bridge at {address} answers {path} with status {response.status}: "
+            f"{_reason(body)}"
+        )
+    return body
+
+
+def told(address: BridgeAddress, path: str) -> dict[str, Any]:
+    """Return the JSON object at a path; raises as :func:`asked`, and LineError for another text."""
+    try:
+        values = json.loads(asked(address, "GET", path))
+    except ValueError:
+        values = None
+    if not isinstance(values, dict):
+        raise LineError(f"expected an object of JSON at {path} of {address}; is that a bridge?")
+    return values
+
+
+def _reason(body: bytes) -> str:
+    try:
+        return str(json.loads(body)["error"])
+    except (ValueError, TypeError, KeyError):
+        return "no reason is told"
