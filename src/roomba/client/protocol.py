@@ -159,8 +159,8 @@ class CleanReport:
     What is not known, as after DISCONNECTED, is NaN; ``missed`` has the largest area first.
     ``times`` is what the duration went into; all 0 where that is not known. ``rooms`` are those
     that were swept, with their dirt. ``open_edges`` are where a map that was made on the way still
-    ends, the longest first. ``mapped`` is the floor on the map at the end of an exploration, m2;
-    NaN of any other.
+    ended when nothing was left to look for, the longest first. ``mapped`` is the floor on the map
+    at the end of an exploration, m2; NaN of any other.
     """
 
     outcome: ErrandOutcome

@@ -85,7 +85,9 @@ def row_of(figures: RunFigures) -> dict[str, Any]:
         "outcome": figures.outcome,
         "message": figures.message,
         "times": json.dumps(asdict(figures.times), sort_keys=True),
-        "open_edges": json.dumps([asdict(edge) for edge in figures.open_edges], sort_keys=True),
+        "open_edges": json.dumps(
+            [[edge.length, edge.x, edge.y, edge.reason.name] for edge in figures.open_edges]
+        ),
         **{name: _known(getattr(figures, name)) for name in _NUMBERS},
         "missed": [[miss.area, miss.x, miss.y, miss.room, miss.reason] for miss in figures.missed],
     }
@@ -139,9 +141,14 @@ def _figures_of(database: sqlite3.Connection, number: int, row: dict[str, Any]) 
         **{name: math.nan if row[name] is None else row[name] for name in _NUMBERS},
         missed=tuple(MissedFloor(*miss) for miss in missed),
         times=TimeSpent(**json.loads(row["times"])),
-        open_edges=tuple(_edge_of(**edge) for edge in json.loads(row["open_edges"])),
+        open_edges=_edges_of(json.loads(row["open_edges"])),
     )
 
 
-def _edge_of(length: float, x: float, y: float, reason: str) -> OpenEdge:
-    return OpenEdge(length, x, y, EdgeReason(reason))
+def _edges_of(rows: list[tuple[float, float, float, str]]) -> tuple[OpenEdge, ...]:
+    """Return open edges; without those whose reason only a newer program knows."""
+    return tuple(
+        OpenEdge(length, x, y, EdgeReason[reason])
+        for length, x, y, reason in rows
+        if reason in EdgeReason.__members__
+    )

@@ -266,8 +266,13 @@ class Brain:
     def senses(self) -> Senses:
         """Return what the mission senses now."""
         estimate = self.keeper.place.estimate
-        how_well = estimate.knowledge, estimate.reason, estimate.position_deviation
-        return senses_of(self.readings, estimate.pose, *how_well)
+        return senses_of(
+            self.readings,
+            estimate.pose,
+            estimate.knowledge,
+            trouble=estimate.reason,
+            unsure=estimate.position_deviation,
+        )
 
     @property
     def max_speed(self) -> float:

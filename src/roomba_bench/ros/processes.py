@@ -31,22 +31,28 @@ def memory(pids: Iterable[int]) -> float:
     """Return the proportional set size of processes together, MB: what they share counts once."""
     size = 0
     for pid in pids:
-        lines = (_PROC / str(pid) / "smaps_rollup").read_text("ascii").splitlines()
-        size += sum(int(line.split()[1]) for line in lines if line.startswith("Pss:"))
+        # One that has just ended takes nothing.
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+            lines = (_PROC / str(pid) / "smaps_rollup").read_text("ascii").splitlines()
+            size += sum(int(line.split()[1]) for line in lines if line.startswith("Pss:"))
     return size * 1.024 / 1000.0
 
 
 def load(pids: Iterable[int], seconds: float) -> float:
     """Return % of a core that processes take, in so many seconds from now on."""
-    watched = list(pids)
-    used, began = sum(map(_used, watched)), time.monotonic()
+    before, began = {pid: _used(pid) for pid in pids}, time.monotonic()
     time.sleep(seconds)
-    return 100.0 * (sum(map(_used, watched)) - used) / (time.monotonic() - began)
+    # One that ended meanwhile took no less.
+    used = sum(max(_used(pid) - each, 0.0) for pid, each in before.items())
+    return 100.0 * used / (time.monotonic() - began)
 
 
 def _used(pid: int) -> float:
-    """Return s of a core that a process has had, all its threads together."""
-    fields = _fields(pid)
+    """Return s of a core that a process has had, all its threads together; 0 when it has ended."""
+    try:
+        fields = _fields(pid)
+    except (FileNotFoundError, ProcessLookupError):
+        return 0.0
     return (int(fields[11]) + int(fields[12])) / _TICK
 
 

@@ -54,8 +54,14 @@ class HeardSenses:
         pose = self.place.at(now)
         if pose is None or self._readings is None:
             return None
-        how_well = *self.place.knowledge, self.place.deviation
-        return senses_of(replace(self._readings, time=now), pose, *how_well)
+        knowledge, trouble = self.place.knowledge
+        return senses_of(
+            replace(self._readings, time=now),
+            pose,
+            knowledge,
+            trouble=trouble,
+            unsure=self.place.deviation,
+        )
 
     def show(self, lookout: Lookout) -> None:
         """Let things be looked for in the scan that came last, if it is one to be looked at."""

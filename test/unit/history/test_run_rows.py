@@ -34,6 +34,13 @@ def test_what_is_put_in_comes_out_again(database: sqlite3.Connection) -> None:
     assert [run.number for run in select(database, "kind = ?", ("explore",))] == [2]
 
 
+def test_a_reason_of_a_newer_program_is_left_out(database: sqlite3.Connection) -> None:
+    insert(database, made_figures())
+    database.execute("UPDATE runs SET open_edges = '[[1.0, 2.0, 3.0, \"NEW\"]]'")
+    [run] = select(database, "TRUE", ())
+    assert run.figures.open_edges == ()
+
+
 def test_a_row_has_all_columns_and_what_was_added_is_one_of_them() -> None:
     row = row_of(made_figures())
     assert set(row) == {*COLUMNS, "missed"}

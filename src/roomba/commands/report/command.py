@@ -6,7 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
+from typing import Final, TextIO
 
 from rich.console import Console
 
@@ -31,6 +31,13 @@ _LISTED: Final = 20
 def main(arguments: list[str] | None = None) -> int:
     """Tell of the runs; returns 0, 1 when a file cannot be written, 2 for what there is not."""
     wanted = _parser().parse_args(arguments)
+    if wanted.run is None and wanted.json is not None and _is_run(wanted.json):
+        print(
+            f"{PROGRAM}: --json: expected a file, got {wanted.json!r}; put the run first: "
+            f"{PROGRAM} {wanted.json} --json",
+            file=sys.stderr,
+        )
+        return 2
     history = History(wanted.history or history_folder())
     try:
         _tell(wanted, history)
@@ -50,7 +57,7 @@ def _tell(wanted: argparse.Namespace, history: History) -> None:
     if wanted.compare is not None:
         one, other = (history.named(word) for word in wanted.compare)
         text = comparison_of((one, _recording(history, one)), (other, _recording(history, other)))
-        _write_document(wanted.out or Path(f"compare-{one.number}-{other.number}.html"), text)
+        _write_document(wanted, Path(f"compare-{one.number}-{other.number}.html"), text)
         return
     if wanted.run is None and wanted.out is None and wanted.recording is None:
         _list(history)
@@ -67,6 +74,11 @@ def _write_figures(wanted: argparse.Namespace, history: History) -> None:
         write_json(wanted.json, json_of(runs))
 
 
+def _is_run(word: str) -> bool:
+    """Whether a word names a run; after ``--json`` it was meant to stand before."""
+    return word == LAST or word.isdecimal()
+
+
 def _wants_figures_alone(wanted: argparse.Namespace) -> bool:
     if any(each is not None for each in (wanted.compare, wanted.out, wanted.recording)):
         return False
@@ -75,13 +87,13 @@ def _wants_figures_alone(wanted: argparse.Namespace) -> bool:
 
 def _report(wanted: argparse.Namespace, history: History, run: KeptRun) -> None:
     recording = _recording(history, run)
-    tell_tables([run_table(run)], None, quiet=False)
+    tell_tables([run_table(run)], wanted.json, quiet=False)
     if wanted.recording is not None:
         write_run(run.figures, recording or history.recording(run.number), wanted.recording)
-        print(f"Recording: {wanted.recording}")
+        print(f"Recording: {wanted.recording}", file=_told_to(wanted))
     others = history.runs(home=run.figures.source.home)
     text = report_of(run, recording, others)
-    _write_document(wanted.out or Path(f"run-{run.number}.html"), text)
+    _write_document(wanted, Path(f"run-{run.number}.html"), text)
 
 
 def _all(history: History) -> Sequence[KeptRun]:
@@ -106,9 +118,15 @@ def _recording(history: History, run: KeptRun) -> RunRecording | None:
     return history.recording(run.number) if run.is_recorded else None
 
 
-def _write_document(path: Path, text: str) -> None:
+def _write_document(wanted: argparse.Namespace, usual: Path, text: str) -> None:
+    path = wanted.out or usual
     _write(path, text)
-    print(f"Report: {path}")
+    print(f"Report: {path}", file=_told_to(wanted))
+
+
+def _told_to(wanted: argparse.Namespace) -> TextIO:
+    """Return where words for people go: not where figures are told."""
+    return sys.stderr if wanted.json == STANDARD_OUTPUT else sys.stdout
 
 
 def _write(path: Path, text: str) -> None:

@@ -22,7 +22,7 @@ from roomba.history.totals import totals_by_week
 COLUMNS: Final = (
     "run", "began", "program", "home", "seed", "kind", "outcome", "message", "duration_s",
     "covered_m2", "wanted_m2", "distance_m", "turning_rad", "dirt_g", "energy_wh", "missed_places",
-    "missed_m2", "repeat",
+    "missed_m2", "mapped_m2", "open_m", "repeat",
 )  # fmt: skip
 
 
@@ -66,6 +66,7 @@ def json_of(runs: Sequence[KeptRun]) -> dict[str, Any]:
             {
                 **dict(zip(COLUMNS, _values(run), strict=True)),
                 "missed": [_place_values(miss) for miss in run.figures.missed],
+                "open_edges": [asdict(edge) for edge in run.figures.open_edges],
             }
             for run in runs
         ]
@@ -107,6 +108,8 @@ def _values(run: KeptRun) -> list[str | float | None]:
         *(number if math.isfinite(number) else None for number in numbers),
         len(figures.missed),
         math.fsum(miss.area for miss in figures.missed),
+        figures.mapped if math.isfinite(figures.mapped) else None,
+        math.fsum(edge.length for edge in figures.open_edges),
         source.repeat,
     ]
 

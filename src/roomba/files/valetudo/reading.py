@@ -22,8 +22,8 @@ _MOST_LAYERS: Final = 100
 """Rooms, floor and walls; each takes a cell's byte of memory for all cells."""
 _FARTHEST: Final = 1_000_000
 """cm, and pixels; no home has a place farther from its corner."""
-_NEAR: Final = 500
-"""cm around a map."""
+_OFF: Final = 500
+"""cm; so far off the map a place may be."""
 
 
 class _Part(BaseModel):
@@ -240,10 +240,8 @@ def _is_on_map(entity: _Entity, size: _Size) -> bool:
 
     Some programs tell a place far away for what is not known.
     """
-    if len(entity.points) != 2:
-        raise ValetudoError(f"entities: expected points of two numbers each, got {entity.points}")
-    x, y = entity.points
-    return -_NEAR <= x <= size.x + _NEAR and -_NEAR <= y <= size.y + _NEAR
+    x, y = _pair(entity.points)
+    return -_OFF <= x <= size.x + _OFF and -_OFF <= y <= size.y + _OFF
 
 
 def _around(mask: Mask) -> tuple[slice, slice]:
@@ -259,9 +257,15 @@ def _around(mask: Mask) -> tuple[slice, slice]:
 
 def _point(points: list[float], rows: int, cell: float) -> tuple[float, float]:
     """Return a point, m from the lower left corner."""
+    x, y = _pair(points)
+    return x * CM, rows * cell - y * CM
+
+
+def _pair(points: list[float]) -> tuple[float, float]:
+    """Return a point's two numbers; raises ValetudoError where there are not two."""
     if len(points) != 2:
         raise ValetudoError(f"entities: expected points of two numbers each, got {points}")
-    return points[0] * CM, rows * cell - points[1] * CM
+    return points[0], points[1]
 
 
 def _wrapped(angle: float) -> float:

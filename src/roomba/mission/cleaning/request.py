@@ -137,7 +137,8 @@ class Missed:
 class CleanResult:
     """What a clean achieved: areas in m2, dirt in g, m, s of robot time, Wh.
 
-    ``open_edges`` are where the map that it made on the way still ends, the longest first.
+    ``open_edges`` are where the map that it made on the way still ended when nothing was left to
+    look for, the longest first.
     """
 
     outcome: CleanOutcome

@@ -6,6 +6,7 @@ import math
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roomba.arrays import Mask
 from roomba.geometry import Pose
@@ -79,16 +80,28 @@ def is_on_paper(frame: GridFrame, solid: Mask, radius: float, pose: Pose, end: M
 def _papers(floor: Mask, end: Mask, reach: float, resolution: float) -> Mask:
     """Return the parts of a floor that come within ``reach``, m, of much of the ``end``."""
     parts = numbered_regions(floor)
-    numbers = np.unique(parts[_near(end, reach, resolution) & floor])
     sizes = np.bincount(parts.ravel())
+    by_end = np.where(_near(end, reach, resolution), parts, 0)
     wide = math.ceil(FENCE / resolution - 1e-9)
-    papers = [
-        number
-        for number in numbers[numbers > 0]
-        if np.count_nonzero(_near(parts == number, reach, resolution) & end) / wide
-        >= _ALONG * math.sqrt(sizes[number])
-    ]
+    around = math.ceil(reach / resolution)
+    papers = []
+    for number, window in _windows_of(by_end, around):
+        met = _near(by_end[window] == number, reach, resolution) & end[window]
+        if np.count_nonzero(met) / wide >= _ALONG * math.sqrt(sizes[number]):
+            papers.append(number)
     return np.isin(parts, papers)
+
+
+def _windows_of(numbers: NDArray[np.int32], around: int) -> list[tuple[int, tuple[slice, slice]]]:
+    """Return each number but 0, with its rows and columns and so many cells ``around`` them."""
+    cells = np.argwhere(numbers)
+    cells = cells[np.argsort(numbers[tuple(cells.T)], kind="stable")]
+    found, firsts = np.unique(numbers[tuple(cells.T)], return_index=True)
+    windows = []
+    for number, own in zip(found.tolist(), np.split(cells, firsts[1:]), strict=False):
+        first, last = np.maximum(own.min(axis=0) - around, 0), own.max(axis=0) + around + 1
+        windows.append((number, (slice(first[0], last[0]), slice(first[1], last[1]))))
+    return windows
 
 
 def _near(cells: Mask, reach: float, resolution: float) -> Mask:

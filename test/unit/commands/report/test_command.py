@@ -22,6 +22,7 @@ from roomba.commands.sim.command import main as sim
 from roomba.history.database import History
 from roomba.history.run import RunFigures, RunSource
 from roomba.history.run_file import read_run
+from roomba.vocabulary import EdgeReason, OpenEdge
 
 
 def figures(home: str, covered: float) -> RunFigures:
@@ -62,31 +63,39 @@ def test_runs_are_told_to_programs(
     history: History, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     missed = MissedFloor(0.25, 1.0, 2.0, "den", "a door is shut")
+    edge = OpenEdge(1.5, 4.0, 1.0, EdgeReason.NO_ECHO)
     history.add(replace(figures("flat", 18.0), missed=(missed,)))
-    history.add(replace(figures("loft", math.nan), energy=math.inf))
+    explored = replace(figures("loft", math.nan), energy=math.inf, mapped=20.5)
+    history.add(replace(explored, open_edges=(edge,)))
     assert main(["--json"]) == 0
     loft, flat = json.loads(capsys.readouterr().out)["runs"]
-    assert (flat["run"], flat["home"], flat["covered_m2"], flat["missed_m2"]) == (
-        1,
-        "flat",
-        18.0,
-        0.25,
-    )
+    told = [flat[name] for name in ("run", "home", "covered_m2", "missed_m2", "mapped_m2")]
+    assert told == [1, "flat", 18.0, 0.25, None]
     assert flat["missed"] == [
         {"area_m2": 0.25, "x": 1.0, "y": 2.0, "room": "den", "reason": "a door is shut"}
     ]
-    assert (loft["run"], loft["covered_m2"], loft["energy_wh"], loft["missed"]) == (
-        2,
-        None,
-        None,
-        [],
-    )
+    told = [loft[name] for name in ("run", "covered_m2", "energy_wh", "mapped_m2", "open_m")]
+    assert told == [2, None, None, 20.5, 1.5]
+    assert loft["open_edges"] == [
+        {"length": 1.5, "x": 4.0, "y": 1.0, "reason": EdgeReason.NO_ECHO.value}
+    ]
     assert main(["1", "--json", str(tmp_path / "one.json")]) == 0
     assert json.loads((tmp_path / "one.json").read_text())["runs"] == [flat]
     assert capsys.readouterr().out == ""
     assert not list(tmp_path.glob("*.html"))
-    assert main(["1", "--json", "one.json", "--out", "one.html"]) == 0
-    assert (tmp_path / "one.html").is_file()
+    assert main(["1", "--out", "one.html", "--json"]) == 0
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["runs"] == [flat]
+    assert "one.html" in printed.err
+
+
+@pytest.mark.parametrize("run", ["last", "3"])
+def test_a_run_behind_json_is_no_file(
+    history: History, run: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert main(["--json", run]) == 2
+    assert f"put the run first: ./roomba report {run} --json" in capsys.readouterr().err
+    assert not (tmp_path / run).exists()
 
 
 def test_a_run_is_repeated_by_what_was_kept_of_it(history: History, tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from roomba.arrays import Floats
 
-_LONG: Final = 3.0
+_COMPARED_OVER: Final = 3.0
 """s; over so long a time both are compared: for a moment odometry is often off."""
 _FAR: Final = 0.5
 _SHARE: Final = 0.4
@@ -24,8 +24,8 @@ _MOST_TOLD: Final = 3
 
 
 class Disagreement(NamedTuple):
-    """From ``begin`` to ``end``, s since the drive began: how far it came on the map, and by
-    odometry alone, m.
+    """From ``begin`` to ``end``, s since the drive began: the way on the map, and by odometry
+    alone, m.
     """
 
     begin: float
@@ -44,7 +44,7 @@ def disagreements(on_map: Floats, by_odometry: Floats) -> list[Disagreement]:
         return []
     places = on_map[ours, 1:3], by_odometry[theirs, 1:3]
     stamps = on_map[ours, 0] - by_odometry[0, 0]
-    lasts = np.searchsorted(stamps, stamps + _LONG)
+    lasts = np.searchsorted(stamps, stamps + _COMPARED_OVER)
     firsts = np.flatnonzero(lasts < len(stamps))
     lasts = lasts[firsts]
     mapped, reckoned = (np.hypot(*(place[lasts] - place[firsts]).T) for place in places)
@@ -52,7 +52,7 @@ def disagreements(on_map: Floats, by_odometry: Floats) -> list[Disagreement]:
     return [
         Disagreement(
             *stamps[[first, last]].tolist(),
-            *(float(np.hypot(*(place[last] - place[first]))) for place in places),
+            *(_way_of(place[_apart_in(stamps, first, last)]) for place in places),
         )
         for first, last in _joined(firsts[differs].tolist(), lasts[differs].tolist())
     ]
@@ -74,6 +74,20 @@ def told_disagreements(found: Sequence[Disagreement]) -> list[str]:
         + (f", and {more} times more" if more else "")
         + ": it is drawn as scans show it, and may be too short or too long there"
     ]
+
+
+def _apart_in(stamps: Floats, first: int, last: int) -> list[int]:
+    """Return the rows from one to another that are as far apart as both ways were compared over."""
+    rows = [first]
+    while rows[-1] < last:
+        next_one = int(np.searchsorted(stamps, stamps[rows[-1]] + _COMPARED_OVER))
+        rows.append(min(max(next_one, rows[-1] + 1), last))
+    return rows
+
+
+def _way_of(places: Floats) -> float:
+    """Return the way from place to place, m: standing, those of odometry and scans jitter."""
+    return float(np.hypot(*np.diff(places, axis=0).T).sum())
 
 
 def _apart(found: Disagreement) -> float:

@@ -6,7 +6,7 @@ const MOVES = 0.02; // m/s
 const FULL = 0.995; // of a battery
 const NOTHING = 0.01; // of the floor that was wanted
 const MOST_TOLD = 3; // rooms that a sentence lists
-const OPEN = "the map is open"; // how a message begins that tells of open edges
+const OPEN = "the map is open"; // how the part of a message begins that tells of open edges
 const UNTOLD = ["stopped", "refused", "disconnected"]; // ends that were wished for, or are told elsewhere
 const EARLY = { interrupted: "interrupted", "not docked": "done, but not docked" }; // how a run ended, where it did not merely end early
 const HELPS = [ // what is to be done: by what stands in the reason
@@ -111,13 +111,14 @@ export function duration(seconds) {
 
 /** Return how the last run ended; what the map's open edges say is listed beside it. */
 export function lastRun(report) {
-  const parts = [title(report.outcome)], isListed = report.open_edges?.length && report.message.startsWith(OPEN);
+  const parts = [title(report.outcome)], told = report.message.split("; ");
+  const message = report.open_edges?.length ? told.filter((part) => !part.startsWith(OPEN)).join("; ") : report.message;
   if (report.mapped) parts.push(`${report.mapped.toFixed(1)} m² mapped`);
   if (report.wanted) parts.push(`${report.covered.toFixed(1)} of ${report.wanted.toFixed(1)} m²`);
   if (report.duration) parts.push(duration(report.duration));
   if (report.wanted && report.rate) parts.push(`${report.rate.toFixed(2)} m² a minute`);
   if (report.dirt) parts.push(`${report.dirt.toFixed(1)} g of dirt`);
-  return parts.join(" · ") + (report.message && !isListed ? `. ${sentence(report.message)}` : "");
+  return parts.join(" · ") + (message ? `. ${sentence(message)}` : "");
 }
 
 /** Return why a clean achieved nothing; empty when it was told to stop, or achieved something. */

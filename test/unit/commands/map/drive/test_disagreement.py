@@ -40,6 +40,16 @@ def test_odometry_that_stands_while_the_map_drives_is_found() -> None:
     assert found.by_map - found.by_odometry == pytest.approx(4.0 * SPEED, abs=0.1)
 
 
+def test_of_odometry_that_drives_in_circles_the_way_counts_and_not_where_it_ends() -> None:
+    angles = np.cumsum(np.full(len(STAMPS), 0.05))
+    circles = np.column_stack((STAMPS, np.cos(angles), np.sin(angles), angles))
+    standing = np.column_stack((STAMPS, np.zeros((len(STAMPS), 3))))
+    (found,) = disagreements(standing, circles)
+    assert found.by_map == 0.0
+    # Chords of three seconds, which are turns by 1.5 rad.
+    assert found.by_odometry == pytest.approx(20 * 2.0 * np.sin(0.75), rel=0.1)
+
+
 def test_odometry_of_another_frame_that_is_a_tenth_off_agrees() -> None:
     assert disagreements(drive(), drive(scale=0.9, turned=1.0)) == []
 

@@ -96,7 +96,11 @@ function rename(zone) {
 
 /** Returns why it is refused; the zone of the old name goes last, so that the robot is kept out all the time. */
 async function giveName(zone, name) {
-  return await askFor("zones", { ...zone, name }, "PUT") || askFor(path(zone.name), {}, "DELETE");
+  const refused = await askFor("zones", { ...zone, name }, "PUT");
+  if (refused) return refused;
+  const kept = await askFor(path(zone.name), {}, "DELETE");
+  if (kept) await askFor(path(name), {}, "DELETE");
+  return kept;
 }
 
 /** Offer what can be done with the zone that is chosen. */
