@@ -28,6 +28,11 @@ MIDDLE = """async ([x, y]) => {
     const { toScreen, view } = await import("/map/view.js"), [px, py] = toScreen(x, y);
     return Math.hypot(px - view.width / 2, py - view.height / 2) < 2;
 }"""
+DOUBTED = """async (edges) => (await import("/words.js")).lastRun({
+    outcome: "completed", wanted: 20, covered: 20, open_edges: edges,
+    message: "the map is open for 2.0 m; its place was known only roughly",
+})"""
+"""How a clean that explored is told, whose place was not known well either."""
 WARNS = {"light": [168, 67, 0, 255], "dark": [255, 176, 102, 255]}
 
 
@@ -70,6 +75,8 @@ def test_where_the_map_stays_open_is_said_listed_and_shown_on_the_map(
     text = page.inner_text("#last-text")
     assert text.startswith("Completed · ")
     assert "the map is open" not in text.lower()  # the list beside it says that
+    doubted = page.evaluate(DOUBTED, [{"length": 2.0}])
+    assert doubted == "Completed · 20.0 of 20.0 m². Its place was known only roughly."
     picks = last.locator("#last-edges button")
     assert picks.all_inner_texts() == [
         f"{name}\n{edge.length:.1f} m: {edge.reason.value}"
