@@ -15,14 +15,22 @@ from fixtures.thoroughness import core_first
 from playwright.sync_api import Page, sync_playwright
 
 from roomba.commands.play.living import live_client
+from roomba.commands.sim.kept_run import figures_of, recording_of
+from roomba.commands.sim.state_samples import StateSamples
+from roomba.commands.trials.runs import run_trial
+from roomba.commands.trials.trial import Trial
 from roomba.headless.live.client import LiveClient
+from roomba.history.run import RunFigures, RunRecording, RunSource
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
 from roomba.ui.web.server import PageServer, listen
 
 PARTS = ("rooms", "zones", "more")
 """Of the commands; on a phone one is seen at a time."""
-SIZES = {"desktop": (1440, 900), "phone": (390, 844)}
+SIZES = {"desktop": (1440, 900), "tablet": (820, 1180), "phone": (390, 844)}
+"""Of windows, px."""
+EACH_SIZE = pytest.mark.parametrize("size", SIZES.values(), ids=SIZES)
+"""Where the layout matters."""
 PIXELS = """async ([x, y]) => {
     const { toScreen } = await import("/map/view.js");
     const box = document.getElementById("floor").getBoundingClientRect();
@@ -123,6 +131,15 @@ def is_own() -> bool:
     return False
 
 
+@pytest.fixture(scope="session")
+def recorded() -> tuple[RunFigures, RunRecording]:
+    """A real clean of the studio."""
+    samples = StateSamples()
+    run = run_trial(Trial(home="studio", seed=1), (samples,))
+    source = RunSource("sim", run.home.name, 1)
+    return figures_of(run.figures, source), recording_of(run, samples)
+
+
 @contextmanager
 def serving(app: FastAPI) -> Iterator[PageServer]:
     """Serve a page on a free port."""
@@ -178,7 +195,7 @@ def served(
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Let a test run in both windows: by turns in one of them, ``thorough`` in the other one."""
+    """Let a test run in each window: by turns in one of them, ``thorough`` in the others."""
     given = [mark.args[0] for mark in metafunc.definition.iter_markers("parametrize")]
     if "size" not in metafunc.fixturenames or "size" in given:
         return

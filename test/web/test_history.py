@@ -10,7 +10,7 @@ import pytest
 from fixtures.pages.windows import Windows
 from fixtures.waiting import wait_until
 from unit.history.made import made_figures, made_recording
-from web.conftest import SIZES, Opened, page_at, serving
+from web.conftest import EACH_SIZE, SIZES, Opened, page_at, serving
 from web.test_page import DEADLINE, check_it_can_be_read
 
 from roomba.commands.play.living import live_client
@@ -124,6 +124,16 @@ def test_the_way_back_closes_what_is_open_and_comes_back_to_it(opened: Opened) -
     page.locator("[data-tab=more]").click()
     page.go_back()  # nothing is open: the page is left
     page.wait_for_url("about:blank")
+
+
+@EACH_SIZE
+def test_all_of_a_run_is_seen(opened: Opened) -> None:
+    page = opened.page
+    opened.show("more")
+    page.get_by_role("button", name="History").click()
+    page.get_by_role("link", name="Replay run 2").wait_for()
+    beyond = "parts => parts.filter(part => part.scrollWidth > part.clientWidth).length"
+    assert page.locator(".history .wide").evaluate_all(beyond) == 0
 
 
 def test_reports_open_and_two_are_compared(opened: Opened) -> None:

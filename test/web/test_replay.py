@@ -13,12 +13,8 @@ from playwright.sync_api import Page
 from web.conftest import page_at, serving
 from web.test_page import DEADLINE, check_it_can_be_read
 
-from roomba.commands.sim.kept_run import figures_of, recording_of
-from roomba.commands.sim.state_samples import StateSamples
-from roomba.commands.trials.runs import run_trial
-from roomba.commands.trials.trial import Trial
 from roomba.history.replay import RecordedRobot
-from roomba.history.run import RunFigures, RunRecording, RunSource
+from roomba.history.run import RunFigures, RunRecording
 from roomba.history.unfinished import INTERRUPTED, WHY
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
@@ -32,15 +28,6 @@ DRAG = """(at) => {
     slider.value = at;
     slider.dispatchEvent(new Event("input"));
 }"""
-
-
-@pytest.fixture(scope="module")
-def recorded() -> tuple[RunFigures, RunRecording]:
-    """A real clean of the studio."""
-    samples = StateSamples()
-    run = run_trial(Trial(home="studio", seed=1), (samples,))
-    source = RunSource("sim", run.home.name, 1)
-    return figures_of(run.figures, source), recording_of(run, samples)
 
 
 @dataclass

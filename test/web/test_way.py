@@ -87,7 +87,7 @@ def test_by_mouse(opened: Opened) -> None:
     look_back(opened, "stopped")
 
 
-@pytest.mark.parametrize("size", [SIZES["phone"]])
+@pytest.mark.parametrize("size", [SIZES["phone"], SIZES["tablet"]])
 def test_by_touch(opened: Opened) -> None:
     page, rooms = opened.page, {room.name: room for room in opened.robot.home().rooms}
     finger = Finger(opened)

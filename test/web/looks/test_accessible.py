@@ -9,7 +9,7 @@ from axe_playwright_python.sync_playwright import Axe
 from fixtures.pages.windows import Windows
 from fixtures.waiting import wait_until
 from playwright.sync_api import Page, Route
-from web.conftest import SIZES, Opened, in_each_scheme
+from web.conftest import EACH_SIZE, SIZES, Opened, in_each_scheme
 
 from roomba.headless.live.client import LiveClient
 from roomba.ui.web.app import STATIC
@@ -54,6 +54,7 @@ def check_with_axe(opened: Opened) -> None:
         assert grave == [], scheme
 
 
+@EACH_SIZE
 def test_axe_finds_no_serious_fault(opened: Opened) -> None:
     page = opened.page
     check_with_axe(opened)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from fixtures.waiting import wait_until
 from playwright.sync_api import Locator
-from web.conftest import SIZES, Opened
+from web.conftest import EACH_SIZE, SIZES, Opened
 from web.test_page import DEADLINE
 
 LONG = "donaudampfschifffahrtsgesellschaftskapitänskajütenzimmer"
@@ -34,6 +34,7 @@ def is_apart(one: Locator, other: Locator) -> bool:
     return right <= from_left or to_right <= left or bottom <= from_top or to_bottom <= top
 
 
+@EACH_SIZE
 def test_a_long_name_leaves_room_for_all_else(opened: Opened) -> None:
     page, width = opened.page, opened.page.evaluate("() => innerWidth")
     opened.robot.rename_room("living room", LONG)
@@ -59,6 +60,27 @@ def test_a_long_name_leaves_room_for_all_else(opened: Opened) -> None:
     assert shown.endswith("…")
     assert long <= 96
     assert page.evaluate(CLIPPED, "hall")[0] == "hall"
+
+
+@EACH_SIZE
+def test_what_is_in_one_row_is_in_line_and_apart(opened: Opened) -> None:
+    opened.show("rooms")
+    rooms = opened.page.locator("#rooms .room")
+    rooms.nth(1).click()
+    opened.page.locator("#rooms select").first.wait_for()
+    first, second = box(rooms.nth(0)), box(rooms.nth(1))
+    if opened.page.viewport_size == dict(zip(("width", "height"), SIZES["tablet"], strict=True)):
+        assert first[1] == second[1]
+        assert second[0] - first[2] >= 8
+    else:
+        assert first[0] == second[0]
+        assert second[1] >= first[3]
+    opened.page.click("#clean")
+    opened.wait_for_phase("cleaning")
+    # A number, which an ordered list has elsewhere, is not missing here.
+    queue = opened.page.locator("#queue-list .name").first
+    queue.wait_for()
+    assert box(queue)[0] == box(opened.page.locator("#queue-title"))[0]
 
 
 @pytest.mark.parametrize("size", [SMALLEST])
