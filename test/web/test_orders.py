@@ -6,7 +6,7 @@ import math
 
 import pytest
 from fixtures.waiting import wait_until
-from web.conftest import Opened
+from web.conftest import EACH_SIZE, Opened
 from web.test_page import DEADLINE
 
 from roomba.client.view import CleanOrder
@@ -105,6 +105,42 @@ def test_a_clean_under_way_is_given_up_after_a_yes_alone(opened: Opened) -> None
     with page.expect_response("**/api/v1/clean"):
         page.locator("#ask").get_by_role("button", name="OK").click()
     assert opened.robot.ask(asked_for) is CleanMode.ROOMS
+
+
+@EACH_SIZE
+def test_the_order_of_chosen_rooms_is_changed_before_they_are_cleaned(opened: Opened) -> None:
+    page, rooms = opened.page, opened.page.locator("#rooms")
+    first, second, third = (room.name for room in opened.robot.home().rooms[:3])
+    opened.show("rooms")
+    rooms.locator(f"[data-room='{first}']").click()
+    assert rooms.locator(".mover").count() == 0
+    for name in (second, third):
+        rooms.locator(f"[data-room='{name}']").click()
+
+    def numbers() -> list[str]:
+        return rooms.locator(".order").all_inner_texts()[:3]
+
+    assert numbers() == ["1", "2", "3"]
+    later = rooms.get_by_role("button", name=f"Clean {first} later")
+    assert rooms.get_by_role("button", name=f"Clean {first} earlier").is_disabled()
+    later.click()
+    assert numbers() == ["2", "1", "3"]
+    # By keys: the focus stays with the room, also where it cannot come later any more.
+    for key in ("Enter", " "):
+        page.keyboard.press(key)
+    focused = "() => document.activeElement.getAttribute('aria-label').toLowerCase()"
+    assert page.evaluate(focused) == f"clean {first} earlier"
+    assert numbers() == ["2", "1", "3"]
+    later.click()
+    opened.show("rooms")
+    # What the map shows as numbers is this choice.
+    chosen = page.evaluate("async () => (await import('/store.js')).get('chosen')")
+    assert chosen == [second, third, first]
+    page.get_by_role("button", name="Clean 3 rooms").click()
+    opened.wait_for_phase("cleaning")
+    wait_until(
+        lambda: opened.robot.robot().vacuum.queue == (second, third, first), DEADLINE, "the order"
+    )
 
 
 def test_the_rooms_of_a_clean_under_way_are_changed(opened: Opened) -> None:

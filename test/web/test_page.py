@@ -96,7 +96,7 @@ def test_where_the_robot_was_carried_or_not_seen_no_way_is_drawn(opened: Opened)
 def test_a_person_cleans_two_rooms_in_order(opened: Opened) -> None:
     page = opened.page
     opened.show("rooms")
-    kitchen = page.get_by_role("button", name="kitchen")
+    kitchen = page.locator("#rooms [data-room=kitchen]")
     page.get_by_role("button", name="hallway").click()
     kitchen.click()
     assert kitchen.get_attribute("aria-pressed") == "true"

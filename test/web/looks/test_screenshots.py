@@ -45,9 +45,12 @@ BEYOND = """() => [...document.querySelectorAll("body *")].filter((part) => {
         && getComputedStyle(part).clipPath === "none" && !part.closest(".wide, .unseen");
 }).map((part) => part.outerHTML.slice(0, 80))"""
 """What lies beyond the left or the right side of the window."""
-OPEN_ALL = """() => {
-    for (const part of document.querySelectorAll(".parts details:not([hidden])")) part.open = true;
+OPEN = """(selector) => {
+    const part = document.querySelector(selector);
+    part.open = true;
+    part.scrollIntoView();
 }"""
+"""Unfolds a part of the commands."""
 PRESS = "(id) => document.getElementById(id).click()"
 """A button that may lie in a closed sheet."""
 REFUSED = """async () => {
@@ -137,7 +140,8 @@ def choose(opened: Opened) -> None:
 
 
 def tap(opened: Opened) -> None:
-    opened.page.keyboard.press("Escape")
+    if opened.page.locator("#offer").is_visible():
+        opened.page.keyboard.press("Escape")  # else it is the emergency stop
     opened.page.evaluate("async () => (await import('/store.js')).set('chosen', [])")
     opened.tap(*opened.robot.home().rooms[0].anchor)
     opened.page.locator("#offer").wait_for()
@@ -182,8 +186,8 @@ def make_plan(opened: Opened) -> None:
     opened.page.locator("#plan-form[open]").wait_for()
 
 
-def open_all(opened: Opened) -> None:
-    opened.page.evaluate(OPEN_ALL)
+def open_part(identity: str) -> Step:
+    return lambda opened: opened.page.evaluate(OPEN, f"#{identity}")
 
 
 STATES = {
@@ -195,7 +199,10 @@ STATES = {
     "zones": State(put_zones, part="zones"),
     "layers": State(show_layers),
     "more": State(part="more"),
-    "more-open": State(open_all, part="more"),
+    **{
+        f"more-{name}": State(again=open_part(name), part="more")
+        for name in ("camera", "charts", "plans", "play", "upkeep")
+    },
     "cleaning": State(clean),
     "cleaning-list": State(clean, part="rooms"),
     "paused": State(pause),

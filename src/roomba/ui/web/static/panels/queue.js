@@ -3,6 +3,7 @@ import { $, button, span } from "../dom.js";
 import { note, wish } from "../link.js";
 import { get, on, set } from "../store.js";
 import { title } from "../words.js";
+import { movers } from "./order.js";
 
 let shown = "";
 
@@ -31,12 +32,6 @@ export async function add() {
   if (await change([...rooms(), ...added], `${added.map(title).join(", ")}: to be cleaned as well.`)) set("chosen", []);
 }
 
-function moved(names, from, to) {
-  const found = [...names];
-  found.splice(to, 0, ...found.splice(from, 1));
-  return found;
-}
-
 function show() {
   const queue = rooms();
   $("queue").hidden = queue.length === 0 || Boolean(get("state")?.replay);
@@ -50,12 +45,8 @@ function show() {
 
 function entry(queue, name, index) {
   const item = document.createElement("li"), last = queue.length - 1, called = title(name);
-  const earlier = button("▲", () => change(moved(queue, index, index - 1), `${called} comes earlier.`), `${called} earlier`);
-  const later = button("▼", () => change(moved(queue, index, index + 1), `${called} comes later.`), `${called} later`);
   const out = button("✕", () => change(queue.filter((one) => one !== name), `${called} is left out.`), `Leave ${called} out`);
-  earlier.disabled = index === 0;
-  later.disabled = index === last;
   out.disabled = last === 0;
-  item.append(span("name", index === 0 ? `${called}, now` : called), earlier, later, out);
+  item.append(span("name", index === 0 ? `${called}, now` : called), ...movers(queue, index, change), out);
   return item;
 }

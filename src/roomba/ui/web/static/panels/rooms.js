@@ -5,6 +5,7 @@ import { get, on, set } from "../store.js";
 import { title } from "../words.js";
 import { how, numbers } from "./actions.js";
 import { askName } from "./ask.js";
+import { movers } from "./order.js";
 
 let known = []; // the rooms as they were before
 
@@ -67,9 +68,17 @@ function show() {
   $("rename").disabled = chosen.length !== 1;
   $("split").disabled = chosen.length !== 1;
   $("join").disabled = chosen.length < 2;
-  const focused = document.activeElement?.dataset?.room;
+  const focused = $("rooms").contains(document.activeElement) ? nameOf(document.activeElement) : null;
   $("rooms").replaceChildren(...rooms.map((room) => entry(room, chosen.indexOf(room.name))));
-  if (focused) [...$("rooms").querySelectorAll("button")].find((one) => one.dataset.room === focused)?.focus();
+  if (focused) focus(focused);
+}
+
+function nameOf(control) { return control.getAttribute("aria-label") ?? control.dataset.room; }
+
+/** Keep the focus: a room that comes first cannot come earlier, and may then come later again. */
+function focus(name) {
+  const again = [...$("rooms").querySelectorAll("button, select")].find((one) => nameOf(one) === name);
+  (again?.disabled ? again.parentElement.querySelector("button.mover:enabled") : again)?.focus();
 }
 
 function entry(room, order) {
@@ -81,13 +90,14 @@ function entry(room, order) {
   choice.append(span("order", order >= 0 ? String(order + 1) : ""), span("name", room.name), span("area", `${room.area.toFixed(1)} m²`));
   choice.onclick = () => toggle(room.name);
   item.append(choice);
-  const limits = get("limits");
+  const limits = get("limits"), chosen = get("chosen");
   if (order >= 0 && limits?.each_room) {
     item.append(
       own(room.name, "passes", numbers(limits.most_passes).map(([value]) => [value, `${value} ×`]), `Passes of ${room.name}`, Number),
       own(room.name, "fan", limits.fans.map((fan) => [fan, fan]), `Fan of ${room.name}`, String),
     );
   }
+  if (order >= 0 && chosen.length > 1) item.append(...movers(chosen, order, (names) => set("chosen", names), (text) => `Clean ${text}`));
   return item;
 }
 
