@@ -112,7 +112,9 @@ def shut_in(opened: Opened) -> None:
     wait_until(lambda: opened.robot.robot().vacuum.covered > 1.5, DEADLINE, "clean floor")
     opened.robot.set_door("bathroom door", is_shut=True)
     opened.page.click("#dock")
-    opened.page.locator("#explanation").get_by_text("waits for a way").wait_for(timeout=60_000)
+    opened.page.locator("#explanation").get_by_text("It looks again within").wait_for(
+        timeout=60_000
+    )
 
 
 def fall_silent(opened: Opened) -> None:
@@ -140,8 +142,7 @@ def choose(opened: Opened) -> None:
 
 
 def tap(opened: Opened) -> None:
-    if opened.page.locator("#offer").is_visible():
-        opened.page.keyboard.press("Escape")  # else it is the emergency stop
+    opened.page.locator("#headline").click()  # the card closes
     opened.page.evaluate("async () => (await import('/store.js')).set('chosen', [])")
     opened.tap(*opened.robot.home().rooms[0].anchor)
     opened.page.locator("#offer").wait_for()

@@ -61,6 +61,28 @@ def test_trouble_of_a_line_is_the_headline(
 
 
 @PHONE
+@pytest.mark.parametrize(
+    ("why", "said"),
+    [
+        ("no way home: (0.65, -0.00) cannot be reached: no way leads there", "No way home."),
+        ("no way leads on from (6.22, 5.80): no way leads there", "No way leads on."),
+        ("no way leads out of where it is", "No way leads out of where it is."),
+    ],
+)
+def test_a_robot_that_waits_says_when_it_looks_again(opened: Opened, why: str, said: str) -> None:
+    ends = "it waits for a way to open, and looks again within 30 s"
+    told = state("returning", message=f"{why}; {ends}")
+    assert opened.page.evaluate(SAY, ["headline", "live", told]) == (
+        "Waiting for a way to open · Hall"
+    )
+    assert opened.page.evaluate(SAY, ["explanation", "live", told]) == (
+        f"{said} It looks again within 30 s. Open a door or clear the way, and it goes on."
+    )
+    paused = state("paused", message=told["vacuum"]["message"])
+    assert opened.page.evaluate(SAY, ["headline", "live", paused]) == "Paused · Hall"
+
+
+@PHONE
 def test_a_clean_that_achieved_nothing_is_told_with_its_reason(opened: Opened) -> None:
     report = {
         "outcome": "completed", "message": "", "covered": 0.0, "wanted": 12.0, "duration": 60.0,

@@ -32,9 +32,7 @@ class RetryPolicy:
 
     def is_waiting(self, now: float) -> bool:
         """Whether it still waits; not if the clock was set back."""
-        config = self._config
-        wait = config.first_wait if self._waits <= config.first_waits else config.wait
-        return 0.0 <= now - self._since < wait
+        return 0.0 <= now - self._since < self.length
 
     def take_look(self, now: float) -> bool:
         """Return whether it is time, while it waits, to look for a way; the next look is later."""
@@ -52,6 +50,12 @@ class RetryPolicy:
         ended = self._has_begun and not self.is_waiting(now)
         self._has_begun = self._has_begun and not ended
         return ended
+
+    @property
+    def length(self) -> float:
+        """How long this wait is at most, s."""
+        config = self._config
+        return config.first_wait if self._waits <= config.first_waits else config.wait
 
     @property
     def is_pending(self) -> bool:

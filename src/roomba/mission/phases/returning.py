@@ -67,7 +67,8 @@ def wait(reason: str, drives: Drives, retries: RetryPolicy, senses: Senses) -> P
     retries.wait(senses.now)
     drives.make_room(senses)
     drives.obstacles.forget()
-    return PhaseStep(message=f"{reason}; it waits for a way to open")
+    looks = f"looks again within {retries.length:g} s"
+    return PhaseStep(message=f"{reason}; it waits for a way to open, and {looks}")
 
 
 def wait_on(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) -> PhaseStep | None:

@@ -15,6 +15,7 @@ def test_it_waits_a_while_then_half_a_minute_and_then_gets_out_first() -> None:
     for wait in (10.0, 10.0, WAIT, WAIT):
         retries.wait(100.0)
         assert retries.gets_out
+        assert retries.length == wait
         assert retries.is_waiting(100.0)
         assert retries.is_waiting(100.0 + wait - 0.1)
         assert not retries.take_end(100.0 + wait - 0.1)

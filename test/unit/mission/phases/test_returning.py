@@ -72,7 +72,10 @@ def test_shut_in_it_waits_twenty_minutes_for_a_way_and_then_says_that_there_is_n
     assert step.failure is not None
     assert step.failure.outcome is CleanOutcome.NOT_DOCKED
     assert "no way home" in step.failure.reason
-    assert any(message and "waits for a way to open" in message for message in told)
+    # Two short waits, and then long ones; each says when it is over at the latest.
+    for seconds in (10, 30):
+        ends = f"; it waits for a way to open, and looks again within {seconds} s"
+        assert any(message and message.endswith(ends) for message in told)
     assert now == pytest.approx(20.0 * MINUTE, abs=0.5 * MINUTE)
 
 

@@ -15,6 +15,8 @@ const HELPS = [ // what is to be done: by what stands in the reason
   ["the program that kept this run ended", "Clean again what is left."],
   ["it got to no place from which to look there", "Open doors and clear the way before it makes a map anew."],
 ];
+const WAITS = "; it waits for a way to open, and "; // what parts why it waits from when it looks again
+const WORK = ["cleaning", "exploring", "returning"]; // phases in which it may wait so
 const TROUBLES = [ // of a robot on a line: how its message begins, and the headline
   ["the robot cannot be reached", "Cannot reach the robot"],
   ["the robot stands, as it does not tell what it senses", "The robot stands: a sensor is silent"],
@@ -39,6 +41,7 @@ export function headline(link, state) {
   if (trouble) return trouble;
   const { vacuum } = state, room = (vacuum.room ? ` · ${title(vacuum.room)}` : "") + (vacuum.is_on_carpet ? " · on carpet" : "");
   if (state.truth?.lifted) return "Lifted off the floor";
+  if (waits(vacuum)) return `Waiting for a way to open${room}`;
   switch (vacuum.phase) {
     case "docked": return vacuum.charges && vacuum.battery < FULL ? "On its station, charging" : "On its station, ready";
     case "charging": return "Charging, then it goes on";
@@ -68,6 +71,15 @@ export function toGo(link, state) {
   return seconds > 0 && phase === "cleaning" ? ` · ${duration(seconds)} to go` : "";
 }
 
+/** Whether it stands before a door that is shut, or something else in its way, until that is gone. */
+function waits({ message, phase }) { return WORK.includes(phase) && message.includes(WAITS); }
+
+/** Return why it waits, without the numbers of places, when it looks again, and what helps. */
+function waiting(message) {
+  const [why, looks] = message.split(WAITS);
+  return `${sentence(why.replace(/( from \(|:).*/, ""))} It ${sentence(looks).replace(/^./, (first) => first.toLowerCase())} Open a door or clear the way, and it goes on.`;
+}
+
 function moves(state) { return state.speed > MOVES; }
 
 /** Whether the robot stands, and waits for what it is told. */
@@ -86,6 +98,7 @@ export function explanation(link, state, reason, heardAt) {
   if (state.held) return `The drive is held: ${state.held}. “Release” lets it go.`;
   if (state.truth?.lifted) return "Put it down: drag it, or tap the floor and “Put the robot here”.";
   if (/^bin full/.test(state.vacuum.message)) return "Empty the dust bin, then press “Bin emptied”.";
+  if (waits(state.vacuum)) return waiting(state.vacuum.message);
   return sentence(state.vacuum.message || state.doubt);
 }
 
