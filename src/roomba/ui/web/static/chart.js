@@ -1,18 +1,29 @@
 /** A line over time, as SVG. */
 
 const SPACE = "http://www.w3.org/2000/svg";
-const WIDTH = 280, HEIGHT = 84, LEFT = 36, TOP = 6, BOTTOM = 18; // units of the picture
+const LEFT = 40, TOP = 8, BOTTOM = 20; // px
+
+const drawn = new WeakMap(); // what each picture shows
+const resized = new ResizeObserver((entries) => entries.forEach(({ target }) => draw(target, ...drawn.get(target))));
 
 /** Draw `points`, [time, value], from 0 to `highest` (by default the highest value); say what it is, and when it `begins` and `ends`. */
-export function chart(svg, points, title, [begins, ends], highest) {
+export function chart(svg, ...what) {
+  drawn.set(svg, what);
+  resized.observe(svg);
+  draw(svg, ...what);
+}
+
+function draw(svg, points, title, [begins, ends], highest) {
+  const { width, height } = svg.getBoundingClientRect();
+  if (!width) return; // it is not seen yet
   const top = highest ?? niceAbove(Math.max(...points.map(([, value]) => value), 0));
   const [first, last] = [points[0]?.[0] ?? 0, points.at(-1)?.[0] ?? 1], span = Math.max(last - first, 1e-9);
-  const base = HEIGHT - BOTTOM;
+  const base = height - BOTTOM;
   const place = ([time, value]) => [
-    LEFT + (WIDTH - LEFT - 4) * (time - first) / span,
+    LEFT + (width - LEFT - 4) * (time - first) / span,
     TOP + (base - TOP) * (1 - Math.min(1, value / top)),
   ].map((one) => one.toFixed(1)).join(",");
-  svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
+  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   svg.setAttribute("role", "img");
   svg.setAttribute("aria-label", title);
   const marks = points.length <= 40 ? points.map((point) => {
@@ -20,11 +31,11 @@ export function chart(svg, points, title, [begins, ends], highest) {
     return part("circle", { class: "mark", cx: x, cy: y, r: 2.5 });
   }) : [];
   svg.replaceChildren(
-    part("path", { class: "axis", d: `M${LEFT} ${TOP}V${base}H${WIDTH - 4}` }),
-    part("text", { x: LEFT - 4, y: TOP + 8 }, String(top)),
+    part("path", { class: "axis", d: `M${LEFT} ${TOP}V${base}H${width - 4}` }),
+    part("text", { x: LEFT - 4, y: TOP + 10 }, String(top)),
     part("text", { x: LEFT - 4, y: base }, "0"),
-    part("text", { x: LEFT, y: HEIGHT - 4, class: "begins" }, begins),
-    part("text", { x: WIDTH - 4, y: HEIGHT - 4 }, ends),
+    part("text", { x: LEFT, y: height - 4, class: "begins" }, begins),
+    part("text", { x: width - 4, y: height - 4 }, ends),
     part("polyline", { class: "line", points: points.map(place).join(" ") }),
     ...marks,
   );

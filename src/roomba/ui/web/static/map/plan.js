@@ -116,14 +116,14 @@ function drawName(context, room) {
   const tells = view.scale > WIDE;
   const most = Math.max(LABEL, 2 * view.scale * toSide(room));
   write(context, title(room.name), px, py, { isBold: true, size: tells ? 16 : 14, most });
-  if (tells) write(context, `${room.area.toFixed(1)} m²`, px, py + 18, { size: 13 });
+  if (tells) write(context, `${room.area.toFixed(1)} m²`, px, py + 18);
   if (order < 0) return;
   context.beginPath();
   context.arc(px, py - 24, 13, 0, 2 * Math.PI);
   context.fillStyle = colours.accent;
   context.fill();
   context.fillStyle = colours.onAccent;
-  context.font = "700 15px system-ui, sans-serif";
+  context.font = "600 16px system-ui, sans-serif";
   context.fillText(String(order + 1), px, py - 23);
 }
 
@@ -188,7 +188,7 @@ function drawEdge(context, { x, y, length }, index) {
   context.fillStyle = colours.warn;
   context.fill();
   context.fillStyle = colours.paper;
-  context.font = "700 14px system-ui, sans-serif";
+  context.font = "600 14px system-ui, sans-serif";
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.fillText(letter(index), px, py + 1);
