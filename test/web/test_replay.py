@@ -76,6 +76,7 @@ def replayed(
 def test_dragging_shows_another_time(replayed: Replayed) -> None:
     page, duration = replayed.page, replayed.recording.duration
     assert page.inner_text("#headline").startswith("Recorded: ")
+    assert page.is_hidden("#rate")
     replayed.wait_for_swept(0, 40)
     replayed.drag_to(duration)
     tab = page.locator("[data-tab=more]")

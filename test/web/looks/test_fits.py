@@ -69,7 +69,7 @@ def test_what_is_in_one_row_is_in_line_and_apart(opened: Opened) -> None:
     rooms.nth(1).click()
     opened.page.locator("#rooms select").first.wait_for()
     first, second = box(rooms.nth(0)), box(rooms.nth(1))
-    if opened.page.viewport_size == dict(zip(("width", "height"), SIZES["tablet"], strict=True)):
+    if opened.page.evaluate("() => innerWidth") == SIZES["tablet"][0]:
         assert first[1] == second[1]
         assert second[0] - first[2] >= 8
     else:
@@ -106,3 +106,23 @@ def test_outside_of_the_home_nothing_is_offered(opened: Opened) -> None:
     assert opened.page.is_hidden("#offer")
     opened.tap(*opened.robot.home().rooms[0].anchor)
     opened.page.locator("#offer").wait_for()
+
+
+@EACH_SIZE
+def test_a_wide_window_has_the_rate_of_dirt_under_the_map(opened: Opened) -> None:
+    page, rate = opened.page, opened.page.locator("#rate")
+    width, height = page.evaluate("() => [innerWidth, innerHeight]")
+    is_wide = (width, height) == SIZES["desktop"]
+    assert rate.is_visible() == is_wide
+    if not is_wide:
+        return
+    page.click("#clean")
+    opened.wait_for_phase("cleaning")
+    wait_until(lambda: page.inner_text("#rate-title") > "Dirt 0.05", DEADLINE, "a rate of dirt")
+    assert rate.get_by_role("img", name="g/min, the last ten minutes").count() == 1
+    _, top, right, bottom = box(rate)
+    assert top == box(page.locator("#floor"))[3]
+    assert (right, bottom) == (box(page.locator(".map"))[2], height)
+    tops = "line => Math.min(...line.getAttribute('points').split(' ').map(at => at.split(',')[1]))"
+    # The line rises above the middle of its picture.
+    assert page.locator("#rate-line .line").evaluate(tops) < 32

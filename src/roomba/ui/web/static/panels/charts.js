@@ -1,4 +1,4 @@
-/** Live charts of the last minutes: battery, rate of dirt, speed. */
+/** Live charts of the last minutes: battery, rate of dirt, speed; in a wide window the rate of dirt also under the map. */
 import { chart } from "../chart.js";
 import { $, put } from "../dom.js";
 import { get, on } from "../store.js";
@@ -29,11 +29,14 @@ function follow() {
 }
 
 function show() {
-  if (!$("charts").open || !points.length) return;
-  const now = points.at(-1), rates = points.map((point) => [point.time, rate(point)]);
-  line("battery", points.map(({ time, battery }) => [time, battery]), `Battery ${now.battery.toFixed(0)} %`, 100);
-  line("rate", rates, `Dirt ${rates.at(-1)[1].toFixed(2)} g/min`);
-  line("speed", points.map(({ time, speed }) => [time, speed]), `Speed ${now.speed.toFixed(2)} m/s`);
+  const isUnderMap = $("rate").getClientRects().length > 0;
+  if (!points.length || !($("charts").open || isUnderMap)) return;
+  const now = points.at(-1), rates = points.map((point) => [point.time, rate(point)]), dirt = `Dirt ${rates.at(-1)[1].toFixed(2)} g/min`;
+  if (isUnderMap) line($("rate-line"), $("rate-title"), rates, dirt);
+  if (!$("charts").open) return;
+  chartOf("battery", points.map(({ time, battery }) => [time, battery]), `Battery ${now.battery.toFixed(0)} %`, 100);
+  chartOf("rate", rates, dirt);
+  chartOf("speed", points.map(({ time, speed }) => [time, speed]), `Speed ${now.speed.toFixed(2)} m/s`);
 }
 
 function rate(point) {
@@ -41,8 +44,10 @@ function rate(point) {
   return point.time > from.time ? 60 * (point.taken - from.taken) / (point.time - from.time) : 0;
 }
 
-function line(name, values, title, highest) {
-  put($(`chart-${name}-title`), title);
+function chartOf(name, ...what) { line($(`chart-${name}`), $(`chart-${name}-title`), ...what); }
+
+function line(svg, above, values, title, highest) {
+  put(above, title);
   const ago = `${duration(values.at(-1)[0] - values[0][0])} ago`;
-  chart($(`chart-${name}`), values, `${title}, the last ten minutes`, [ago, "now"], highest);
+  chart(svg, values, `${title}, the last ten minutes`, [ago, "now"], highest);
 }
