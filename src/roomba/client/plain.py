@@ -24,7 +24,7 @@ def state_of(view: RobotView) -> Json:
         "pose": [round(value, 4) for value in view.pose],
         "doubt": view.doubt,
         "speed": round(view.speed, 3),
-        "dirt": round(view.dirt, 2),
+        "dirt": known(round(view.dirt, 2)),
         "held": view.held,
         "vacuum": {
             "state": vacuum.state,

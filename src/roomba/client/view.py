@@ -190,13 +190,13 @@ class RobotView:
     """The robot now; ``time`` is in s of its clock and ``pose`` is x, y and heading.
 
     ``doubt`` says which part of it fails, or why its place is not known well; ``speed`` is in m/s,
-    ``dirt`` what it picked up since its bin was emptied, g; ``held`` is why the emergency stop
-    holds the drive, empty if it does not. ``scan`` is float32 [n, 2], where the lidar's beams met
-    something; ``path`` float32 [n, 2], what is left of its way. ``last`` is how the last errand
-    ended. ``battery_seconds`` is when the battery is empty at the present current, or full while it
-    charges, s, and ``top_speed`` how fast it may drive, m/s; NaN if not known. ``charges`` says
-    that its battery fills. ``truth`` is there for a simulated robot. ``bag`` is how full the bag of
-    its station is, 0..1; NaN of one that does not empty the bin.
+    ``dirt`` what it picked up since its bin was emptied, g, NaN if not known; ``held`` is why the
+    emergency stop holds the drive, empty if it does not. ``scan`` is float32 [n, 2], where the
+    lidar's beams met something; ``path`` float32 [n, 2], what is left of its way. ``last`` is how
+    the last errand ended. ``battery_seconds`` is when the battery is empty at the present current,
+    or full while it charges, s, and ``top_speed`` how fast it may drive, m/s; NaN if not known.
+    ``charges`` says that its battery fills. ``truth`` is there for a simulated robot. ``bag`` is
+    how full the bag of its station is, 0..1; NaN of one that does not empty the bin.
     """
 
     time: float

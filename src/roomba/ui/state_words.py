@@ -25,7 +25,8 @@ def lines_of(state: dict[str, Any]) -> list[tuple[str, str]]:
         to_go = to_go_text(vacuum["seconds_to_go"])
         lines.append(("cleaned", ", ".join([*cleaned, to_go] if to_go else cleaned)))
     x, y, heading = (round(value, 2) + 0.0 for value in state["pose"])  # and no minus before 0
-    lines.append(("dirt", f"{state['dirt']:.1f} g picked up since the bin was emptied"))
+    if state["dirt"] is not None:
+        lines.append(("dirt", f"{state['dirt']:.1f} g picked up since the bin was emptied"))
     lines.append(("place", f"x {x:.2f} m, y {y:.2f} m, heading {math.degrees(heading):.0f}°"))
     lines.append(("speed", f"{state['speed']:.2f} m/s"))
     if state["last"] is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import socket
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -76,6 +77,14 @@ def test_it_tells_what_is_wrong_and_how_the_last_errand_ended(
     assert rows(told)["last"] == "stuck, 2.0 of 4.0 m² (50 %), 2.00 m² a minute, free its wheels"
     troubles = [line.split(maxsplit=1)[1] for line in told.splitlines() if "trouble" in line]
     assert [each.strip() for each in troubles] == ["both wheels spin", "held: a hand", "it is dark"]
+
+
+def test_dirt_that_is_not_known_is_not_told(
+    robot: WrittenRobot, port: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot.view = replace(VIEW, dirt=math.nan)
+    assert main(["--port", str(port)]) == 0
+    assert "dirt" not in rows(capsys.readouterr().out)
 
 
 def test_for_a_program_it_is_what_the_api_tells(

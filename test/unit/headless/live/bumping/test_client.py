@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
@@ -12,12 +13,14 @@ from fixtures.bumping import BumpingHome
 from fixtures.waiting import wait_until
 from unit.headless.live.living import living
 
+from roomba.client.plain import state_of
 from roomba.client.protocol import ErrandOutcome, RequestRefusedError
 from roomba.client.view import CleanOrder, LayerName
 from roomba.geometry import Pose
 from roomba.headless.live.bumping.client import BumpingClient
 from roomba.headless.live.bumping.robot import BumpingRobot
 from roomba.headless.live.bumping.view import view_of
+from roomba.ui.web.streams.told import Told
 
 
 @pytest.fixture
@@ -31,6 +34,11 @@ def client() -> Iterator[BumpingClient]:
 
 def phase(client: BumpingClient) -> str:
     return client.robot().vacuum.phase
+
+
+def test_its_state_is_told_as_json(client: BumpingClient) -> None:
+    told = json.loads(Told(state_of(client.robot())).text)
+    assert (told["dirt"], told["vacuum"]["phase"]) == (None, "docked")
 
 
 def test_it_sweeps_is_paused_goes_on_and_comes_home(client: BumpingClient) -> None:

@@ -7,7 +7,7 @@ import { duration } from "../words.js";
 const KEPT = 600, STEP = 1; // s of the robot's clock that are shown, and between two points
 const WINDOW = 20; // s over which the rate of dirt is the mean
 
-let points = []; // [time, battery in %, g that were picked up so far, speed]
+let points = []; // [time, battery in %, g in its bin (null: not known), g that were picked up so far, speed]
 
 /** Follow the robot, whether the charts are seen or not. */
 export function begin() {
@@ -22,16 +22,19 @@ function follow() {
   if (last && (state.time < last.time || state.time - last.time > KEPT)) points = [];
   const before = points.at(-1);
   if (before && state.time - before.time < STEP) return;
-  const taken = before ? before.taken + Math.max(0, state.dirt - before.dirt) : 0;
+  const taken = before ? before.taken + more(before.dirt, state.dirt) : 0;
   points.push({ time: state.time, battery: 100 * (state.vacuum.battery ?? 0), dirt: state.dirt, taken, speed: state.speed });
   while (points[0].time < state.time - KEPT) points.shift();
   show();
 }
 
+function more(before, now) { return before === null || now === null ? 0 : Math.max(0, now - before); }
+
 function show() {
   const isUnderMap = $("rate").getClientRects().length > 0;
   if (!points.length || !($("charts").open || isUnderMap)) return;
-  const now = points.at(-1), rates = points.map((point) => [point.time, rate(point)]), dirt = `Dirt ${rates.at(-1)[1].toFixed(2)} g/min`;
+  const now = points.at(-1), rates = points.map((point) => [point.time, rate(point)]);
+  const dirt = now.dirt === null ? "Dirt: not known" : `Dirt ${rates.at(-1)[1].toFixed(2)} g/min`;
   if (isUnderMap) line($("rate-line"), $("rate-title"), rates, dirt);
   if (!$("charts").open) return;
   chartOf("battery", points.map(({ time, battery }) => [time, battery]), `Battery ${now.battery.toFixed(0)} %`, 100);

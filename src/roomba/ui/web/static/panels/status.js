@@ -28,7 +28,7 @@ function show() {
   figure("battery", vacuum.battery === null ? "–" : `${Math.floor(100 * vacuum.battery)} %`, batteryTime(vacuum));
   const share = vacuum.wanted ? Math.floor(100 * vacuum.fraction) : null;
   figure("covered", share === null ? "–" : `${share} %`, share === null ? "" : `${vacuum.covered.toFixed(1)} of ${vacuum.wanted.toFixed(1)} m²`);
-  figure("dirt", `${state.dirt.toFixed(1)} g`);
+  figure("dirt", state.dirt === null ? "–" : `${state.dirt.toFixed(1)} g`);
   $("progress").hidden = share === null;
   $("progress").setAttribute("aria-valuenow", String(share ?? 0));
   $("progress").firstElementChild.style.width = `${share ?? 0}%`;
