@@ -103,6 +103,7 @@ class NeatoBridge:
         self._line, self._waiting = threading.Lock(), 0
         self._counting, self._is_over = threading.Lock(), threading.Event()
         self._free_at = 0.0
+        self._keeping = threading.Lock()
         self._kept: dict[str, tuple[float, str]] = {}
         self._server = ThreadingHTTPServer(("127.0.0.1", port), _handler_of(self))
         self._server.daemon_threads = True
@@ -156,9 +157,11 @@ class NeatoBridge:
         """Let the robot begin, pause or end a clean; return whether there is such an action."""
         if action not in _CLEANS:
             return False
-        with self._world.lock:
-            _CLEANS[action](self.robot.cleaning)
-        self._kept.pop("GetState", None)
+        # Not between a question for the state and its answer, which would be kept as news.
+        with self._keeping:
+            with self._world.lock:
+                self.robot.clean(_CLEANS[action])
+            self._kept.pop("GetState", None)
         return True
 
     def told(self, what: str) -> Mapping[str, object] | None:
@@ -176,11 +179,12 @@ class NeatoBridge:
         return {name: kind(values.get(label, 0.0)) for name, (label, kind) in fields.items()}
 
     def _recent(self, command: str) -> str:
-        at, answer = self._kept.get(command, (-_KEPT, ""))
-        if not answer or time.monotonic() - at >= _KEPT:
-            answer = self.said(command) or ""
-            self._kept[command] = time.monotonic(), answer
-        return answer
+        with self._keeping:
+            at, answer = self._kept.get(command, (-_KEPT, ""))
+            if not answer or time.monotonic() - at >= _KEPT:
+                answer = self.said(command) or ""
+                self._kept[command] = time.monotonic(), answer
+            return answer
 
     def _pass(self, seconds: float) -> None:
         if seconds > 0.0:

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from roomba.configuration.robot import TimingConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.emulators.neato.cleaning import OwnCleaning
 from roomba.emulators.neato.dialects import DIALECTS, Model, Power, Wheel, accelerometer
@@ -16,7 +17,7 @@ from roomba.emulators.neato.records import DAYS, RECORDS, SETTINGS, schedule
 from roomba.emulators.neato.words import CommandError, Words, understood
 from roomba.world.simulator import Simulator
 
-STEP: Final = 0.025
+STEP: Final = TimingConfig().world_step
 """s of the world; commands come between two."""
 _NEWLINE: Final = "\r\n"
 _WIDTH: Final = 0.34
@@ -80,10 +81,10 @@ class NeatoRobot:
             "PlaySound": self._play,
         }
         self._cleans = {
-            "Start": self.cleaning.press_start,
-            "House": self.cleaning.clean_house,
-            "Spot": self.cleaning.clean_spot,
-            "Stop": self.cleaning.stop,
+            "Start": OwnCleaning.press_start,
+            "House": OwnCleaning.clean_house,
+            "Spot": OwnCleaning.clean_spot,
+            "Stop": OwnCleaning.stop,
         }
         self.advance()
 
@@ -105,16 +106,20 @@ class NeatoRobot:
             said = str(error)
         return f"{line}{_NEWLINE}{said}{_NEWLINE if said else ''}\x1a"
 
+    def clean(self, do: Callable[[OwnCleaning], None]) -> None:
+        """Begin, pause or end a clean of its own; in the test mode that does nothing."""
+        if not self.is_testing:
+            do(self.cleaning)
+
     def _help(self, words: Words) -> str:
         return _lines("Help Strlen = 1024", *(grammar.name for grammar in self._grammars))
 
     def _clean(self, words: Words) -> str:
-        """Do what a press of its button does; in the test mode its buttons do nothing."""
+        """Do what a press of its button does."""
         kinds = words.flags or {"Start"}
         if len(kinds) > 1:
             raise CommandError("Choose only 1 of House,Spot,Stop")
-        if not self.is_testing:
-            self._cleans[next(iter(kinds))]()
+        self.clean(self._cleans[next(iter(kinds))])
         return ""
 
     def _schedule(self, words: Words) -> str:

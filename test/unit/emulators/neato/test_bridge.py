@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http.client
 import json
+import threading
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,6 +12,7 @@ import pytest
 from fixtures.robots.neato_rig import neato_world
 
 from roomba.emulators.neato.bridge import NeatoBridge
+from roomba.emulators.neato.cleaning import OwnState
 from roomba.emulators.neato.robot import NeatoRobot
 
 
@@ -98,3 +100,41 @@ def test_it_begins_pauses_and_ends_the_robots_own_cleans(bridge: NeatoBridge) ->
     assert after("stop") == "STANDBY"
     assert told(bridge, "error")["hasError"] is False
     assert ask(bridge, "POST", "/api/clean?action=dock")[0] == 503
+
+
+def test_in_the_test_mode_it_begins_no_clean(bridge: NeatoBridge) -> None:
+    ask(bridge, "POST", "/api/serial?cmd=TestMode%20On")
+    for action in ("house", "spot"):
+        ask(bridge, "POST", f"/api/clean?action={action}")
+        assert bridge.robot.cleaning.phase is OwnState.STANDBY
+    ask(bridge, "POST", "/api/serial?cmd=TestMode%20Off")
+    ask(bridge, "POST", "/api/clean?action=house")
+    assert bridge.robot.cleaning.phase is OwnState.HOUSE
+    ask(bridge, "POST", "/api/clean?action=stop")
+
+
+def test_a_state_that_was_asked_for_before_a_clean_is_not_kept_as_news(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    with NeatoBridge(NeatoRobot(neato_world()), speed=5.0) as bridge:
+        said, is_asked, may_answer = bridge.said, threading.Event(), threading.Event()
+
+        def slowly(command: str) -> str | None:
+            answer = said(command)
+            is_asked.set()
+            assert may_answer.wait(20.0)
+            return answer
+
+        monkeypatch.setattr(bridge, "said", slowly)
+        looking = threading.Thread(target=lambda: bridge.told("state"))
+        cleaning = threading.Thread(target=lambda: bridge.clean("house"))
+        looking.start()
+        assert is_asked.wait(20.0)
+        cleaning.start()
+        cleaning.join(0.5)  # without order it is done by then
+        may_answer.set()
+        looking.join(20.0)
+        cleaning.join(20.0)
+        now = bridge.told("state")
+    assert now is not None
+    assert now["uiState"] == "UIMGR_STATE_HOUSECLEANINGRUNNING"
