@@ -12,7 +12,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.errors import RoombaError
 from roomba.vocabulary import Phase
+
+
+class WishRefusedError(RoombaError):
+    """The robot is reached, and does not do what it was told; the message has its reason."""
 
 
 class RemoteWish(Enum):
@@ -29,7 +34,7 @@ class RemoteWish(Enum):
 
 @dataclass(frozen=True, slots=True)
 class RemoteState:
-    """What it does, how full its battery is (0..1), and whether a station or cable feeds it.
+    """What it does, how full its battery is (0..1), and whether current comes into it.
 
     ``trouble`` is why it needs help, in its own words; empty if it does not. ``is_taken`` says that
     another program drives it by hand.
@@ -37,14 +42,13 @@ class RemoteState:
 
     phase: Phase
     level: float
-    has_power: bool
     is_charging: bool
     trouble: str = ""
     is_taken: bool = False
 
 
 class RemoteRobot(Protocol):
-    """One such robot; each call has a deadline, and raises LineError where it is not reached."""
+    """One such robot; each call has a deadline, and raises RoombaError where it is not reached."""
 
     def look(self) -> RemoteState:
         """Return what it does now, a few seconds old at most; the charge half a minute."""
@@ -56,4 +60,7 @@ class RemoteRobot(Protocol):
         """
 
     def tell(self, wish: RemoteWish) -> None:
-        """Tell it what to do; returns when it has heard that."""
+        """Tell it what to do; returns when it has heard that.
+
+        Raises WishRefusedError where it is reached and does not do it.
+        """

@@ -9,7 +9,7 @@ Sources: OpenNeato's firmware, description of its API and mock server (May 2026)
 
 from __future__ import annotations
 
-import math
+import contextlib
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -22,10 +22,10 @@ from roomba.drivers.neato.bridge_requests import (
     BridgeAddress,
     MissingError,
     RefusedError,
-    asked,
-    told,
+    json_at,
+    request,
 )
-from roomba.robot.remote import RemoteState, RemoteWish
+from roomba.robot.remote import RemoteState, RemoteWish, WishRefusedError
 from roomba.vocabulary import Phase
 
 _PATHS: Final = {
@@ -52,6 +52,10 @@ _PHASES: Final = (
 """By a part of the state of its page: the first that is in it."""
 _ERROR: Final = "error"
 """The kind of what a person must do something about; others are reminders."""
+_COMMAND: Final = "GetVersion"
+"""Which each Neato answers."""
+_SHOWN: Final = 40
+"""Characters of an answer that an error message shows."""
 _LEAST_TURNS: Final = 1.0
 """1/s; a lidar that turns more slowly has no sweep."""
 
@@ -63,12 +67,15 @@ def hands_on_commands(address: BridgeAddress) -> bool:
     does a bridge that is busy.
     """
     try:
-        answer = asked(address, "POST", "/api/serial?cmd=GetVersion")
+        answer = request(address, "POST", f"/api/serial?cmd={_COMMAND}")
     except MissingError:
         return False
     except RefusedError:
         return True
-    lines = answer.decode("ascii", "replace").splitlines()[1:]
+    lines = answer.decode("ascii", "replace").split("\n")
+    lines = [line.strip() for line in lines if line.strip()]
+    if lines[:1] == [_COMMAND]:  # its echo
+        del lines[0]
     return not lines or any(line.startswith("Component,") for line in lines)
 
 
@@ -82,7 +89,7 @@ class BridgeRemote:
     def look(self) -> RemoteState:
         """Return what it does, its charge and its error."""
         state, charger, error = (
-            told(self._address, f"/api/{what}") for what in ("state", "charger", "error")
+            json_at(self._address, f"/api/{what}") for what in ("state", "charger", "error")
         )
         level = 0.01 * self._number(charger, "fuelPercent", "charger")
         if not 0.0 <= level <= 1.0:
@@ -92,7 +99,6 @@ class BridgeRemote:
         return RemoteState(
             _phase_of(page, robot, has_power=has_power),
             level,
-            has_power,
             charger.get("chargingActive") is True,
             _trouble_of(error),
             any(part in page for part in _TAKEN),
@@ -100,7 +106,7 @@ class BridgeRemote:
 
     def scan(self) -> NDArray[np.float32]:
         """Return the points of its newest scan; the bridge keeps one for 1.5 s."""
-        answer = told(self._address, "/api/lidar")
+        answer = json_at(self._address, "/api/lidar")
         if self._number(answer, "rotationSpeed", "lidar") < _LEAST_TURNS:
             return np.empty((0, 2), np.float32)
         points = answer.get("points")
@@ -119,29 +125,29 @@ class BridgeRemote:
     def tell(self, wish: RemoteWish) -> None:
         """Tell it; the bridge answers once the robot has heard it."""
         path = self._going_on() if wish is RemoteWish.RESUME else _PATHS[wish]
-        asked(self._address, "POST", path)
+        try:
+            request(self._address, "POST", path)
+        except (MissingError, RefusedError) as error:
+            raise WishRefusedError(str(error)) from error
 
     def _going_on(self) -> str:
-        """Return what lets it go on; raises LineError where it is not paused.
+        """Return what lets it go on; raises WishRefusedError where it is not paused.
 
         A bridge knows no such request: a start goes on with what is paused. It decides by the state
         that it was told last, so it is asked for that first; otherwise it would begin anew.
         """
-        state = str(told(self._address, "/api/state").get("uiState", ""))
+        state = str(json_at(self._address, "/api/state").get("uiState", ""))
         if "CLEANINGPAUSED" not in state:
-            raise LineError("expected a clean that is paused, got none: start one")
+            raise WishRefusedError("expected a clean that is paused, got none: start one")
         kind = RemoteWish.CLEAN_SPOT if "SPOT" in state else RemoteWish.CLEAN_HOUSE
         return _PATHS[kind]
 
     def _number(self, values: Mapping[str, Any], name: str, where: str) -> float:
         value = values.get(name)
-        if (
-            isinstance(value, bool)
-            or not isinstance(value, int | float)
-            or not math.isfinite(value)
-        ):
-            raise LineError(f"expected a number {name} in /api/{where}, got {value!r}")
-        return float(value)
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            with contextlib.suppress(OverflowError):  # of a whole number that no float holds
+                return float(value)
+        raise LineError(f"expected a number {name} in /api/{where}, got {repr(value)[:_SHOWN]}")
 
 
 def _phase_of(page: str, robot: str, *, has_power: bool) -> Phase:

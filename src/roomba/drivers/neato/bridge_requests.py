@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import http.client
-import json
+import time
 from dataclasses import dataclass
 from typing import Any, Final
 from urllib.parse import urlsplit
 
 from roomba.drivers.line import LineError
+from roomba.drivers.neato.timed_socket import connected
+from roomba.files.plain_json import load_json
 
 MOST: Final = 65_536
 """Bytes of an answer; a scan has some 6,000, and as JSON some 20,000."""
-_WITHIN: Final = 4.5
-"""s; the bridge itself gives the robot 3 s for each command."""
-_WITHOUT: Final = (http.client.NOT_FOUND, http.client.METHOD_NOT_ALLOWED)
+_DEADLINE: Final = 4.5
+"""s of a whole request; the bridge itself gives the robot 3 s for each command."""
+_NO_SUCH_ADDRESS: Final = (http.client.NOT_FOUND, http.client.METHOD_NOT_ALLOWED)
 """What a bridge answers that has no such address."""
 
 
@@ -34,7 +36,8 @@ class BridgeAddress:
         try:
             parts = urlsplit(f"//{text}")
             host, port = parts.hostname, parts.port
-        except ValueError:
+            (host or "").encode("idna")  # as the system will look for it
+        except ValueError:  # and UnicodeError, which is one
             host, port = None, None
         if not host or parts.path or parts.query or "@" in text:
             raise LineError(
@@ -63,14 +66,15 @@ def gone(address: BridgeAddress, error: Exception) -> LineError:
     )
 
 
-def asked(address: BridgeAddress, method: str, path: str) -> bytes:
-    """Return what a bridge answers to a request.
+def request(address: BridgeAddress, method: str, path: str) -> bytes:
+    """Send a request to a bridge, and return what it answers, within one deadline for both.
 
     Raises MissingError where it has no such address, RefusedError with the reason that it tells,
     LineError where it is not reached.
     """
-    connection = http.client.HTTPConnection(address.host, address.port, timeout=_WITHIN)
+    connection = http.client.HTTPConnection(address.host, address.port)
     try:
+        connection.sock = connected(address.host, address.port, time.monotonic() + _DEADLINE)
         connection.request(method, path, headers={"Connection": "close"})
         response = connection.getresponse()
         body = response.read(MOST)
@@ -78,7 +82,7 @@ def asked(address: BridgeAddress, method: str, path: str) -> bytes:
         raise gone(address, error) from error
     finally:
         connection.close()
-    if response.status in _WITHOUT:
+    if response.status in _NO_SUCH_ADDRESS:
         raise MissingError(f"OpenNeato's bridge at {address} has no {path.partition('?')[0]}")
     if response.status != http.client.OK:
         raise RefusedError(
@@ -88,10 +92,13 @@ def asked(address: BridgeAddress, method: str, path: str) -> bytes:
     return body
 
 
-def told(address: BridgeAddress, path: str) -> dict[str, Any]:
-    """Return the JSON object at a path; raises as :func:`asked`, and LineError for another text."""
+def json_at(address: BridgeAddress, path: str) -> dict[str, Any]:
+    """Request the JSON object at a path.
+
+    Raises as :func:`request`, and LineError for another text.
+    """
     try:
-        values = json.loads(asked(address, "GET", path))
+        values = load_json(request(address, "GET", path).decode())
     except ValueError:
         values = None
     if not isinstance(values, dict):
@@ -101,6 +108,6 @@ def told(address: BridgeAddress, path: str) -> dict[str, Any]:
 
 def _reason(body: bytes) -> str:
     try:
-        return str(json.loads(body)["error"])
+        return str(load_json(body.decode())["error"])
     except (ValueError, TypeError, KeyError):
         return "no reason is told"

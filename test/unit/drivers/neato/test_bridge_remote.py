@@ -15,7 +15,7 @@ from roomba.drivers.neato.bridge_remote import BridgeRemote, hands_on_commands
 from roomba.drivers.neato.bridge_requests import BridgeAddress
 from roomba.emulators.neato.bridge import NeatoBridge
 from roomba.emulators.neato.robot import NeatoRobot
-from roomba.robot.remote import RemoteWish
+from roomba.robot.remote import RemoteWish, WishRefusedError
 from roomba.vocabulary import Phase
 
 LIDAR = load_robot_config(NEATO).lidar
@@ -46,6 +46,24 @@ def test_a_bridge_with_a_robot_hands_them_on() -> None:
         assert hands_on_commands(BridgeAddress.of(bridge.address))
 
 
+@pytest.mark.parametrize(
+    ("text", "hands_on"),
+    [
+        ("Component,Major,Minor,Build,Aux\r\nLDS Software,V2.6,15295,,", True),
+        ("GetVersion\r\r\nComponent,Major,Minor,Build,Aux\r\n", True),
+        ("GetVersion\r\n", True),
+        ("", True),
+        ("<!doctype html><title>another page</title>", False),
+        ("GetVersion\r\nMock response\r\n", False),
+    ],
+)
+def test_commands_are_handed_on_where_a_robot_answers(
+    mock: OpenNeatoMock, text: str, hands_on: bool
+) -> None:
+    mock.text = text
+    assert hands_on_commands(BridgeAddress.of(mock.address)) is hands_on
+
+
 def test_a_bridge_that_is_busy_hands_them_on_later(mock: OpenNeatoMock) -> None:
     mock.is_busy = True
     assert hands_on_commands(BridgeAddress.of(mock.address))
@@ -61,12 +79,12 @@ def test_a_bridge_that_is_not_there_is_told_with_what_helps() -> None:
 def test_it_tells_its_charge_and_that_it_does_nothing(mock: OpenNeatoMock) -> None:
     told = remote_of(mock).look()
     assert (told.phase, told.level) == (Phase.IDLE, pytest.approx(0.85))
-    assert (told.has_power, told.is_charging, told.is_taken, told.trouble) == (
-        False, False, False, "",
-    )  # fmt: skip
+    assert (told.is_charging, told.is_taken, told.trouble) == (False, False, "")
     mock.is_docked = mock.is_charging = True
     told = remote_of(mock).look()
-    assert (told.phase, told.has_power, told.is_charging) == (Phase.DOCKED, True, True)
+    assert (told.phase, told.is_charging) == (Phase.DOCKED, True)
+    mock.is_charging = False
+    assert not remote_of(mock).look().is_charging
 
 
 def test_it_cleans_pauses_goes_on_and_goes_home(mock: OpenNeatoMock) -> None:
@@ -94,7 +112,7 @@ def test_a_spot_that_was_paused_goes_on_as_a_spot(mock: OpenNeatoMock) -> None:
 
 
 def test_what_is_not_paused_does_not_begin_anew(mock: OpenNeatoMock) -> None:
-    with pytest.raises(LineError, match="expected a clean that is paused"):
+    with pytest.raises(WishRefusedError, match="expected a clean that is paused"):
         remote_of(mock).tell(RemoteWish.RESUME)
     assert not mock.kind
 
@@ -142,15 +160,22 @@ def test_a_state_of_the_page_that_was_left_behind_is_no_clean(mock: OpenNeatoMoc
 
 def test_a_bridge_that_refuses_is_told_with_its_reason(mock: OpenNeatoMock) -> None:
     mock.has_faults = True
-    with pytest.raises(LineError, match="status 500: UART timeout"):
+    with pytest.raises(WishRefusedError, match="status 500: UART timeout"):
         remote_of(mock).tell(RemoteWish.CLEAN_HOUSE)
 
 
-@pytest.mark.parametrize("fuel", [101, -1, None, "85", True])
+@pytest.mark.parametrize("fuel", [101, -1, None, "85", True, pytest.param(10**400, id="huge")])
 def test_a_charge_that_is_none_is_refused(mock: OpenNeatoMock, fuel: object) -> None:
     mock.fuel = fuel
     with pytest.raises(LineError, match="expected a"):
         remote_of(mock).look()
+
+
+def test_a_wish_to_a_bridge_that_is_gone_is_not_refused_but_not_reached() -> None:
+    with openneato_mock() as mock:
+        remote = remote_of(mock)
+    with pytest.raises(LineError, match="Is the robot switched on"):
+        remote.tell(RemoteWish.STOP)
 
 
 @pytest.mark.parametrize("points", [None, "many"])

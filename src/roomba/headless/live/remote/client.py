@@ -2,34 +2,22 @@
 
 from __future__ import annotations
 
-import concurrent.futures
 import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from roomba.client import view
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.configuration.robot import RobotConfig
-from roomba.errors import RoombaError
 from roomba.headless.live.held_stop import HeldStop
-from roomba.headless.live.remote.view import BY_ITSELF, TAKEN, remote_home, remote_view
-from roomba.robot.remote import RemoteRobot, RemoteState, RemoteWish
-from roomba.vocabulary import CleanMode, Phase, RoomWay
+from roomba.headless.live.remote.teller import Teller
+from roomba.headless.live.remote.view import BY_ITSELF, TAKEN, Failures, remote_home, remote_view
+from roomba.headless.live.remote.watch import RemoteWatch
+from roomba.robot.remote import RemoteRobot, RemoteWish
+from roomba.vocabulary import CleanMode, RoomWay
 
-_PERIOD: Final = 2.0
-"""s between two looks; OpenNeato's bridge keeps a state for so long."""
-_SCAN_EACH: Final = 2
-"""Looks for one scan, which takes the robot's line for most of a second."""
-_DEADLINE: Final = 5.0
-"""s that a command may take."""
-_ENDING: Final = 10.0
-"""s for a look that is under way to end."""
-_MOVES: Final = (Phase.CLEANING, Phase.RETURNING)
 _KINDS: Final = {
     CleanMode.WHOLE.value: RemoteWish.CLEAN_HOUSE,
     CleanMode.SPOT.value: RemoteWish.CLEAN_SPOT,
@@ -63,15 +51,12 @@ class RemoteClient:
             each_room=False,
             modes=tuple(_KINDS),
         )
-        self._state: RemoteState | None = None
-        self._scan: NDArray[np.float32] = view.NO_POINTS
-        self._lost = ""
-        self._looks = 0
+        self._held, self._not_stopped = "", ""
         self._has_to_stop = False
+        self._holding = threading.Lock()
         self._stop = HeldStop(lambda command: command(self), _hold, _release)
-        self._due, self._is_over = threading.Event(), threading.Event()
-        self._teller = concurrent.futures.ThreadPoolExecutor(1, "remote wishes")
-        self._thread = threading.Thread(target=self._watch, name="remote robot", daemon=True)
+        self._teller = Teller()
+        self._watch = RemoteWatch(remote, now, self._stop_where_held)
 
     def keep_stop(self, folder: Path) -> None:
         """Keep the emergency stop in ``folder``, and hold the robot if it was held before.
@@ -82,15 +67,15 @@ class RemoteClient:
 
     def start(self) -> None:
         """Look at the robot from now on."""
-        self._thread.start()
+        self._watch.start()
 
     def end(self) -> None:
-        """Look no more. The robot goes on with what it does."""
-        self._is_over.set()
-        self._due.set()
-        if self._thread.is_alive():
-            self._thread.join(_ENDING)
-        self._teller.shutdown(wait=False, cancel_futures=True)
+        """Look no more, and tell nothing but a stop that still waits.
+
+        The robot goes on with what it does otherwise.
+        """
+        self._teller.end()
+        self._watch.end()
 
     @property
     def bin_capacity(self) -> float:
@@ -99,8 +84,8 @@ class RemoteClient:
 
     @property
     def ending(self) -> str:
-        """Empty: it is looked at until :meth:`end`."""
-        return ""
+        """Why it is not looked at any more; empty while it is, and before :meth:`start`."""
+        return self._watch.ending
 
     def limits(self) -> view.PageLimits:
         """Return what may be asked for."""
@@ -108,10 +93,15 @@ class RemoteClient:
 
     def robot(self) -> view.RobotView:
         """Return what it told last."""
-        if self._state is None:
-            raise RobotUnavailableError(self._lost or "the robot was not asked yet")
+        if self.ending:
+            raise RobotUnavailableError(f"{self.ending}; start it again")
+        watch, state = self._watch, self._watch.state
+        lost = watch.lost
+        if state is None:
+            raise RobotUnavailableError(lost)
         spent = self._now() - self._began
-        return remote_view(spent, self._state, self._scan, self._stop.reason, self._lost)
+        failures = Failures(lost, self._not_stopped, watch.scan_trouble)
+        return remote_view(spent, state, watch.scan, self._held, failures)
 
     def home(self) -> view.HomeView:
         """Return what seldom changes."""
@@ -140,11 +130,15 @@ class RemoteClient:
         self._ask(RemoteWish.RESUME)
 
     def stop(self) -> None:
-        """End what it does; that is never refused here."""
+        """End what it does, also while another program has it.
+
+        Raises RequestRefusedError where the robot refuses that, RobotUnavailableError where it is
+        not reached: then it goes on.
+        """
         self._tell(RemoteWish.STOP)
 
     def locate(self) -> None:
-        """Let it beep."""
+        """Let it beep, also while another program has it."""
         self._tell(RemoteWish.BEEP)
 
     def empty_bin(self) -> None:
@@ -215,66 +209,61 @@ class RemoteClient:
         """Refuse it."""
         raise RequestRefusedError(BY_ITSELF)
 
-    def hold(self) -> None:
-        """Tell it to stop as soon as it can be told, and again at the next look."""
-        self._has_to_stop = True
-        self._teller.submit(self._remote.tell, RemoteWish.STOP)
-        self._due.set()
+    def hold(self, reason: str) -> None:
+        """Tell it to stop as soon as it can be told, and again until it has heard that."""
+        with self._holding:
+            self._held, self._has_to_stop = reason, True
+        self._teller.put(RemoteWish.STOP, self._tell_held_stop)
+        self._watch.hurry()
 
     def let_go(self) -> None:
         """Tell it to stop no more."""
-        self._has_to_stop = False
+        with self._holding:
+            self._held, self._has_to_stop = "", False
+            self._not_stopped = ""
+
+    def _require_free(self) -> None:
+        """Raise RequestRefusedError where it is held or another program has it."""
+        if held := self._held:
+            raise RequestRefusedError(f"the emergency stop holds it ({held}); release it first")
+        state = self._watch.state
+        if state is not None and state.is_taken:
+            raise RequestRefusedError(TAKEN)
 
     def _ask(self, wish: RemoteWish) -> None:
-        """Tell it, unless it is held or another program has it."""
-        if self._stop.reason:
-            raise RequestRefusedError(
-                f"the emergency stop holds it ({self._stop.reason}); release it first"
-            )
-        if self._state is not None and self._state.is_taken:
-            raise RequestRefusedError(TAKEN)
-        self._tell(wish)
+        """Tell it, unless it is held or another program has it, now or when its turn comes."""
+        self._teller.require_open()
+        self._require_free()
+        self._tell(wish, self._require_free)
 
-    def _tell(self, wish: RemoteWish) -> None:
-        telling = self._teller.submit(self._remote.tell, wish)
+    def _tell(self, wish: RemoteWish, require: Callable[[], None] = lambda: None) -> None:
+        def tell() -> None:
+            require()
+            self._remote.tell(wish)
+
+        self._teller.carry_out(wish, tell)
+        self._watch.hurry()
+
+    def _tell_held_stop(self) -> None:
+        # Before it is told: a hold that comes meanwhile wants one more.
+        with self._holding:
+            self._has_to_stop = False
         try:
-            telling.result(_DEADLINE)
-        except concurrent.futures.TimeoutError as error:
-            raise RobotUnavailableError(
-                f"expected the robot to {wish.value} within {_DEADLINE:g} s, got no answer"
-            ) from error
-        except RoombaError as error:
-            raise RequestRefusedError(str(error)) from error
-        self._due.set()
-
-    def _watch(self) -> None:
-        while not self._is_over.is_set():
-            self._due.clear()
-            try:
-                self._stop_where_held()
-                self._look()
-                self._lost = ""
-            except RoombaError as error:
-                self._lost = str(error)
-            self._due.wait(_PERIOD)
-
-    def _look(self) -> None:
-        self._state = state = self._remote.look()
-        self._looks += 1
-        if state.phase not in _MOVES:
-            self._scan = view.NO_POINTS
-        elif self._looks % _SCAN_EACH == 0:
-            self._scan = self._remote.scan()
+            self._remote.tell(RemoteWish.STOP)
+        except Exception as error:
+            with self._holding:
+                if self._held:
+                    self._has_to_stop, self._not_stopped = True, str(error)
+            raise
+        self._not_stopped = ""
 
     def _stop_where_held(self) -> None:
-        moves = self._state is not None and self._state.phase in _MOVES
-        if self._has_to_stop or (self._stop.reason and moves):
-            self._remote.tell(RemoteWish.STOP)
-            self._has_to_stop = False
+        if self._has_to_stop or (self._held and self._watch.moves):
+            self._teller.carry_out(RemoteWish.STOP, self._tell_held_stop)
 
 
-def _hold(client: RemoteClient, _reason: str) -> None:
-    client.hold()
+def _hold(client: RemoteClient, reason: str) -> None:
+    client.hold(reason)
 
 
 def _release(client: RemoteClient) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roomba.client.protocol import VacuumSnapshot
-from roomba.client.view import NO_POINTS, HomeView, RobotView, battery_fills
+from roomba.client.view import NO_POINTS, HomeView, RobotView
 from roomba.configuration.robot import RobotConfig
 from roomba.mission.phases.machine import VACUUM_STATES
 from roomba.robot.remote import RemoteState
@@ -19,25 +20,43 @@ BY_ITSELF: Final = "it cleans by its own brain, and tells neither its map nor wh
 TAKEN: Final = "another program drives it by hand"
 
 
+@dataclass(frozen=True, slots=True)
+class Failures:
+    """What does not work now with such a robot, each as a reason; empty: it does.
+
+    ``lost`` is why it is not reached, ``stop`` why it was not stopped though it is held, ``scan``
+    why its scan is not shown.
+    """
+
+    lost: str = ""
+    stop: str = ""
+    scan: str = ""
+
+
 def remote_view(
     time: float,
     state: RemoteState,
     scan: NDArray[np.float32] = NO_POINTS,
     held: str = "",
-    lost: str = "",
+    failures: Failures = Failures(),
 ) -> RobotView:
     """Return a robot as it told at ``time``, s: it is shown where it began, with what it sees.
 
-    ``held`` is why the emergency stop holds, ``lost`` why it is not reached now.
+    ``held`` is why the emergency stop holds.
     """
+    lost = failures.lost
+    not_stopped = f"it did not obey the stop: {failures.stop}"
     trouble = lost or state.trouble or (TAKEN if state.is_taken else "")
     phase = Phase.ERROR if lost or state.trouble else state.phase
     if held:
         phase = Phase.EMERGENCY
+        if failures.stop:
+            trouble, held = trouble or not_stopped, f"{held}; but {not_stopped}"
+    unseen = f"its scan is not shown: {failures.scan}" if failures.scan else ""
     return RobotView(
         time=time,
         pose=(0.0, 0.0, 0.0),
-        doubt=lost or BY_ITSELF,
+        doubt=lost or unseen or BY_ITSELF,
         speed=0.0,
         dirt=math.nan,
         held=held,
@@ -47,7 +66,7 @@ def remote_view(
         scan=scan,
         path=NO_POINTS,
         last=None,
-        charges=battery_fills(state.level, is_docked=state.has_power),
+        charges=state.is_charging,
     )
 
 
