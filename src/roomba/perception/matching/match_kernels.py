@@ -185,7 +185,8 @@ def match_in(
 ) -> int:
     """Do the same as :func:`match`, in the caller's ``work`` [MATCH_WORK, 3] and ``lanes`` [2, n].
 
-    ``lanes`` may have more rows. Nothing is allocated.
+    ``lanes`` may have more rows. Nothing is allocated. The first three rows of ``work`` are the
+    prior's information afterwards.
     """
     of_prior, information, solved = work[0:3], work[3:6], work[6:9]
     gradient = work[9]

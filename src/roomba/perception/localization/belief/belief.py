@@ -37,6 +37,7 @@ BELIEF: Final = np.dtype(
         ("wall_offset", "f8", (2,)),  # of walls against the map's: beams times m, and beams
         ("unlike", "f8"),  # 0..1, how much else is in sight than at the newest scan
         ("walls_apart", "f8", (2,)),  # of single walls: sum of squares, m2, and walls
+        ("pulls", "f8", (3,)),  # back along what scans tell least: beams, squared, and as it seems
         ("reckoned", "f8", (3,)),  # x, y, theta, own
         ("spread", "f8", (3,)),  # variances ahead, left, of the turn, since the newest scan
         ("reckoned_spread", "f8", (3,)),  # the same, up to that scan
@@ -58,7 +59,7 @@ BELIEF: Final = np.dtype(
         ("usual_agree", "f8"),  # and of about the last 5 s
         ("usual_through", "f8"),
         ("counts", "f8", (5,)),  # what the kernels work in; means nothing between them
-        ("work", "f8", (MATCH_WORK, 3)),
+        ("work", "f8", (MATCH_WORK + 2, 3)),
         ("calibration", CALIBRATION),  # how far wheels, gyro and lidar are off what is told
     ],
     align=True,

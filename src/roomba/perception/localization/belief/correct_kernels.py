@@ -16,6 +16,7 @@ from roomba.perception.calibration.place_kernels import note_pose
 from roomba.perception.localization.belief.belief import AGREE, EVIDENCE, SHORT, THROUGH, Row, Rows
 from roomba.perception.localization.belief.map_spread_kernels import map_spread
 from roomba.perception.localization.belief.trust_kernels import learn_trust, note_correction
+from roomba.perception.localization.belief.weak_kernels import believe_less, leave_out
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.field_kernels import Field, Place
 from roomba.perception.matching.fit_kernels import AGREEING, LOOKED_AT, judge
@@ -164,10 +165,15 @@ def match_ends(
         covariance[row, row] += _STILL[row]
     scales = _WIDE if _is_unsure(belief.unmatched_covariance, numbers[0]) else _NARROW
     variance, work = _beam_variance(numbers[0], place, count), belief.work
-    match_in(field, place, ends, count, before, covariance, scales, variance, pose, work, lanes)
+    rounds = match_in(
+        field, place, ends, count, before, covariance, scales, variance, pose, work, lanes
+    )
+    share = 1.0
+    if rounds > 0:
+        share = believe_less(belief, field, place, lanes, count, scales[-1], variance)
     note_correction(belief, before)
     if not belief.is_doubtful:
-        _note_map_errors(belief, field, place, ends, count)
+        _note_map_errors(belief, field, place, ends, count, share)
     pose[2] = wrapped(pose[2])
 
 
@@ -189,8 +195,13 @@ def _take_back(belief: Row) -> None:
 
 
 @allocating_part
-def _note_map_errors(belief: Row, field: Field, place: Place, ends: Floats, count: int) -> None:
-    """Take what a scan that was just matched tells of the map's errors."""
+def _note_map_errors(
+    belief: Row, field: Field, place: Place, ends: Floats, count: int, share: float
+) -> None:
+    """Take what a scan that was just matched tells of the map's errors.
+
+    It told but a ``share`` of what it seemed to, as of :func:`believe_less`.
+    """
     spread, told = np.empty((3, 3)), np.empty(4)
     apart = belief.walls_apart
     # A wall lies anywhere in its cell, whatever the few walls in sight say.
@@ -201,6 +212,9 @@ def _note_map_errors(belief: Row, field: Field, place: Place, ends: Floats, coun
         field, place, ends, count, belief.pose, wall_variance, unlearned, spread, told
     ):
         return
+    if share < 1.0:
+        # What does not follow walls is not pulled off as they are.
+        leave_out(belief.work[9], share, spread)
     for row in range(3):
         for column in range(3):
             more = spread[row, column] - belief.map_spread[row, column]
