@@ -21,13 +21,16 @@ from roomba.headless.live.bumping.robot import BumpingRobot
 from roomba.headless.live.bumping.view import BY_WHEELS, FeltLayers, home_of_bumping, view_of
 from roomba.headless.live.held_stop import HeldStop
 from roomba.headless.live.robot import LiveRobot
-from roomba.vocabulary import CleanMode, RoomWay
+from roomba.headless.live.without_map import WithoutMap
+from roomba.vocabulary import CleanMode
 
 _NO_MAP = "it has no lidar, so it makes no map: it sweeps all that it bumps along"
 
 
-class BumpingClient:
+class BumpingClient(WithoutMap):
     """Observes and commands one robot; its methods may be called from any thread."""
+
+    no_map = _NO_MAP
 
     def __init__(self, name: str, robot: BumpingRobot, speed: float = 1.0) -> None:
         """Start nothing yet; ``name`` is that of the home, ``speed`` as of :class:`LiveRobot`."""
@@ -165,49 +168,9 @@ class BumpingClient:
         self._top_speed = speed
         self._obey(lambda robot: robot.brain.limit_speed(speed))
 
-    def change_rooms(self, rooms: tuple[str, ...], each: tuple[RoomWay, ...] = ()) -> None:
-        """Refuse it: there are no rooms."""
-        raise RequestRefusedError(_NO_MAP)
-
-    def explore(self) -> None:
-        """Refuse it: it makes no map."""
-        raise RequestRefusedError(_NO_MAP)
-
     def go_to(self, x: float, y: float) -> None:
         """Refuse it: it does not know its place."""
         raise RequestRefusedError(BY_WHEELS)
-
-    def empty_at_station(self) -> None:
-        """Refuse it: its station does not."""
-        raise RequestRefusedError("its station empties no bin: empty it by hand")
-
-    def replace_bag(self) -> None:
-        """Refuse it: there is none."""
-        raise RequestRefusedError("its station has no bag")
-
-    def put_zone(self, zone: view.ZoneView) -> None:
-        """Refuse it."""
-        raise RequestRefusedError(_NO_MAP)
-
-    def remove_zone(self, name: str) -> None:
-        """Refuse it."""
-        raise RequestRefusedError(_NO_MAP)
-
-    def rename_room(self, name: str, new_name: str) -> None:
-        """Refuse it."""
-        raise RequestRefusedError(_NO_MAP)
-
-    def join_rooms(self, names: tuple[str, ...]) -> None:
-        """Refuse it."""
-        raise RequestRefusedError(_NO_MAP)
-
-    def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
-        """Refuse it."""
-        raise RequestRefusedError(_NO_MAP)
-
-    def undo_rooms(self) -> None:
-        """Refuse it."""
-        raise RequestRefusedError(_NO_MAP)
 
     def _require_free(self, robot: BumpingRobot) -> None:
         """Refuse what would drive as soon as the emergency stop is released."""

@@ -15,8 +15,9 @@ from roomba.headless.live.held_stop import HeldStop
 from roomba.headless.live.remote.teller import Teller
 from roomba.headless.live.remote.view import BY_ITSELF, TAKEN, Failures, remote_home, remote_view
 from roomba.headless.live.remote.watch import RemoteWatch
+from roomba.headless.live.without_map import WithoutMap
 from roomba.robot.remote import RemoteRobot, RemoteWish
-from roomba.vocabulary import CleanMode, RoomWay
+from roomba.vocabulary import CleanMode
 
 _KINDS: Final = {
     CleanMode.WHOLE.value: RemoteWish.CLEAN_HOUSE,
@@ -24,12 +25,14 @@ _KINDS: Final = {
 }
 
 
-class RemoteClient:
+class RemoteClient(WithoutMap):
     """Watches and tells one robot; its methods may be called from any thread.
 
     The emergency stop is one more request: it tells the robot to stop, and again at each look at
     which it moves, until it is released. A robot that is not reached is not stopped by it.
     """
+
+    no_map = BY_ITSELF
 
     def __init__(
         self,
@@ -165,48 +168,8 @@ class RemoteClient:
         """Refuse it: its own brain says how fast it drives."""
         raise RequestRefusedError(BY_ITSELF)
 
-    def change_rooms(self, rooms: tuple[str, ...], each: tuple[RoomWay, ...] = ()) -> None:
-        """Refuse it: there are no rooms."""
-        raise RequestRefusedError(BY_ITSELF)
-
-    def explore(self) -> None:
-        """Refuse it: it makes no map that is told."""
-        raise RequestRefusedError(BY_ITSELF)
-
     def go_to(self, x: float, y: float) -> None:
         """Refuse it: it does not tell its place."""
-        raise RequestRefusedError(BY_ITSELF)
-
-    def empty_at_station(self) -> None:
-        """Refuse it: its station does not."""
-        raise RequestRefusedError("its station empties no bin: empty it by hand")
-
-    def replace_bag(self) -> None:
-        """Refuse it: there is none."""
-        raise RequestRefusedError("its station has no bag")
-
-    def put_zone(self, zone: view.ZoneView) -> None:
-        """Refuse it."""
-        raise RequestRefusedError(BY_ITSELF)
-
-    def remove_zone(self, name: str) -> None:
-        """Refuse it."""
-        raise RequestRefusedError(BY_ITSELF)
-
-    def rename_room(self, name: str, new_name: str) -> None:
-        """Refuse it."""
-        raise RequestRefusedError(BY_ITSELF)
-
-    def join_rooms(self, names: tuple[str, ...]) -> None:
-        """Refuse it."""
-        raise RequestRefusedError(BY_ITSELF)
-
-    def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
-        """Refuse it."""
-        raise RequestRefusedError(BY_ITSELF)
-
-    def undo_rooms(self) -> None:
-        """Refuse it."""
         raise RequestRefusedError(BY_ITSELF)
 
     def hold(self, reason: str) -> None:
