@@ -37,7 +37,7 @@ _PATHS: Final = {
     RemoteWish.BEEP: "/api/sound?id=3",
 }
 _AT_REST: Final = ("ST_C_Standby", "ST_C_Idle", "ST_M2_Charging_StdBy")
-"""States of the robot in which it cleans nothing, whatever its page's state says."""
+"""States of the robot in which it cleans nothing; the state of its page may say otherwise."""
 _STARTS: Final = ("UIMGR_STATE_STARTHOUSECLEANING", "UIMGR_STATE_STARTSPOTCLEANING")
 """In which that state may be left behind (chrisse1/neato-FHEM, of a D6)."""
 _TAKEN: Final = ("MANUALCLEANING", "MANUALDRIVING", "TESTMODE")

@@ -1,4 +1,4 @@
-"""A connection is of use until its deadline, whatever comes meanwhile."""
+"""A connection is of use until its deadline, also where bytes come all the time."""
 
 from __future__ import annotations
 
