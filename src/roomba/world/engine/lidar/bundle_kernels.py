@@ -28,6 +28,17 @@ BEAMS: Final = np.dtype(
         ("first", "u4", (BUNDLE,)),  # its random bits
         ("second", "u4", (BUNDLE,)),
         ("third", "u4", (BUNDLE,)),
+        ("way", "f8", (BUNDLE,)),  # to the nearest solid cell: cells on the way there, then m
+        ("facing", "f8", (BUNDLE,)),  # cosine of the angle to the normal of what it meets
+        ("cell_x", "f8", (BUNDLE,)),  # where each is measured, cells
+        ("cell_y", "f8", (BUNDLE,)),
+        ("column", "f8", (BUNDLE,)),  # the cell where it is: whole numbers
+        ("row", "f8", (BUNDLE,)),
+        ("per_column", "f8", (BUNDLE,)),  # way for a cell along an axis
+        ("per_row", "f8", (BUNDLE,)),
+        ("side", "f8", (BUNDLE,)),  # of the free square ahead, cells
+        ("place", "i4", (BUNDLE,)),  # where that stands in the squares of its quadrant
+        ("quadrant", "i4", (BUNDLE,)),
     ],
     align=True,
 )

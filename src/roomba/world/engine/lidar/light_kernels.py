@@ -102,17 +102,26 @@ def ray_at(around: Surroundings, x: float, y: float, angle: float, chance: float
     By a mirror the robot itself is seen.
     """
     sine, cosine = sine_cosine(angle)
-    return ray(around, x, y, cosine, sine, chance)
+    reach = around.numbers.max_range
+    cell = ray_to_cells(around.solid.squares, around.home, x, y, cosine, sine, reach)
+    return ray_with_cell(around, x, y, cosine, sine, chance, cell)
 
 
 @part
-def ray(around: Surroundings, x: float, y: float, cosine: float, sine: float, chance: float) -> Met:
-    """Return the same by the ray's direction."""
+def ray_with_cell(
+    around: Surroundings,
+    x: float,
+    y: float,
+    cosine: float,
+    sine: float,
+    chance: float,
+    cell: tuple[float, float],
+) -> Met:
+    """Return the same by the ray's direction, and the way, m, and facing of the nearest cell."""
     home = around.home
     if home.faces_end > home.faces_at:
-        return ray_among_faces(around, x, y, cosine, sine, chance)
-    reach = around.numbers.max_range
-    found, facing, what = meet(around, x, y, cosine, sine, reach, around.robot)
+        return ray_among_faces(around, x, y, cosine, sine, chance, cell)
+    found, facing, what = meet(around, x, y, cosine, sine, cell, around.robot)
     into = found + _INTO
     return Met(found, facing, what, x + into * cosine, y + into * sine, 1.0)
 
@@ -124,12 +133,15 @@ def meet(
     y: float,
     cosine: float,
     sine: float,
-    reach: float,
+    cell: tuple[float, float],
     viewer: int,
 ) -> tuple[float, float, int]:
-    """Return the way to cells and what moves, how squarely, and which of both; not the viewer."""
+    """Return the way to what is nearest, how squarely it is met, and whether that is the cell.
+
+    Of the nearest solid cell, a way, m, and its facing, and of all that moves but for the viewer.
+    """
     solid, numbers = around.solid, around.numbers
-    found, facing = ray_to_cells(solid.squares, around.home, x, y, cosine, sine, reach)
+    found, facing = cell
     nearer, square = ray_to_movable(
         solid,
         around.world,
@@ -148,14 +160,19 @@ def meet(
 
 @inner_part
 def ray_among_faces(
-    around: Surroundings, x: float, y: float, cosine: float, sine: float, chance: float
+    around: Surroundings,
+    x: float,
+    y: float,
+    cosine: float,
+    sine: float,
+    chance: float,
+    cell: tuple[float, float],
 ) -> Met:
     """Return what a ray meets in a home with walls that are free of its grid."""
     solid, home, numbers = around.solid, around.home, around.numbers
     gone, light, left, viewer = 0.0, 1.0, -1, around.robot
     for _ in range(MOST_LEGS):
-        reach = numbers.max_range - gone
-        found, facing, what = meet(around, x, y, cosine, sine, reach, viewer)
+        found, facing, what = meet(around, x, y, cosine, sine, cell, viewer)
         finish = 0.0
         nearer, square, index = ray_to_faces(
             solid.faces, home.faces_at, home.faces_end, x, y, cosine, sine, left
@@ -174,6 +191,8 @@ def ray_among_faces(
         if finish == _MIRROR:
             cosine, sine = mirrored(solid.faces[what], cosine, sine)
             viewer = -1
+        reach = numbers.max_range - gone
+        cell = ray_to_cells(solid.squares, home, x, y, cosine, sine, reach)
     return Met(math.inf, 1.0, CELL, x, y, 0.0)
 
 

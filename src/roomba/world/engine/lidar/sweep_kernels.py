@@ -21,9 +21,10 @@ from roomba.world.engine.lidar.light_kernels import (
     Surroundings,
     is_echo,
     lidar_at,
-    ray,
     ray_at,
+    ray_with_cell,
 )
+from roomba.world.engine.lidar.march_kernels import march
 from roomba.world.engine.state.arrays import Row, Rows
 from roomba.world.engine.state.random_kernels import next_bits
 
@@ -120,6 +121,7 @@ def measure_beams(
     for first in range(int(body.next_beam), due, BUNDLE):
         draw(bundle, np.uint32(body.sweep_key & np.uint64(0xFFFFFFFF)), first)
         aim(bundle, (body.sweep_start, world.time - dt), dt, numbers, first, start, way)
+        march(bundle, around.solid.squares, around.home, numbers.max_range)
         for beam in range(first, min(first + BUNDLE, due)):
             ranges[around.robot, beam] = measure(around, bundle, beam - first)
     body.next_beam = due
@@ -148,7 +150,8 @@ def measure(around: Surroundings, beams: Row, number: int) -> float:
     chance = 1.0
     if numbers.noisy > 0.0:
         chance = float(third >> np.uint32(12)) * _UNIT_20
-    met = ray(around, x, y, beams.cosine[number], beams.sine[number], chance)
+    cell = beams.way[number], beams.facing[number]
+    met = ray_with_cell(around, x, y, beams.cosine[number], beams.sine[number], chance, cell)
     found = met.way
     last, body.last_range = body.last_range, found
     if numbers.spot > 0.0 and abs(found - last) > numbers.edge:
