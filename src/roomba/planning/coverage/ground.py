@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from roomba.arrays import Mask
 from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.passes.edges import rings
-from roomba.planning.coverage.passes.stairs import SolidCells
+from roomba.planning.coverage.passes.solid_cells import SolidCells
 from roomba.planning.coverage.passes.sweep import unswept
 from roomba.planning.coverage.tour.net import Net, net_over
 

@@ -16,7 +16,8 @@ from roomba.compilation import allocating_entry
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.passes.contours import outlines, straightened
-from roomba.planning.coverage.passes.stairs import SolidCells, smooth_ways
+from roomba.planning.coverage.passes.solid_cells import SolidCells
+from roomba.planning.coverage.passes.stairs import smooth_ways
 from roomba.planning.coverage.passes.sweep import (
     Counts,
     left_without,

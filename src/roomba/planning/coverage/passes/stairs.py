@@ -14,11 +14,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.arrays import Mask
 from roomba.compilation import allocating_entry, inner_part
 from roomba.planning.coverage.passes.directions import line_along
+from roomba.planning.coverage.passes.solid_cells import Beside, SolidCells, nearest_solid
 
 Line = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
 
 _WINDOW = 60
 """Points of an outline, more than half a metre: three steps or more of a wall that is slanted by 17
@@ -45,18 +46,6 @@ _RADIUS = 16.0
 less floor: the tool is wider than a dip, and they are driven slowly."""
 
 
-class SolidCells(NamedTuple):
-    """What is solid: bool [rows, columns], of which cell (0, 0) of the outlines is at ``column``
-    and ``row``; ``reach`` is what the middle keeps from it, cells. ``things`` are round and not
-    part of it, float64 [n, 3]: x, y and radius."""
-
-    solid: Mask
-    column: int
-    row: int
-    reach: float
-    things: Line
-
-
 class SmoothWay(NamedTuple):
     """The points of an outline from ``first`` to ``last`` are passed by ``points`` between."""
 
@@ -74,7 +63,7 @@ def smooth_ways(ring: Line, walls: SolidCells) -> list[SmoothWay]:
     slanted = along_stairs(ring)
     if not slanted.any():
         return []
-    nearest = _nearest_corners(ring, slanted, walls)
+    nearest = _nearest_corners(ring, slanted, walls.beside, walls.reach + _OFF)
     ways = [
         _smooth_way(ring, nearest, first, last, walls)
         for first, last in _runs(np.isfinite(nearest[:, 2]))
@@ -95,14 +84,15 @@ def _smooth_way(
     first = max(int(at[0]), 1)
     last = min(int(begin + np.flatnonzero(nearest[begin:end, 2] > 0.0)[-1]), len(ring) - 2)
     steps = nearest[at, :2]
+    left, joined = complex(*ring[first].tolist()), complex(*ring[last].tolist())
     for _ in range(_MOST_LOOKS):
-        points = _around(steps, ring[first], ring[last], walls.reach + _ROUNDING, _RADIUS)
+        points = _around(steps, left, joined, walls.reach + _ROUNDING, _RADIUS)
         way = np.concatenate((ring[first : first + 1], points, ring[last : last + 1]))
-        met = _met(way, walls)
+        met = _met(way, walls.beside, walls.reach - _ROUNDING)
         if len(met) == 0:
             return None if _is_beside_things(points, walls) else SmoothWay(first, last, points)
         # Sides of steps come nearer than their corners where these are far apart.
-        near = [first + int(np.argmin(np.hypot(*(ring[first:last] - x[:2]).T))) for x in met]
+        near = first + _nearest_points(ring[first:last], met)
         order = np.argsort(np.concatenate((at, near)), kind="stable")
         at = np.concatenate((at, near))[order]
         steps = np.concatenate((steps, met[:, 2:]))[order]
@@ -132,38 +122,20 @@ def _is_slanted(ring: Line, first: int) -> bool:
     return is_straight and min(off_axis, 0.5 * math.pi - off_axis) >= _SLANT
 
 
-@inner_part
-def _nearest_solid(walls: SolidCells, x: float, y: float) -> tuple[float, float, float]:
-    """Return the nearest point of what is solid, x and y, and how far it is, cells."""
-    rows, columns = walls.solid.shape
-    span = math.ceil(walls.reach + _OFF) + 1
-    column, row = math.floor(x + 0.5) + walls.column, math.floor(y + 0.5) + walls.row
-    best, best_x, best_y = np.inf, 0.0, 0.0
-    for at_row in range(max(row - span, 0), min(row + span + 1, rows)):
-        to_y = min(max(y, at_row - walls.row - 0.5), at_row - walls.row + 0.5)
-        for at_column in range(max(column - span, 0), min(column + span + 1, columns)):
-            if walls.solid[at_row, at_column]:
-                left = at_column - walls.column - 0.5
-                to_x = min(max(x, left), left + 1.0)
-                away = (to_x - x) * (to_x - x) + (to_y - y) * (to_y - y)
-                if away < best:
-                    best, best_x, best_y = away, to_x, to_y
-    return best_x, best_y, math.sqrt(best)
-
-
 @allocating_entry
-def _nearest_corners(ring: Line, wanted: NDArray[np.bool_], walls: SolidCells) -> Line:
+def _nearest_corners(ring: Line, wanted: NDArray[np.bool_], beside: Beside, far: float) -> Line:
     """Return what of the walls is nearest to the wanted points, float64 [n, 3].
 
-    x and y, and 1 for a corner, 0 for a side; NaN for other points, and those of no wall.
+    x and y, and 1 for a corner, 0 for a side; NaN for other points, and those from which no wall is
+    within ``far`` cells.
     """
     found = np.full((len(ring), 3), np.nan)
     for at in range(len(ring)):
         if not wanted[at]:
             continue
-        x, y = ring[at]
-        to_x, to_y, away = _nearest_solid(walls, x, y)
-        if away > walls.reach + _OFF:
+        x, y = ring[at, 0], ring[at, 1]
+        to_x, to_y, away = nearest_solid(beside, x, y, far)
+        if away == math.inf:
             continue
         found[at, 0], found[at, 1] = to_x, to_y
         found[at, 2] = 1.0 if to_x != x and to_y != y else 0.0
@@ -171,28 +143,43 @@ def _nearest_corners(ring: Line, wanted: NDArray[np.bool_], walls: SolidCells) -
 
 
 @allocating_entry
-def _met(way: Line, walls: SolidCells) -> Line:
-    """Return where legs of a way come too near to what is solid, float64 [n, 4].
+def _met(way: Line, beside: Beside, near: float) -> Line:
+    """Return where legs of a way come nearer than ``near`` cells to what is solid, float64 [n, 4].
 
     Each is x and y of the worst place of a leg, and of what is nearest to it there.
     """
     found = np.empty((len(way), 4))
     size = 0
     for leg in range(len(way) - 1):
-        x, y = way[leg]
+        x, y = way[leg, 0], way[leg, 1]
         along_x, along_y = way[leg + 1, 0] - x, way[leg + 1, 1] - y
         parts = math.ceil(math.hypot(along_x, along_y) / _PROBES) + 1
-        least = walls.reach - _ROUNDING
+        least = near
         is_met = False
         for probe in range(parts):
             share = probe / parts
             at_x, at_y = x + share * along_x, y + share * along_y
-            to_x, to_y, away = _nearest_solid(walls, at_x, at_y)
+            to_x, to_y, away = nearest_solid(beside, at_x, at_y, near)
             if away < least:
                 least, is_met = away, True
                 found[size] = at_x, at_y, to_x, to_y
         size += is_met
     return found[:size]
+
+
+@allocating_entry
+def _nearest_points(line: Line, places: Line) -> NDArray[np.int64]:
+    """Return which point of a line is nearest to each of some places, rows of x, y and more."""
+    found = np.zeros(len(places), np.int64)
+    for place in range(len(places)):
+        x, y = places[place, 0], places[place, 1]
+        least = math.inf
+        for at in range(len(line)):
+            to_x, to_y = line[at, 0] - x, line[at, 1] - y
+            square = to_x * to_x + to_y * to_y
+            if square < least:
+                least, found[place] = square, at
+    return found
 
 
 def _is_beside_things(points: Line, walls: SolidCells) -> bool:
@@ -208,44 +195,56 @@ def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
     return [(int(first), int(last)) for first, last in ends.reshape(-1, 2)]
 
 
-def _around(steps: Line, start: Line, end: Line, reach: float, radius: float) -> Line:
+@allocating_entry
+def _around(steps: Line, start: complex, end: complex, reach: float, radius: float) -> Line:
     """Return a smooth way around the corners of steps, float64 [k, 2], all of them on its right.
 
-    It begins and ends beside ``start`` and ``end``.
+    It begins and ends beside the places ``start`` and ``end``, as all here complex: x + i y.
     """
-    corners: list[complex] = []
-    bends: list[complex] = []
-    first, last = _direction(steps[0], start), _direction(steps[-1], end)
-    for x, y in steps.tolist():
-        corner = complex(x, y)
-        # A corner that the bend between its neighbours does not touch is none.
-        while len(corners) > 1 and corners[-1] != corner:
-            turned = (_middle(corners[-1], corner, reach, radius) - corners[-1]) / (
-                bends[-1] - corners[-1]
-            )
+    corners = np.empty(len(steps), np.complex128)
+    bends = np.empty(len(steps), np.complex128)
+    size = _keep_corners(corners, bends, steps, reach, radius)
+    most = math.ceil(math.pi / _BEND)
+    points, count = np.empty((2 * size * most, 2)), 0
+    for at in range(size):
+        corner = corners[at]
+        towards = bends[at - 1] - corner if at > 0 else start - corner
+        onwards = bends[at] - corner if at < size - 1 else end - corner
+        count = _write_arc(points, count, corner, towards, onwards, reach)
+        if at < size - 1:
+            back, on = corner - bends[at], corners[at + 1] - bends[at]
+            count = _write_arc(points, count, bends[at], back, on, radius)
+    return points[:count]
+
+
+@inner_part
+def _keep_corners(
+    corners: Complexes, bends: Complexes, steps: Line, reach: float, radius: float
+) -> int:
+    """Write the corners that a way around steps touches, and the middles of the bends between them.
+
+    Returns how many corners there are; of bends there is one less. Those that the bend between
+    their neighbours does not touch are left out.
+    """
+    size = 0
+    for at in range(len(steps)):
+        corner = complex(steps[at, 0], steps[at, 1])
+        while size > 1 and corners[size - 1] != corner:
+            last = corners[size - 1]
+            turned = (_middle(last, corner, reach, radius) - last) / (bends[size - 2] - last)
             if turned.imag <= 0.0:
                 break
-            corners.pop()
-            bends.pop()
-        if corners and corners[-1] == corner:
+            size -= 1
+        if size > 0 and corners[size - 1] == corner:
             continue
-        if corners:
-            bends.append(_middle(corners[-1], corner, reach, radius))
-        corners.append(corner)
-    points: list[complex] = []
-    for at, corner in enumerate(corners):
-        towards = first if at == 0 else bends[at - 1] - corner
-        onwards = last if at == len(corners) - 1 else bends[at] - corner
-        points += _arc(corner, towards, onwards, reach)
-        if at < len(bends):
-            points += _arc(bends[at], corner - bends[at], corners[at + 1] - bends[at], radius)
-    return np.array([(point.real, point.imag) for point in points], np.float64).reshape(-1, 2)
+        if size > 0:
+            bends[size - 1] = _middle(corners[size - 1], corner, reach, radius)
+        corners[size] = corner
+        size += 1
+    return size
 
 
-def _direction(corner: Line, place: Line) -> complex:
-    return complex(place[0] - corner[0], place[1] - corner[1])
-
-
+@inner_part
 def _middle(one: complex, other: complex, reach: float, radius: float) -> complex:
     """Return the middle of the bend that touches the arcs around two corners, left of both."""
     along = other - one
@@ -254,11 +253,21 @@ def _middle(one: complex, other: complex, reach: float, radius: float) -> comple
     return one + 0.5 * along + 1j * along / abs(along) * height
 
 
-def _arc(middle: complex, begin: complex, end: complex, radius: float) -> list[complex]:
-    """Return the corners of sides that touch an arc, from one direction to the other."""
+@inner_part
+def _write_arc(
+    points: Line, count: int, middle: complex, begin: complex, end: complex, radius: float
+) -> int:
+    """Write the corners of sides that touch an arc, from one direction to the other.
+
+    They stand behind the first ``count`` points; returns how many there are then.
+    """
     turned = end / begin
     angle = math.atan2(turned.imag, turned.real)
-    count = max(1, math.ceil(abs(angle) / _BEND))
-    away = begin / abs(begin) * radius / math.cos(0.5 * angle / count)
-    shares = [(number + 0.5) * angle / count for number in range(count)]
-    return [middle + away * complex(math.cos(at), math.sin(at)) for at in shares]
+    sides = max(1, math.ceil(abs(angle) / _BEND))
+    away = begin / abs(begin) * radius / math.cos(0.5 * angle / sides)
+    for number in range(sides):
+        at = (number + 0.5) * angle / sides
+        corner = middle + away * complex(math.cos(at), math.sin(at))
+        points[count, 0], points[count, 1] = corner.real, corner.imag
+        count += 1
+    return count

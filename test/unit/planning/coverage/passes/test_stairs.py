@@ -14,7 +14,8 @@ from roomba.angles import wrap_angles
 from roomba.planning.coverage.floor.masks import grown, half_widths
 from roomba.planning.coverage.passes.contours import outlines
 from roomba.planning.coverage.passes.edges import rings, turning_of
-from roomba.planning.coverage.passes.stairs import SolidCells, along_stairs, smooth_ways
+from roomba.planning.coverage.passes.solid_cells import SolidCells
+from roomba.planning.coverage.passes.stairs import along_stairs, smooth_ways
 
 Mask = NDArray[np.bool_]
 Line = NDArray[np.float64]
