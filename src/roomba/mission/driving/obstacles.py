@@ -49,8 +49,9 @@ class Obstacles:
     """Round things in the way; ``version`` changes when there are others.
 
     The one memory of a robot's drives, of cleans and walks alike: what was felt is forgotten after
-    ``felt_memory`` s, what was felt again at the same place after half an hour, what was seen when
-    the lidar sees through it, where the floor ends never.
+    ``felt_memory`` s; after half an hour what was felt again at the same place, and what was felt
+    where nothing is seen. What was seen is forgotten when the lidar sees through it, and where the
+    floor ends never.
     """
 
     def __init__(
@@ -63,6 +64,8 @@ class Obstacles:
         # What is felt at a place again and again is no wall that it met being late.
         self._lasting = UnknownThings(walk, body, config.lasting_memory)
         self._touched: deque[tuple[float, float]] = deque(maxlen=_TOUCHES)
+        # People and chairs, which go away, are seen; glass, mirrors, cables and sills are not.
+        self._unseen = UnknownThings(walk, body, config.lasting_memory)
         # Stairs do not go away.
         self._edges = UnknownThings(walk, body, _FOREVER)
         self._same_place = config.lasting_radius
@@ -86,7 +89,7 @@ class Obstacles:
         """
         self.felt_version += self.seen.version + 1
         self.seen = seen
-        for felt in (self._felt, self._lasting, self._edges):
+        for felt in (self._felt, self._lasting, self._unseen, self._edges):
             felt.move(moved)
         there = [moved.compose(Pose(x, y)) for x, y in self._touched]
         self._touched = deque(((place.x, place.y) for place in there), maxlen=_TOUCHES)
@@ -97,22 +100,35 @@ class Obstacles:
         here = senses.pose
         is_again = any(here.distance_to(x, y) < self._same_place for x, y in self._touched)
         self._touched.append((here.x, here.y))
-        where = self._edges if senses.cliff else self._lasting if is_again else self._felt
+        places = self._felt.places(here, *senses.touches)
+        is_unseen = senses.knowledge is Knowledge.KNOWN and not self._is_any_seen(places)
+        if senses.cliff:
+            where = self._edges
+        elif is_unseen:
+            where = self._unseen
+            # The touch was somewhere along that half of the front.
+            x, y = np.mean(places, axis=0).tolist()
+            self.low = self.low.felt_at(x, y, self._low_config)
+        else:
+            where = self._lasting if is_again else self._felt
         where.felt(senses.now, here, *senses.touches)
-        if not senses.cliff and senses.knowledge is Knowledge.KNOWN:
-            self._notice_low(self._felt.places(here, *senses.touches))
         # A wall that it drove against, being late, is on the map.
         self._felt.drop(self.seen.is_mapped)
         self.felt_version += 1
 
     def forget_felt_at(self, senses: Senses) -> None:
         """Forget what was felt where the robot itself stands: it cannot be there."""
-        for felt in (self._felt, self._lasting):
+        for felt in (self._felt, self._lasting, self._unseen):
             felt.forget_around(senses.pose.x, senses.pose.y)
         self.felt_version += 1
 
     def forget(self) -> None:
         """Forget all obstacles but edges, so that they are found anew."""
+        self._unseen.forget()
+        self.forget_what_goes()
+
+    def forget_what_goes(self) -> None:
+        """Forget the same but for what was felt where nothing is seen: that hardly ever goes."""
         self._felt.forget()
         self._lasting.forget()
         self._touched.clear()
@@ -132,7 +148,8 @@ class Obstacles:
 
         What was felt again begins where the body touched it: else the way would lead there anew.
         """
-        felt = [(x, y, _LEAST) for x, y, _ in self._felt.at(now)] + self._lasting.at(now, _LEAST)
+        felt = [(x, y, _LEAST) for x, y, _ in self._felt.at(now)]
+        felt += self._lasting.at(now, _LEAST) + self._unseen.at(now, _LEAST)
         return self._edges.at(now) + felt + [(x, y, _LEAST) for x, y, _ in self.seen.obstacles()]
 
     def felt(self, now: float) -> list[RoundObstacle]:
@@ -150,16 +167,14 @@ class Obstacles:
         """Return the no-go zones that are offered beside those that there are."""
         return self.low.offers(zones, self._low_config)
 
-    def _notice_low(self, places: list[tuple[float, float]]) -> None:
-        """Count a touch, which was somewhere at these places, unless something is seen there."""
-        for x, y in places:
-            if self.seen.is_mapped(x, y) or any(
-                math.dist((x, y), (thing[0], thing[1])) < thing[2] + self._low_config.seen_near
-                for thing in self.seen.obstacles()
-            ):
-                return
-        x, y = np.mean(places, axis=0).tolist()
-        self.low = self.low.felt_at(x, y, self._low_config)
+    def _is_any_seen(self, places: list[tuple[float, float]]) -> bool:
+        """Whether the map or the lidar shows something at any of some places, m."""
+        near = self._low_config.seen_near
+        return any(self.seen.is_mapped(x, y) for x, y in places) or any(
+            math.dist(place, (x, y)) < radius + near
+            for x, y, radius in self.seen.obstacles()
+            for place in places
+        )
 
     def _all_felt(self, now: float) -> list[RoundObstacle]:
-        return self._felt.at(now) + self._lasting.at(now)
+        return self._felt.at(now) + self._lasting.at(now) + self._unseen.at(now)

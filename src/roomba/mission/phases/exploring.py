@@ -40,7 +40,7 @@ def forget_obstacles_once(exploration: Exploration, drives: Drives) -> bool:
     if exploration.looked_again:
         return False
     exploration.looked_again = True
-    drives.obstacles.forget()
+    drives.obstacles.forget_what_goes()
     return True
 
 

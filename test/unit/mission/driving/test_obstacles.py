@@ -76,19 +76,53 @@ def test_what_was_felt_aside_stands_on_that_side(left: bool, right: bool, side: 
 
 
 def test_what_was_felt_is_forgotten_after_a_while_and_an_edge_never() -> None:
-    known, _ = obstacles()
+    """Something is seen where it was felt, as a chair is that a person draws back."""
+    known, layer = obstacles()
+    see_a_thing(layer, HERE.x + BODY, HERE.y)
     known.feel(bumped())
-    felt = len(known.standing(0.0))
+    felt = len(known.felt(0.0))
     known.feel(cliff(0.0, Pose(3.0, 3.0, 0.0)))
-    edges = len(known.standing(0.0)) - felt
+    edges = len(known.felt(0.0)) - felt
     assert felt > 0
     assert edges > 0
-    assert len(known.standing(DRIVING.felt_memory - 1.0)) == felt + edges
-    assert len(known.standing(DRIVING.felt_memory + 1.0)) == edges
-    assert len(known.standing(1e9)) == edges
+    assert len(known.felt(DRIVING.felt_memory - 1.0)) == felt + edges
+    assert len(known.felt(DRIVING.felt_memory + 1.0)) == edges
+    assert len(known.felt(1e9)) == edges
     known.forget()
-    assert known.standing(1e9) == known.edges()
+    assert known.felt(1e9) == known.edges()
     assert len(known.edges()) == edges
+
+
+def test_what_was_felt_where_nothing_is_seen_is_remembered_for_longer() -> None:
+    """Glass, mirrors, cables and sills stay; what may have gone can be forgotten without them."""
+    known, layer = obstacles()
+    known.feel(bumped())
+    unseen = known.felt(0.0)
+    assert unseen
+    elsewhere = Pose(3.0, 3.0, 0.0)
+    see_a_thing(layer, elsewhere.x + BODY, elsewhere.y)
+    known.feel(bumped(0.0, elsewhere))
+    assert len(known.felt(0.0)) > len(unseen)
+    known.forget_what_goes()
+    assert known.standing(0.0) == unseen
+    assert known.felt(DRIVING.felt_memory + 1.0) == unseen
+    assert known.felt(DRIVING.lasting_memory + 1.0) == []
+
+
+def test_where_the_place_is_not_known_what_was_felt_may_be_a_wall_of_the_map() -> None:
+    known, _ = obstacles()
+    known.feel(replace(bumped(), knowledge=Knowledge.ROUGH))
+    assert known.felt(DRIVING.felt_memory - 1.0)
+    assert known.felt(DRIVING.felt_memory + 1.0) == []
+
+
+def test_what_was_felt_where_nothing_is_seen_begins_where_the_body_touched_it() -> None:
+    known, _ = obstacles()
+    known.feel(bumped())
+    least = known.at_least(0.0)
+    assert least
+    for x, y, radius in least:
+        assert math.dist((x, y), (HERE.x, HERE.y)) == pytest.approx(BODY + radius)
 
 
 def test_all_that_was_felt_and_seen_can_be_forgotten() -> None:
@@ -169,12 +203,16 @@ def test_what_is_felt_next_to_a_wall_counts_when_it_is_felt_again() -> None:
 
 def test_the_least_of_what_is_felt_again_begins_where_the_body_touched_it() -> None:
     known, _ = obstacles()
-    known.feel(bumped(0.0, Pose(3.0, 3.0, 0.0)))
+
+    def felt(now: float, pose: Pose) -> None:
+        known.feel(replace(bumped(now, pose), knowledge=Knowledge.ROUGH))
+
+    felt(0.0, Pose(3.0, 3.0, 0.0))
     once = known.at_least(0.0)
     # As it may have been late, a way may lead by the same place once more.
     assert all(math.dist((x, y), (3.0, 3.0)) > BODY + 0.04 for x, y, _ in once)
     again = Pose(3.01, 3.0, 0.0)
-    known.feel(bumped(5.0, again))
+    felt(5.0, again)
     lasting = [thing for thing in known.at_least(5.0) if thing not in once]
     assert lasting
     for x, y, radius in lasting:
