@@ -18,6 +18,7 @@ from roomba.control.speed_loop import Hazards, SpeedLoop
 from roomba.errors import RoombaError
 from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap
+from roomba.mission.commands import CommandRefusedError
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
@@ -145,9 +146,14 @@ class Brain:
     def walk(self, x: float, y: float) -> Walk:
         """Walk to a point of the map, m; an errand under way is paused.
 
-        Raises NoPathError when there is no way, RoombaError while there is no map.
+        Raises NoPathError when there is no way, CommandRefusedError while the emergency stop holds,
+        RoombaError while there is no map.
         """
         mission, senses = self.mission, self.senses()
+        if mission.state.phase is Phase.EMERGENCY:
+            raise CommandRefusedError(
+                f"the emergency stop holds the drive ({mission.message}); release it first"
+            )
         walk = self.walking.begin((x, y), mission.context.occupancy, mission.obstacles, senses)
         if next_state(mission.state, Event.PAUSE) is not None:
             mission.command(Event.PAUSE, senses)

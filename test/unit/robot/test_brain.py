@@ -18,8 +18,9 @@ from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.grid import OccupancyMap
 from roomba.headless.body import SimulatedBody
 from roomba.mission.cleaning.request import CleanRequest
+from roomba.mission.commands import CommandRefusedError
 from roomba.mission.inputs.senses import Battery
-from roomba.mission.phases.machine import Errand, MissionState
+from roomba.mission.phases.machine import Errand, Event, MissionState
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.planning.path.planner import NoPathError
 from roomba.robot.brain import Brain
@@ -168,6 +169,17 @@ def test_a_walk_while_it_charges_for_a_clean_pauses_that() -> None:
     robot.tick(replace(DOCKED, time=0.05, battery=Battery(1.0, 26.0)))
     assert robot.mission.state == MissionState(Phase.PAUSED, Errand.CLEAN, Phase.UNDOCKING)
     assert robot.walking.is_under_way
+
+
+def test_a_walk_is_refused_while_the_emergency_stop_holds_and_its_release_drives_nowhere() -> None:
+    robot = brain(HOME.map)
+    robot.tick(DOCKED)
+    robot.mission.command(Event.EMERGENCY, robot.senses(), "a child")
+    with pytest.raises(CommandRefusedError, match=r"holds the drive \(a child\); release it first"):
+        robot.walk(1.0, 0.5)
+    robot.mission.command(Event.RELEASE, robot.senses())
+    assert robot.tick(replace(DOCKED, time=0.05)).twist == STANDSTILL
+    assert not robot.walking.is_under_way
 
 
 def test_a_walk_that_has_no_way_leaves_the_errand_alone() -> None:
