@@ -52,6 +52,8 @@ _DRIVES: Final = frozenset(
         BumpingState.DOCKING,
     }
 )
+_WAITS: Final = frozenset({BumpingState.PAUSED, BumpingState.HELD})
+"""States in which it can be told to go on."""
 
 
 class BumpingBrain:
@@ -80,7 +82,7 @@ class BumpingBrain:
         self._drive = SpeedLoop(robot.body, max_speed)
         self._sweeping: BumpAndGo | None = None
         self._approach: BeamApproach | None = None
-        self._paused = BumpingState.SWEEPING
+        self._paused: BumpingState | None = None
         self._blind_until = -math.inf
         self._reach = config.near_home
         self._homing_since: float | None = None
@@ -98,8 +100,10 @@ class BumpingBrain:
             self._enter(BumpingState.HOMING)
 
     def stop(self) -> None:
-        """Stand where it is."""
-        if self.state.drives:
+        """Stand where it is, and go on with nothing; an emergency stop holds all the same."""
+        if self.state is BumpingState.EMERGENCY:
+            self._paused = None
+        elif self.state.drives or self.state in _WAITS:
             self._enter(BumpingState.STANDING)
 
     def pause(self) -> None:
@@ -110,19 +114,23 @@ class BumpingBrain:
 
     def resume(self) -> None:
         """Go on with what it was at; a robot that was set free goes on as well."""
-        if self.state in (BumpingState.PAUSED, BumpingState.HELD):
+        if self.state in _WAITS and self._paused is not None:
             self._enter(self._paused)
 
     def hold(self) -> None:
-        """Stand until the emergency stop is released."""
+        """Stand until the emergency stop is released; what it was at is paused."""
         self._drive.emergency = True
+        if self.state.drives:
+            self._paused = self.state
+        elif self.state not in (*_WAITS, BumpingState.EMERGENCY):
+            self._paused = None
         self._enter(BumpingState.EMERGENCY)
 
     def release(self) -> None:
-        """Release the emergency stop; it stands."""
+        """Release the emergency stop; it stands until it is told to go on."""
         self._drive.emergency = False
         if self.state is BumpingState.EMERGENCY:
-            self._enter(BumpingState.STANDING)
+            self._enter(BumpingState.STANDING if self._paused is None else BumpingState.PAUSED)
 
     def _enter(self, state: BumpingState) -> None:
         self.state = state

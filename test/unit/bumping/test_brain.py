@@ -69,8 +69,37 @@ def test_it_stands_when_it_is_told_to_and_goes_on() -> None:
     assert home.brain.tick(home.read()).twist == STANDSTILL
     assert home.brain.steer(Twist(0.2, 0.0), home.read()).twist == STANDSTILL
     home.brain.release()
-    assert home.brain.state is BumpingState.STANDING
+    assert home.brain.state is BumpingState.PAUSED
+    assert home.brain.tick(home.read()).twist == STANDSTILL
     assert home.brain.steer(Twist(0.2, 0.0), home.read()).twist == Twist(0.2, 0.0)
+    home.brain.resume()
+    assert home.brain.state is SWEEPING
+
+
+def test_what_is_paused_or_held_by_the_emergency_stop_is_ended_by_stop() -> None:
+    home = BumpingHome("studio", 1)
+    home.brain.clean()
+    home.pass_time(30.0, until=SWEEPING)
+    home.brain.pause()
+    home.brain.hold()
+    home.brain.hold()
+    home.brain.resume()
+    assert home.brain.state is BumpingState.EMERGENCY
+    home.brain.release()
+    assert home.brain.state is BumpingState.PAUSED
+    home.brain.stop()
+    assert home.brain.state is BumpingState.STANDING
+    home.brain.clean()
+    home.brain.hold()
+    home.brain.stop()
+    assert home.brain.state is BumpingState.EMERGENCY
+    home.brain.release()
+    assert home.brain.state is BumpingState.STANDING
+    # A clean before says nothing of a robot that stood when it was held.
+    home.brain.hold()
+    home.brain.release()
+    home.brain.resume()
+    assert home.brain.state is BumpingState.STANDING
 
 
 def test_lifted_it_stands_and_what_it_steers_at_a_cliff_is_back() -> None:
