@@ -125,7 +125,8 @@ class PlanKeeper:
         ended, message = self._ending(view.last)
         phase = view.vacuum.phase
         is_busy, is_paused = phase not in AT_REST, phase == Phase.PAUSED
-        return Situation(self._unfit(view), is_busy, is_paused, ended, message)
+        is_held = bool(view.held)
+        return Situation(self._unfit(view), is_busy, is_paused, is_held, ended, message)
 
     def _ending(self, last: CleanReport | None) -> tuple[PlanEnd | None, str]:
         """Return how an errand ended since the last look, and what is said of it."""

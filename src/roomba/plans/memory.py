@@ -34,7 +34,7 @@ class Running(Frozen):
     tries: Count = 0
     held: Moment | None = None
     is_overruled: bool = False
-    """A person let it go on: it is not paused again."""
+    """A person let it go on, or pressed the emergency stop: people alone decide on it."""
     rests_since: Moment | None = None
     """Since when the robot stands without telling how the clean ended."""
 

@@ -41,13 +41,14 @@ class PlanEnd(Enum):
 class Situation:
     """What the robot does now.
 
-    ``unfit`` says why it cannot begin a clean, empty if it can. ``ended`` and ``message`` tell of
-    an errand that ended since the last step.
+    ``unfit`` says why it cannot begin a clean, empty if it can. ``is_held``: the emergency stop
+    holds it. ``ended`` and ``message`` tell of an errand that ended since the last step.
     """
 
     unfit: str = ""
     is_working: bool = False
     is_paused: bool = False
+    is_held: bool = False
     ended: PlanEnd | None = None
     message: str = ""
 
@@ -212,7 +213,12 @@ class Scheduler:
     def _hold(
         self, memory: Memory, running: Running, now: dt.datetime, situation: Situation
     ) -> tuple[Memory, Act | None]:
-        """Send the robot home in quiet hours, and pause it while a person is at home."""
+        """Send the robot home in quiet hours, and pause it while a person is at home.
+
+        Once a person pressed the emergency stop the clean is left to people.
+        """
+        if situation.is_held:
+            return self._left_to_people(memory, running, now), None
         quiet = self._quiet(now)
         if quiet and not running.is_overruled:
             return self._home(memory, running, now, quiet)
@@ -235,6 +241,15 @@ class Scheduler:
         if now - running.held >= self._seconds(self.config.longest_pause):
             return self._home(memory, running, now, self._person())
         return memory, None
+
+    @staticmethod
+    def _left_to_people(memory: Memory, running: Running, now: dt.datetime) -> Memory:
+        """Return what is remembered of a clean during which the emergency stop was pressed."""
+        theirs = running.model_copy(update={"held": None, "is_overruled": True})
+        if theirs == running:
+            return memory
+        told = Note(at=now, plan=running.plan, text="left to you: the emergency stop was pressed")
+        return _running(memory.noting(told), theirs)
 
     def _home(
         self, memory: Memory, running: Running, now: dt.datetime, reason: str

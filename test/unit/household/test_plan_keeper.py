@@ -122,6 +122,18 @@ def test_a_robot_that_does_not_obey_is_told_of(living: Living) -> None:
     assert living.last_note() == "the robot did not obey (pause): it cannot pause now"
 
 
+def test_a_clean_during_which_the_emergency_stop_was_pressed_is_left_to_people(
+    living: Living,
+) -> None:
+    living.look(DOCKED, 60)
+    living.look(VIEW, 1)
+    living.look(replace(VIEW, held="a cat"), 1)
+    assert living.last_note() == "left to you: the emergency stop was pressed"
+    living.keeper.change(lambda all_: all_.model_copy(update={"is_person_home": True}))
+    living.look(VIEW, 1)
+    assert [name for name, _ in living.robot.told] == ["clean"]
+
+
 def test_a_plan_that_is_changed_makes_up_for_nothing(living: Living) -> None:
     living.look(VIEW, 60)
     assert living.reason() == "the robot is busy"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime as dt
+from dataclasses import replace
 from zoneinfo import ZoneInfo
 
 from hypothesis import given
@@ -193,6 +194,22 @@ def test_a_person_who_lets_it_go_on_is_obeyed() -> None:
     assert days.at("09:12", WORKING) is None
     assert days.at("09:20", PAUSED) is None, "paused again, by hand"
     assert days.at("09:50", PAUSED) is None, "and not sent home for the person"
+
+
+def test_a_clean_during_which_the_emergency_stop_was_pressed_is_left_to_people() -> None:
+    days = Days(plan(), quiet=(NIGHT,))
+    days.at("09:00")
+    days.person(is_home=True)
+    assert days.at("09:10", WORKING) == Act(Deed.PAUSE, "all")
+    held = replace(WORKING, unfit="the emergency stop holds the drive", is_held=True)
+    assert days.at("09:11", held) is None
+    assert days.at("09:12", held) is None
+    days.person(is_home=False)
+    assert days.at("09:20", PAUSED) is None, "released, it does not go on by itself"
+    assert days.at("22:00", PAUSED) is None
+    assert days.notes[-1] == "left to you: the emergency stop was pressed"
+    assert days.at("22:10", Situation(ended=PlanEnd.DONE)) is None
+    assert begins(days.at("03-03 09:00")) == "all"
 
 
 def test_a_person_who_does_not_mind_is_not_waited_for() -> None:
