@@ -321,6 +321,29 @@ def test_a_killed_mission_node_comes_back_and_ends_the_clean(shared_robot: RosGr
     vacuum.shows_all_clean()
 
 
+def test_a_clean_that_was_held_goes_on_when_told_also_if_its_node_was_killed_meanwhile(
+    shared_robot: RosGraph,
+) -> None:
+    vacuum = Vacuum(shared_robot)
+    vacuum.probe.hear("/coverage_map", OccupancyGrid)
+    clean = vacuum.clean(SMALL)
+    wait_until(lambda: vacuum.state.fraction > 0.3, 30.0, "some of it is clean")
+    vacuum.stops(lambda: vacuum.hold(True))
+    vacuum.does("emergency stop", 30.0)
+    covered = vacuum.state.covered
+    shared_robot.signal(NODE, signal.SIGKILL)
+    vacuum.forget()
+    vacuum.does("emergency stop", 30.0)
+    assert vacuum.state.covered == pytest.approx(covered, abs=0.05)
+    vacuum.hold(False)
+    vacuum.does("paused", 30.0)
+    assert vacuum.stands_for(100)
+    assert rospy.ServiceProxy("/resume", Trigger)().success
+    assert clean.ends(GoalStatus.SUCCEEDED).outcome == CleanResult.COMPLETED
+    vacuum.does("docked")
+    vacuum.shows_all_clean()
+
+
 def test_after_a_walk_and_an_emergency_stop_it_finds_home(shared_robot: RosGraph) -> None:
     vacuum = Vacuum(shared_robot)
     goal = PoseStamped()
@@ -335,8 +358,6 @@ def test_after_a_walk_and_an_emergency_stop_it_finds_home(shared_robot: RosGraph
     clean = vacuum.clean(SMALL)
     vacuum.does("cleaning")
     vacuum.stops(lambda: vacuum.hold(True))
-    result = clean.ends(GoalStatus.ABORTED, 30.0)
-    assert result.outcome == CleanResult.FAULT
     vacuum.does("emergency stop", 30.0)
     assert (vacuum.state.state, vacuum.state.message) == ("error", "a child")
     vacuum.clean(SMALL).ends(GoalStatus.REJECTED, 30.0)
@@ -345,6 +366,12 @@ def test_after_a_walk_and_an_emergency_stop_it_finds_home(shared_robot: RosGraph
         assert vacuum.stands_for(80)
         vacuum.hold(False)
         wait_until(lambda: vacuum.twist()[1] > 0.4, 30.0, "it obeys manual steering")
+    vacuum.does("paused", 30.0)
+    wait_until(lambda: max(vacuum.twist()) < 1e-3, 30.0, "it stands")
+    assert vacuum.stands_for(40)
+    assert rospy.ServiceProxy("/stop", Trigger)().success
+    result = clean.ends(GoalStatus.PREEMPTED, 30.0)
+    assert (result.outcome, result.covered > 0.0) == (CleanResult.STOPPED, True)
     vacuum.does("idle", 30.0)
     assert vacuum.dock().ends(GoalStatus.SUCCEEDED).is_docked
     vacuum.does("docked")

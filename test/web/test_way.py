@@ -154,11 +154,11 @@ def test_by_keys_alone(opened: Opened) -> None:
     opened.wait_for_phase("emergency stop")
     page.locator("#emergency").focus()
     keys.press("Enter")
-    opened.wait_for_phase("idle")
+    opened.wait_for_phase("paused")
     walk_to("Dock")
     keys.press("Enter")
     opened.wait_for_phase("docked")
-    look_back(opened, "emergency stop")
+    look_back(opened, "told to dock")
 
 
 @pytest.mark.parametrize("size", [SIZES["desktop"]])

@@ -44,6 +44,7 @@ _UNDER_WAY: Final = (
     Phase.DOCKING,
     Phase.CHARGING,
     Phase.PAUSED,
+    Phase.EMERGENCY,
     Phase.BIN_FULL,
     Phase.EMPTYING,
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from roomba.configuration.mission import MissionConfig
 from roomba.errors import RoombaError
@@ -13,9 +14,12 @@ from roomba.mission.driving.retry_policy import RetryPolicy
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.at_station import why_not_emptied
 from roomba.mission.phases.job import Job
-from roomba.mission.phases.machine import Event, next_state
+from roomba.mission.phases.machine import Errand, Event, next_state
 from roomba.mission.transitions import BIN_FULL, Transitions
 from roomba.vocabulary import Phase, RoomWay
+
+RELEASED: Final = "the emergency stop was released: it waits to be told to go on, or to stop"
+"""Why a job that it interrupted does not go on."""
 
 
 class CommandRefusedError(RoombaError):
@@ -63,15 +67,16 @@ class Commands:
         self._require_possible(event)
         if event in (Event.DOCK, Event.UNDOCK, Event.STOP):
             self._end(f"it was told to {event.value}", senses)
-        if event is Event.EMERGENCY:
+        if event is Event.EMERGENCY and not self._outlasts_a_stop:
             self._end(f"emergency stop: {reason}", senses, CleanOutcome.FAULT)
         if event is Event.RESUME:
             self._retries.renew()
             self._job.take_up()
+        reason = reason if event is Event.EMERGENCY else self._transitions.reason
         self._transitions.go(event, senses)
-        self._transitions.reason = reason if event is Event.EMERGENCY else ""
         if event in (Event.RELEASE, Event.STOP) and senses.battery.is_docked:
             self._transitions.go(Event.CONTACT, senses)
+        self._transitions.reason = self._reason_after(event, reason)
 
     def empty_bin(self, senses: Senses) -> None:
         """Note that the dust bin was emptied by hand.
@@ -117,6 +122,19 @@ class Commands:
         self._transitions.end_job(outcome, message, senses)
         self._retries.renew()
         self._job.forget()
+
+    @property
+    def _outlasts_a_stop(self) -> bool:
+        """Whether there is a job that an emergency stop only interrupts."""
+        after = next_state(self._transitions.state, Event.EMERGENCY)
+        return after is not None and after.errand is not Errand.NONE
+
+    def _reason_after(self, event: Event, held: str) -> str:
+        """Return why the robot stands after a command; ``held`` is why an emergency stop holds."""
+        phase = self._transitions.state.phase
+        if phase is Phase.EMERGENCY:
+            return held
+        return RELEASED if event is Event.RELEASE and phase is Phase.PAUSED else ""
 
     def _require_possible(self, event: Event) -> None:
         state, message = self._transitions.state, self._transitions.message

@@ -55,7 +55,7 @@ class MappedMission:
 def fan_of(mission: Mission) -> FanLevel | None:
     """Return the fan's level that a clean asks for where the robot is; None without one."""
     cleaning = mission.cleaning
-    if cleaning is None or mission.state.phase is Phase.ERROR:
+    if cleaning is None or mission.state.phase in (Phase.ERROR, Phase.EMERGENCY):
         return None
     stage, request = cleaning.ledger.stage, cleaning.ledger.request
     asked = request.way_of("" if stage is None else stage.name).fan

@@ -56,7 +56,7 @@ _SIMULATION_DEADLINE: Final = 1.0
 _IS_OBEYED: Final[dict[str, Callable[[str], bool]]] = {
     "pause": lambda phase: phase == Phase.PAUSED,
     "resume": lambda phase: phase not in HELD,
-    "stop": lambda phase: phase in AT_REST,
+    "stop": lambda phase: phase in AT_REST or phase == Phase.EMERGENCY,
 }
 """By an order whether a phase may come after it; in any other the state is from before."""
 

@@ -84,6 +84,7 @@ class MissionOrders:
         self._goal: MissionGoal | None = None
         self._answers: list[Callable[[], object]] = []
         self._emergency: str | None = None
+        self._engaged = ""
         self._serves = False
         self._serves_by = time.monotonic() + deadlines.senses
 
@@ -113,6 +114,7 @@ class MissionOrders:
     def hold(self, reason: str) -> None:
         """Take an emergency stop for a reason; an empty reason releases it."""
         self._emergency = reason
+        self._engaged = reason or self._engaged
 
     @property
     def goal(self) -> GoalIdentity | None:
@@ -228,11 +230,12 @@ class MissionOrders:
         return True, _DONE.get(event, event.value)
 
     def _obey_emergency_stop(self, mission: Mission, senses: Senses) -> None:
-        is_held = mission.state.phase is Phase.EMERGENCY
-        reason = self._emergency
-        if reason and not is_held:
+        """Hold the mission, or release it; one that was held between two ticks was held, too."""
+        engaged, self._engaged = self._engaged, ""
+        reason = self._emergency or engaged
+        if reason and mission.state.phase is not Phase.EMERGENCY:
             mission.command(Event.EMERGENCY, senses, reason)
-        elif reason == "" and is_held:
+        if self._emergency == "" and mission.state.phase is Phase.EMERGENCY:
             mission.command(Event.RELEASE, senses)
 
     def _on_order(self, event: Event) -> TriggerResponse:

@@ -182,6 +182,29 @@ def test_a_state_is_told_before_the_result_of_a_goal_that_ended(
         assert rig.tick() == ["docked", "feedback", "succeeded"]
 
 
+def test_a_clean_that_is_held_lasts_until_it_is_cancelled(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig(monkeypatch)
+    rig.ask(CleaningGoal, CleanGoal())
+    rig.orders.hold("a child")
+    assert rig.tick() == ["emergency stop", "feedback"]
+    rig.orders.ask(Cancel(GoalIdentity("clean", "1", 0, 0)))
+    assert rig.tick() == ["emergency stop", "canceled"]
+    assert rig.mission.message == "a child"
+    rig.orders.hold("")
+    assert rig.tick() == ["idle"]
+
+
+def test_a_clean_that_was_held_is_paused_also_if_that_was_between_two_ticks(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = Rig(monkeypatch)
+    rig.ask(CleaningGoal, CleanGoal())
+    rig.orders.hold("a child")
+    rig.orders.hold("")
+    assert rig.tick() == ["paused", "feedback"]
+    assert rig.order(Event.RESUME)[0] == "cleaning"
+
+
 def test_the_clean_floor_is_counted_once_for_a_state(monkeypatch: pytest.MonkeyPatch) -> None:
     rig, areas = Rig(monkeypatch), iter((1.0, 1.5, 2.0))
     monkeypatch.setattr(CoverageLedger, "clean_area", property(lambda _: next(areas)))

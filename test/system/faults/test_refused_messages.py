@@ -167,7 +167,8 @@ def test_forged_commands_and_a_forged_release_do_not_move_a_held_robot(
     assert set(speeds) == {0.0}
     assert witness.state.phase == "emergency stop"
     assert hold(False, "").success
-    wait_until(lambda: witness.state.phase == "idle", 20.0, lambda: f"released: {witness.state}")
+    wait_until(lambda: witness.state.phase == "paused", 20.0, lambda: f"released: {witness.state}")
+    witness.stops()
 
 
 def test_a_second_node_that_tells_the_place_is_noticed_and_the_robot_stands(

@@ -311,7 +311,7 @@ def test_a_wheel_that_is_held_makes_it_say_that_it_is_stuck() -> None:
     assert_all_clean(robot, robot.run())
 
 
-@pytest.mark.parametrize("event", [Event.STOP, Event.DOCK, Event.EMERGENCY])
+@pytest.mark.parametrize("event", [Event.STOP, Event.DOCK])
 def test_a_clean_that_failed_can_be_ended_for_good(event: Event) -> None:
     robot = begun()
     robot.simulator.inject(Fault.LIFTED, 1.0)
@@ -325,8 +325,6 @@ def test_a_clean_that_failed_can_be_ended_for_good(event: Event) -> None:
     assert not robot.mission.sweeps
     wait(robot, 3.0)
     assert robot.mission.take_result() is None
-    if event is Event.EMERGENCY:
-        command(robot, Event.RELEASE)
     # The next one is told of itself alone.
     record = robot.clean(CleanRequest(CleanMode.SPOT, spot=(1.0, 0.6)))
     assert record.result.outcome is CleanOutcome.COMPLETED

@@ -3,8 +3,18 @@
 from __future__ import annotations
 
 import pytest
+from fixtures.homes.worlds import IDEAL
 from fixtures.robots.headless_cleans import assert_all_clean, assert_stands, begun, command
-from fixtures.robots.missions import HOME, STATION, TWO_ROOMS, in_phase, until, wait
+from fixtures.robots.missions import (
+    FLOOR_TOO_LITTLE,
+    HOME,
+    STATION,
+    TWO_ROOMS,
+    floor_clean,
+    in_phase,
+    until,
+    wait,
+)
 
 from roomba.geometry import Pose
 from roomba.headless.mission import HeadlessMission
@@ -13,7 +23,7 @@ from roomba.mission.cleaning.request import (
     CleanRequest,
     MissReason,
 )
-from roomba.mission.commands import CommandRefusedError
+from roomba.mission.commands import RELEASED, CommandRefusedError
 from roomba.mission.phases.machine import Event
 from roomba.vocabulary import CleanMode, Phase
 from roomba.world.engine.state.arrays import Fault
@@ -128,24 +138,111 @@ def test_carried_elsewhere_it_finds_its_place_and_goes_on() -> None:
     assert_all_clean(robot, robot.run())
 
 
-def test_the_emergency_stop_holds_until_it_is_released() -> None:
+def test_the_emergency_stop_holds_until_it_is_released_and_the_clean_goes_on_when_told() -> None:
     robot = begun()
     command(robot, Event.EMERGENCY, "a hand in the brush")
-    result = robot.run().result
-    assert result.outcome is CleanOutcome.FAULT
-    assert "a hand in the brush" in result.message
     assert_stands(robot)
-    for event in (Event.DOCK, Event.UNDOCK, Event.PAUSE, Event.RESUME, Event.STOP):
+    for event in (Event.DOCK, Event.UNDOCK, Event.PAUSE, Event.RESUME):
         with pytest.raises(CommandRefusedError, match=r"emergency stop.*a hand in the brush"):
             command(robot, event)
     with pytest.raises(CommandRefusedError, match="emergency stop"):
         robot.mission.clean(CleanRequest(), robot.senses())
     assert_stands(robot, 2.0)
     command(robot, Event.RELEASE)
+    assert robot.mission.state.phase is Phase.PAUSED
+    assert robot.mission.message == RELEASED
+    assert_stands(robot, 20.0)
+    assert robot.mission.take_result() is None
+    command(robot, Event.RESUME)
+    assert robot.mission.message == ""
+    assert_all_clean(robot, robot.run())
+
+
+def test_what_was_swept_before_an_emergency_stop_is_not_swept_again() -> None:
+    whole = HeadlessMission(HOME, IDEAL).clean().distance
+    robot = begun(130.0, HeadlessMission(HOME, IDEAL))
+    assert floor_clean(robot) > 0.4
+    driven = robot.simulator.numbers["distance"]
+    command(robot, Event.EMERGENCY, "a cat")
+    wait(robot, 5.0)
+    command(robot, Event.RELEASE)
+    command(robot, Event.RESUME)
+    assert robot.run().result.outcome is CleanOutcome.COMPLETED
+    assert floor_clean(robot) >= FLOOR_TOO_LITTLE
+    assert robot.simulator.numbers["distance"] - driven < 0.75 * whole
+
+
+@pytest.mark.parametrize("is_released", [False, True])
+def test_a_clean_that_an_emergency_stop_interrupted_is_ended_by_stop(is_released: bool) -> None:
+    robot = begun()
+    command(robot, Event.EMERGENCY, "a child")
+    wait(robot, 2.0)
+    if is_released:
+        command(robot, Event.RELEASE)
+    command(robot, Event.STOP)
+    result = robot.mission.take_result()
+    assert result is not None
+    assert result.outcome is CleanOutcome.STOPPED
+    assert robot.mission.cleaning is None
+    if not is_released:
+        assert (robot.mission.state.phase, robot.mission.message) == (Phase.EMERGENCY, "a child")
+        command(robot, Event.RELEASE)
     assert robot.mission.state.phase is Phase.IDLE
-    assert_stands(robot, 2.0)
-    robot.truth.cells[:] = 1
+    assert_stands(robot)
     assert_all_clean(robot, robot.clean())
+
+
+@pytest.mark.parametrize(
+    "phase",
+    [Phase.UNDOCKING, Phase.CLEANING, Phase.RETURNING, Phase.DOCKING],
+)
+def test_each_phase_goes_on_after_an_emergency_stop(phase: Phase) -> None:
+    robot = HeadlessMission(HOME)
+    request = CleanRequest(CleanMode.SPOT, spot=(2.0, 0.6))
+    robot.mission.clean(request, robot.senses())
+    until(robot, in_phase(robot, phase))
+    for _ in range(20):
+        robot.tick()
+    command(robot, Event.EMERGENCY, "a child")
+    assert_stands(robot)
+    command(robot, Event.RELEASE)
+    assert_stands(robot)
+    command(robot, Event.RESUME)
+    record = robot.run()
+    assert record.result.outcome is CleanOutcome.COMPLETED
+    assert record.result.fraction >= 0.99
+    assert robot.is_home
+
+
+def test_a_robot_that_was_held_and_carried_home_is_done_if_its_floor_was() -> None:
+    robot = HeadlessMission(HOME)
+    robot.mission.clean(CleanRequest(CleanMode.SPOT, spot=(2.0, 0.6)), robot.senses())
+    until(robot, in_phase(robot, Phase.RETURNING))
+    command(robot, Event.EMERGENCY, "a child")
+    robot.simulator.put(STATION)
+    wait(robot, 2.0)
+    assert robot.mission.state.phase is Phase.EMERGENCY
+    command(robot, Event.RELEASE)
+    result = robot.mission.take_result()
+    assert result is not None
+    assert result.outcome is CleanOutcome.COMPLETED
+    assert robot.is_home
+
+
+@pytest.mark.parametrize("event", [Event.DOCK, Event.UNDOCK])
+def test_a_way_to_the_station_or_off_it_is_given_up_by_an_emergency_stop(event: Event) -> None:
+    robot = HeadlessMission(HOME)
+    if event is Event.DOCK:
+        robot = begun()
+    command(robot, event)
+    wait(robot, 0.5)
+    command(robot, Event.EMERGENCY, "a child")
+    wait(robot, 1.0)
+    command(robot, Event.RELEASE)
+    assert robot.mission.state.phase in (Phase.IDLE, Phase.DOCKED)
+    assert_stands(robot)
+    with pytest.raises(CommandRefusedError, match="cannot resume now"):
+        command(robot, Event.RESUME)
 
 
 def test_released_on_its_station_it_is_docked() -> None:

@@ -95,6 +95,20 @@ def test_each_phase_can_be_taken_up_again(phase: Phase) -> None:
     assert robot.is_home
 
 
+def test_a_clean_that_an_emergency_stop_interrupted_waits_for_it_after_a_restart() -> None:
+    robot = begun(60.0)
+    command(robot, Event.EMERGENCY, "a child")
+    restarted(robot)
+    assert (robot.mission.state.phase, robot.mission.message) == (Phase.EMERGENCY, "a child")
+    assert_stands(robot)
+    command(robot, Event.RELEASE)
+    assert robot.mission.state.phase is Phase.PAUSED
+    restarted(robot)
+    assert_stands(robot)
+    command(robot, Event.RESUME)
+    assert_all_clean(robot, robot.run())
+
+
 def test_what_was_held_up_stays_so_after_a_restart() -> None:
     robot = begun()
     command(robot, Event.PAUSE)

@@ -103,11 +103,14 @@ def test_a_run_that_was_killed_is_the_last_one_until_another_ends(
     assert again.interrupted is None
 
 
-def test_a_robot_that_goes_on_goes_on_with_its_run(tmp_path: Path, killed_at: float) -> None:
+@pytest.mark.parametrize("phase", ["cleaning", "emergency stop"])
+def test_a_robot_that_goes_on_goes_on_with_its_run(
+    tmp_path: Path, killed_at: float, phase: str
+) -> None:
     keeper = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
     # Of a clean before.
     old = replace(REPORT)
-    keeper.look(view(killed_at + 3.0, "cleaning", old), HOME, layer)
+    keeper.look(view(killed_at + 3.0, phase, old), HOME, layer)
     assert keeper.history.runs() == []
     keeper.look(view(killed_at + 4.0, "cleaning", old), HOME, layer)
     keeper.look(view(killed_at + 5.0, "docked", REPORT), HOME, layer)

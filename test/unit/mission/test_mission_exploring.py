@@ -236,7 +236,6 @@ def test_paused_it_stands_and_goes_on_from_there() -> None:
     [
         (Event.STOP, CleanOutcome.STOPPED, Phase.IDLE),
         (Event.DOCK, CleanOutcome.STOPPED, Phase.RETURNING),
-        (Event.EMERGENCY, CleanOutcome.FAULT, Phase.EMERGENCY),
     ],
 )
 @pytest.mark.parametrize("is_paused", [False, True])
@@ -250,13 +249,26 @@ def test_commands_end_it(
     assert rig.phase is phase
     assert rig.mission.exploration is None
     assert rig.result.outcome is outcome
-    if event is Event.EMERGENCY:
-        with pytest.raises(CommandRefusedError, match="cannot explore now"):
-            rig.mission.explore(rig.senses)
-        rig.command(Event.RELEASE)
-        assert rig.phase is Phase.IDLE
     rig.mission.explore(rig.senses)
     assert rig.mission.state.errand is Errand.EXPLORE
+
+
+@pytest.mark.parametrize("is_paused", [False, True])
+def test_after_an_emergency_stop_it_can_go_on(is_paused: bool) -> None:
+    rig = exploring()
+    if is_paused:
+        rig.command(Event.PAUSE)
+    rig.command(Event.EMERGENCY, "the operator pressed it")
+    assert rig.tick(20).twist == Twist()
+    with pytest.raises(CommandRefusedError, match="cannot explore now"):
+        rig.mission.explore(rig.senses)
+    rig.command(Event.RELEASE)
+    assert rig.phase is Phase.PAUSED
+    assert rig.tick(20).twist == Twist()
+    assert rig.mission.take_exploration() is None
+    rig.command(Event.RESUME)
+    assert rig.phase is Phase.EXPLORING
+    assert rig.tick(3).twist != Twist()
 
 
 def test_a_newer_errand_takes_over() -> None:

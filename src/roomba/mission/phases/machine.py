@@ -76,7 +76,7 @@ _COMMANDS: Final = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class MissionState:
-    """Where the mission is; ``resumes`` is the phase that comes after PAUSED or ERROR."""
+    """Where the mission is; ``resumes`` is the phase in which a job that is held up goes on."""
 
     phase: Phase = Phase.IDLE
     errand: Errand = Errand.NONE
@@ -93,19 +93,39 @@ _DRIVING: Final = _WORKING | {Phase.UNDOCKING, Phase.RETURNING, Phase.DOCKING}
 _ON_STATION: Final = frozenset((Phase.DOCKED, Phase.CHARGING, Phase.EMPTYING))
 _GOES_ON: Final = frozenset((Errand.CLEAN, Errand.EXPLORE))
 """Errands that a charge on the station only interrupts."""
+_AMID_IT: Final = frozenset((Phase.CHARGING, Phase.BIN_FULL, Phase.EMPTYING))
+"""Phases in which the robot stands amid such an errand."""
+_OUTLASTS_A_STOP: Final = _GOES_ON | {Errand.HOME}
+"""Errands that an emergency stop only interrupts."""
 
 
 def next_state(state: MissionState, event: Event) -> MissionState | None:
     """Return the state after an event, or None when that event means nothing in this state."""
     if event is Event.EMERGENCY:
-        return MissionState(Phase.EMERGENCY)
+        return _stopped_at_once(state)
     if state.phase is Phase.EMERGENCY:
-        return MissionState() if event is Event.RELEASE else None
+        return _while_stopped(state, event)
     if event.is_command:
         return _commanded(state, event)
     if state.drives:
         return _driving(state, event)
     return _standing(state, event)
+
+
+def _stopped_at_once(state: MissionState) -> MissionState:
+    """Return what an emergency stop makes of a state."""
+    resumes = _where_it_goes_on(state)
+    if resumes is None or state.errand not in _OUTLASTS_A_STOP:
+        return MissionState(Phase.EMERGENCY)
+    return replace(state, phase=Phase.EMERGENCY, resumes=resumes)
+
+
+def _while_stopped(state: MissionState, event: Event) -> MissionState | None:
+    """Return what comes after an event while the emergency stop holds: nothing drives."""
+    if event is Event.RELEASE:
+        is_held_up = state.errand is not Errand.NONE
+        return replace(state, phase=Phase.PAUSED) if is_held_up else MissionState()
+    return MissionState(Phase.EMERGENCY) if event is Event.STOP else None
 
 
 def _commanded(state: MissionState, event: Event) -> MissionState | None:
@@ -121,13 +141,10 @@ def _commanded(state: MissionState, event: Event) -> MissionState | None:
     if event is Event.UNDOCK:
         return MissionState(Phase.UNDOCKING, Errand.UNDOCK)
     if event is Event.PAUSE:
-        if state.drives:
-            return replace(state, phase=Phase.PAUSED, resumes=_again(state.phase))
-        if state.phase is Phase.CHARGING or (
-            state.phase is Phase.EMPTYING and state.errand in _GOES_ON
-        ):
-            return replace(state, phase=Phase.PAUSED, resumes=Phase.UNDOCKING)
-        return None
+        resumes = _where_it_goes_on(state)
+        if resumes is None or state.phase in HELD or state.phase is Phase.BIN_FULL:
+            return None
+        return replace(state, phase=Phase.PAUSED, resumes=resumes)
     if event is Event.RESUME:
         if state.phase in HELD and state.resumes is not None:
             return MissionState(state.resumes, state.errand)
@@ -200,6 +217,15 @@ def _emptying(state: MissionState, event: Event) -> MissionState | None:
     if event is Event.CONTACT_LOST:
         return replace(state, phase=Phase.RETURNING) if goes_on else MissionState(Phase.IDLE)
     return None
+
+
+def _where_it_goes_on(state: MissionState) -> Phase | None:
+    """Return the phase in which a job goes on that is held up now; None: there is none."""
+    if state.drives:
+        return _again(state.phase)
+    if state.errand in _GOES_ON and state.phase in _AMID_IT:
+        return Phase.UNDOCKING
+    return state.resumes
 
 
 def _again(phase: Phase) -> Phase:

@@ -82,8 +82,20 @@ def test_the_emergency_stop_holds_until_it_is_released(client: LiveClient) -> No
         client.drive(0.1, 0.0)
     with pytest.raises(RequestRefusedError):
         client.resume()
+    with pytest.raises(RequestRefusedError, match="release it first"):
+        client.go_to(*client.home().rooms[0].anchor)
     client.release()
     assert client.robot().held == ""
+    assert phase(client) == "paused"
+    released = client.robot()
+    wait_until(lambda: client.robot().time > released.time + 3.0, DEADLINE, "time to pass")
+    assert math.dist(client.robot().pose[:2], released.pose[:2]) < 0.01
+    assert client.robot().last is None
+    client.resume()
+    wait_until(lambda: client.robot().last is not None, DEADLINE, "the end of the clean")
+    last = client.robot().last
+    assert last is not None
+    assert last.outcome.value == "completed"
 
 
 def lives(stops: Path) -> AbstractContextManager[LiveClient]:

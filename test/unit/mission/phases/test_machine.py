@@ -25,7 +25,7 @@ HELD = (Phase.PAUSED, Phase.ERROR)
 STATES = [
     MissionState(phase, errand, resumes)
     for phase, errand in itertools.product(Phase, Errand)
-    for resumes in ((None, *DRIVING) if phase in HELD else (None,))
+    for resumes in ((None, *DRIVING) if phase in (*HELD, Phase.EMERGENCY) else (None,))
 ]
 SMART_HOME = {"cleaning", "docked", "paused", "idle", "returning", "error"}
 
@@ -39,10 +39,16 @@ def test_every_state_takes_every_event(event: Event) -> None:
 def _assert_sound(state: MissionState, event: Event) -> None:
     after = next_state(state, event)
     if event is Event.EMERGENCY:
-        assert after == MissionState(Phase.EMERGENCY)
+        assert after is not None
+        assert after.phase is Phase.EMERGENCY
+        assert after.errand in (Errand.NONE, state.errand)
+        assert (after.resumes is None) is (after.errand is Errand.NONE)
         return
     if state.phase is Phase.EMERGENCY:
-        assert after == (MissionState() if event is Event.RELEASE else None)
+        # Nothing ends the hold but its release, and that does not drive.
+        assert (after is None) is (event not in (Event.RELEASE, Event.STOP))
+        assert after is None or not after.drives
+        assert event is not Event.STOP or after == MissionState(Phase.EMERGENCY)
         return
     if after is None:
         return
@@ -157,6 +163,43 @@ def _as_exploration(state: MissionState | None, event: Event) -> MissionState | 
         ((Phase.IDLE,), Event.RESUME, None),
         ((Phase.CLEANING, Errand.CLEAN), Event.RESUME, None),
         ((Phase.IDLE,), Event.RELEASE, None),
+        (
+            (Phase.CLEANING, Errand.CLEAN),
+            Event.EMERGENCY,
+            (Phase.EMERGENCY, Errand.CLEAN, Phase.CLEANING),
+        ),
+        (
+            (Phase.DOCKING, Errand.HOME),
+            Event.EMERGENCY,
+            (Phase.EMERGENCY, Errand.HOME, Phase.RETURNING),
+        ),
+        (
+            (Phase.BIN_FULL, Errand.CLEAN),
+            Event.EMERGENCY,
+            (Phase.EMERGENCY, Errand.CLEAN, Phase.UNDOCKING),
+        ),
+        (
+            (Phase.ERROR, Errand.EXPLORE, Phase.EXPLORING),
+            Event.EMERGENCY,
+            (Phase.EMERGENCY, Errand.EXPLORE, Phase.EXPLORING),
+        ),
+        (
+            (Phase.EMERGENCY, Errand.CLEAN, Phase.CLEANING),
+            Event.EMERGENCY,
+            (Phase.EMERGENCY, Errand.CLEAN, Phase.CLEANING),
+        ),
+        (
+            (Phase.EMERGENCY, Errand.CLEAN, Phase.CLEANING),
+            Event.RELEASE,
+            (Phase.PAUSED, Errand.CLEAN, Phase.CLEANING),
+        ),
+        ((Phase.EMERGENCY, Errand.CLEAN, Phase.CLEANING), Event.STOP, (Phase.EMERGENCY,)),
+        ((Phase.EMERGENCY, Errand.CLEAN, Phase.CLEANING), Event.RESUME, None),
+        ((Phase.EMERGENCY,), Event.RELEASE, (Phase.IDLE,)),
+        ((Phase.RETURNING, Errand.DOCK), Event.EMERGENCY, (Phase.EMERGENCY,)),
+        ((Phase.UNDOCKING, Errand.UNDOCK), Event.EMERGENCY, (Phase.EMERGENCY,)),
+        ((Phase.EMPTYING,), Event.EMERGENCY, (Phase.EMERGENCY,)),
+        ((Phase.DOCKED,), Event.EMERGENCY, (Phase.EMERGENCY,)),
     ],
 )
 def test_what_comes_after_what(
