@@ -88,8 +88,6 @@ _MANY: Final = 200
 """Points; of fewer all follow it."""
 _FAR_REACH: Final = 3
 """Cells of surfels; so far a scan is matched after many misses."""
-_LEAST_SPREAD: Final = (0.001**2, 0.001**2, 0.0005**2)
-"""m2, rad2; of a step that is thought to be surer nothing is learned."""
 
 
 @entry
@@ -266,7 +264,11 @@ def _match(
 
 @inner_part
 def _learn_scale(follower: Row, prior: Floats, pose: Floats) -> None:
-    """Learn from a match how far off dead reckoning was, by its own variances: 1 or more."""
+    """Learn from a match how far off dead reckoning was, by its own variances: 1 or more.
+
+    A match differs from dead reckoning by errors of both. Those of matches have a variance that
+    follows from the noise of ranges, and is taken off. The larger it is, the less a match tells.
+    """
     cosine, sine = math.cos(prior[2]), math.sin(prior[2])
     off_x, off_y, turn = pose[0] - prior[0], pose[1] - prior[1], wrapped(pose[2] - prior[2])
     off = (cosine * off_x + sine * off_y, cosine * off_y - sine * off_x, turn)
@@ -275,11 +277,39 @@ def _learn_scale(follower: Row, prior: Floats, pose: Floats) -> None:
     along += 2.0 * cosine * sine * spread[0, 1]
     across = spread[0, 0] + spread[1, 1] - along
     thought = (along, across, spread[2, 2])
+    by_noise = (
+        _of_noise(follower, cosine, sine, 0.0),
+        _of_noise(follower, -sine, cosine, 0.0),
+        _of_noise(follower, 0.0, 0.0, 1.0),
+    )
     for axis in range(3):
-        if thought[axis] < _LEAST_SPREAD[axis]:
-            continue  # it hardly moved: the match itself is no surer
-        seen = min(_MARGIN * off[axis] * off[axis] * scale[axis] / thought[axis], _MOST_OFF)
-        scale[axis] = max(1.0, scale[axis] + _LEARNING * (seen - scale[axis]))
+        if not thought[axis] > 0.0:
+            continue
+        # Both matches err, this one and the one that it went on from.
+        of_matches = 2.0 * by_noise[axis]
+        share = thought[axis] / (thought[axis] + of_matches)
+        of_odometry = off[axis] * off[axis] - of_matches
+        seen = min(_MARGIN * of_odometry * scale[axis] / thought[axis], _MOST_OFF)
+        scale[axis] = max(1.0, scale[axis] + _LEARNING * share * share * (seen - scale[axis]))
+
+
+@inner_part
+def _of_noise(follower: Row, x: float, y: float, turn: float) -> float:
+    """Return the variance, m2 or rad2, that noise of ranges gives the newest match along an axis.
+
+    That is x and y, m, in the submap's frame, and the turn, rad; the other ones are 0.
+    """
+    covariance, information = follower.work[COVARIANCE : COVARIANCE + 3], follower.work[7:10]
+    told = follower.work[15]
+    variance = 0.0
+    for row in range(3):
+        told[row] = covariance[row, 0] * x + covariance[row, 1] * y + covariance[row, 2] * turn
+    for row in range(3):
+        for column in range(3):
+            variance += told[row] * information[row, column] * told[column]
+    noise = follower.range_deviation
+    of_noise: float = variance * noise * noise / follower.variance
+    return of_noise
 
 
 @inner_part

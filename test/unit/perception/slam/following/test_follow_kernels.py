@@ -82,3 +82,50 @@ def test_what_stands_by_a_scan_while_odometry_and_pace_go_on_moves_along_with_th
 ) -> None:
     assert looked_farther(monkeypatch, (0.0, 0.0, 0.0)) == ODOMETRY[0]
     assert looked_farther(monkeypatch, (0.04, 0.06, 0.0)) == ODOMETRY[0]
+
+
+POINT_VARIANCE = 0.03**2
+"""m2."""
+STEP_DEVIATION = 0.005
+"""m; what odometry is thought to be off by in a step."""
+
+
+def trust_after(range_noise: float, step_error: float, scans: int = 2000) -> float:
+    """Return how many times its variances odometry is thought to be off, along x.
+
+    Of a robot that 100 points hold along each axis, with ranges that err by ``range_noise``, m,
+    and odometry by ``step_error``, m; a match takes over what its points say, errors included.
+    """
+    random = np.random.default_rng(1)
+    follower = SimpleNamespace(
+        work=np.zeros((20, 3)),
+        spread=np.zeros((3, 3)),
+        odometry_scale=np.ones(3),
+        range_deviation=range_noise,
+        variance=POINT_VARIANCE,
+    )
+    information = 100.0 / POINT_VARIANCE
+    follower.work[7:10] = information * np.eye(3)
+    before = 0.0
+    for _ in range(scans):
+        thought = follower.odometry_scale * STEP_DEVIATION**2
+        follower.spread[:] = np.diag(thought)
+        follower.work[4:7] = np.diag(1.0 / (information + 1.0 / thought))
+        share = follower.work[4, 0] * information
+        told = random.normal(0.0, range_noise / 10.0)
+        prior = before + random.normal(0.0, step_error)
+        before = prior + share * (told - prior)
+        follow_kernels._learn_scale(
+            follower, np.array([prior, 0.0, 0.0]), np.array([before, 0.0, 0.0])
+        )
+    return float(follower.odometry_scale[0])
+
+
+def test_noise_of_ranges_is_not_taken_for_an_error_of_the_wheels() -> None:
+    assert trust_after(0.005, 0.002) < 1.5
+    assert trust_after(0.07, 0.002) < 1.5
+
+
+@pytest.mark.parametrize("range_noise", [0.005, 0.05])
+def test_wheels_that_err_are_trusted_less_with_a_noisy_lidar_too(range_noise: float) -> None:
+    assert trust_after(range_noise, 0.03) > 50.0
