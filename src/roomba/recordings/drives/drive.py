@@ -14,6 +14,7 @@ import numpy as np
 from roomba.arrays import Floats, Ints64, Mask
 from roomba.perception.matching.mounts import Mount
 from roomba.recordings.drives.choice import Chosen, Wanted, chosen
+from roomba.recordings.drives.fixed_beams import UnhiddenScans
 from roomba.recordings.drives.mounting import BODIES, Mounting
 from roomba.recordings.drives.opening import open_log
 from roomba.recordings.drives.sweeps import Sweep, SweptScans
@@ -53,6 +54,7 @@ class LoggedDrive:
         self._reasons: dict[str, str] = {}
         self._remarks: list[str] = []
         self._sweep: Sweep | None = None
+        self._unhidden: UnhiddenScans | None = None
         with contextlib.ExitStack() as stack:
             self._logs = [_entered(stack, path) for path in paths]
             channels = _together(self._logs)
@@ -132,6 +134,10 @@ class LoggedDrive:
         """Read all scans from now on by ``sweep`` instead of what the driver tells of it."""
         self._sweep = sweep
 
+    def leave_beams(self, fixed: Mask) -> None:
+        """From now on leave out what beams show, [beams], that a thing hides on the robot."""
+        self._unhidden = UnhiddenScans(fixed)
+
     def remark(self, remark: str) -> None:
         """Add a note."""
         self._remarks.append(remark)
@@ -174,6 +180,8 @@ class LoggedDrive:
                 self.refused[reading.what] += 1
                 self._reasons.setdefault(reading.what, reading.reason)
             else:
+                if self._unhidden is not None and isinstance(reading, LidarScan):
+                    reading = self._unhidden.of(reading)
                 if swept is not None and isinstance(reading, LidarScan):
                     reading = swept.of(reading)
                 times = (self._times[number], self._arrivals[number])

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Final
+
+import numpy as np
 
 from roomba.commands.map.drive.lidar_samples import LidarSamples
 from roomba.commands.map.drive.shown_mount import ShownMount, shown_mount
@@ -11,6 +14,7 @@ from roomba.commands.map.drive.shown_sweep import shown_sweep
 from roomba.geometry import Pose
 from roomba.perception.matching.mounts import Mount
 from roomba.recordings.drives.drive import LoggedDrive
+from roomba.recordings.drives.fixed_beams import fixed_beams
 from roomba.recordings.drives.mounting import degrees_aside
 from roomba.recordings.readings import UNUSABLE_ODOMETRY
 
@@ -24,6 +28,8 @@ def look_at_drive(drive: LoggedDrive) -> None:
     if not drive.chosen.has_odometry:
         return
     samples = LidarSamples(drive.readings())
+    if _leaves_beams(drive, samples):
+        samples = LidarSamples(drive.readings())
     fault = _odometry_fault(drive, samples)
     if fault and not drive.keeps_odometry:
         drive.leave_odometry(fault)
@@ -31,6 +37,27 @@ def look_at_drive(drive: LoggedDrive) -> None:
     if fault:
         drive.remark(f"the odometry is doubtful: {fault}")
     _look_at_lidar(drive, samples)
+
+
+def _leaves_beams(drive: LoggedDrive, samples: LidarSamples) -> bool:
+    """Leave out beams that a thing hides on the robot, and say so; tell if there are some."""
+    sizes = Counter(sample.scan.lidar.beams for sample in samples.scans)
+    if not sizes:
+        return False
+    beams = max(sizes, key=sizes.__getitem__)
+    alike = [sample for sample in samples.scans if sample.scan.lidar.beams == beams]
+    ranges = np.array([sample.scan.ranges for sample in alike])
+    fixed = fixed_beams(ranges, np.array([sample.pose[2] for sample in alike]))
+    if not fixed.any():
+        return False
+    drive.leave_beams(fixed)
+    hidden = ranges[:, fixed]
+    away = float(np.median(hidden[np.isfinite(hidden)]))
+    drive.remark(
+        f"{np.count_nonzero(fixed)} of {beams} beams show the same wherever the robot turns, "
+        f"{away:.2f} m away: something on the robot hides what is there; they are left out"
+    )
+    return True
 
 
 def _odometry_fault(drive: LoggedDrive, samples: LidarSamples) -> str:

@@ -85,6 +85,24 @@ def test_scans_that_are_bent_by_turns_are_straightened_and_that_is_told(tmp_path
     assert "from the last to the first" in note
 
 
+def behind_a_screen(number: int, item: Item) -> Item:
+    """A thing on the robot, 0.4 m away, hides 100 of its 180 beams."""
+    ranges = np.array(item.value)
+    ranges[40:140] = 0.4 + np.random.default_rng(number).normal(0.0, 0.005, 100)
+    return replace(item, value=ranges)
+
+
+def test_beams_that_a_thing_on_the_robot_hides_are_left_out_and_that_is_told(
+    tmp_path: Path,
+) -> None:
+    items = turning_drive()
+    done = mapped(tmp_path, changed(items, "/scan", behind_a_screen), with_mount=True)
+    [note] = done.notes
+    assert note.startswith("100 of 180 beams show the same wherever the robot turns, 0.40 m away")
+    assert off(done) < 0.1
+    assert mapped(tmp_path, items, with_mount=True).notes == ()
+
+
 def in_feet(number: int, item: Item) -> Item:
     assert isinstance(item.value, Pose)
     return replace(item, value=Pose(3.28 * item.value.x, 3.28 * item.value.y, item.value.theta))
