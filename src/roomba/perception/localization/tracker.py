@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.geometry import Pose
+from roomba.perception.localization.belief.behind_kernels import BEHIND_LANES
 from roomba.perception.localization.belief.belief import AGREE, Rows
 from roomba.perception.localization.belief.correct_kernels import judge_ends, match_ends, trust
 from roomba.perception.matching.fit_kernels import JUDGE_LANES
@@ -80,7 +81,7 @@ class Tracker:
             self._place,
             view.ends,
             len(view),
-            np.empty((2, len(view))),
+            np.empty((BEHIND_LANES, len(view))),
         )
 
     def judge(self, view: ScanView) -> Fit:

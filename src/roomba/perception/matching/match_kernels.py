@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.arrays import Floats
-from roomba.compilation import allocating_entry, allocating_part, any_order_entry, entry
+from roomba.compilation import allocating_entry, allocating_part, any_order_entry, entry, inner_part
 from roomba.perception.matching.field_kernels import Field, Place
 
 _MORE_ROUNDS: Final = 2
@@ -53,6 +53,13 @@ def beam_ends(
         ends[count, 3] = across
         count += 1
     return count
+
+
+@inner_part
+def fill_lanes(ends: Floats, count: int, lanes: Floats) -> None:
+    """Fill ``lanes`` [2 or more, n] with x and y of the first ``count`` of ``ends`` [n, 4]."""
+    for index in range(count):
+        lanes[0, index], lanes[1, index] = ends[index, 0], ends[index, 1]
 
 
 @any_order_entry
@@ -164,16 +171,14 @@ def match(
     others included.
     """
     work, lanes = np.empty((MATCH_WORK, 3)), np.empty((2, count))
-    return match_in(
-        field, place, ends, count, prior, covariance, scales, variance, pose, work, lanes
-    )
+    fill_lanes(ends, count, lanes)
+    return match_in(field, place, count, prior, covariance, scales, variance, pose, work, lanes)
 
 
 @allocating_part
 def match_in(
     field: Field,
     place: Place,
-    ends: Floats,
     count: int,
     prior: Floats,
     covariance: Floats,
@@ -183,17 +188,16 @@ def match_in(
     work: Floats,
     lanes: Floats,
 ) -> int:
-    """Do the same as :func:`match`, in the caller's ``work`` [MATCH_WORK, 3] and ``lanes`` [2, n].
+    """Do the same as :func:`match`, in the caller's ``work`` [MATCH_WORK, 3].
 
-    ``lanes`` may have more rows. Nothing is allocated. The first three rows of ``work`` are the
-    prior's information afterwards.
+    ``lanes`` [2 or more, n] has x and y of the ends of ``count`` beams, as :func:`add_beams` takes
+    them. Nothing is allocated. The first three rows of ``work`` are the prior's information
+    afterwards.
     """
     of_prior, information, solved = work[0:3], work[3:6], work[6:9]
     gradient = work[9]
     if not invert(covariance, of_prior):
         return 0
-    for index in range(count):
-        lanes[0, index], lanes[1, index] = ends[index, 0], ends[index, 1]
     rounds = 0
     while rounds < scales.size + _MORE_ROUNDS:
         scale = scales[min(rounds, scales.size - 1)]

@@ -13,8 +13,13 @@ from roomba.arrays import Floats
 from roomba.compilation import allocating_entry, allocating_part, entry, inner_part, part
 from roomba.perception.calibration.kernels import drop_window
 from roomba.perception.calibration.place_kernels import note_pose
+from roomba.perception.localization.belief.behind_kernels import leave_out_behind
 from roomba.perception.localization.belief.belief import AGREE, EVIDENCE, SHORT, THROUGH, Row, Rows
-from roomba.perception.localization.belief.map_spread_kernels import map_spread
+from roomba.perception.localization.belief.map_spread_kernels import (
+    map_spread,
+    of_cell,
+    wall_variance_of,
+)
 from roomba.perception.localization.belief.trust_kernels import learn_trust, note_correction
 from roomba.perception.localization.belief.weak_kernels import believe_less, leave_out
 from roomba.perception.matching.beams import LidarBeams
@@ -23,7 +28,7 @@ from roomba.perception.matching.fit_kernels import AGREEING, LOOKED_AT, judge
 from roomba.perception.matching.fit_kernels import EVIDENCE as ALL_EVIDENCE
 from roomba.perception.matching.fit_kernels import SHORT as ALL_SHORT
 from roomba.perception.matching.fit_kernels import THROUGH as ALL_THROUGH
-from roomba.perception.matching.match_kernels import beam_ends, match_in
+from roomba.perception.matching.match_kernels import beam_ends, fill_lanes, match_in
 from roomba.perception.matching.pose_kernels import beyond, seen_from
 from roomba.perception.matching.reckoned_path import ReckonedPath, pose_at
 
@@ -34,14 +39,14 @@ _STRIDE: Final = 8
 """Stride over the beams that are judged; of 360 these are enough to notice a wrong pose."""
 _LEAST_JUDGED: Final = 24
 """Beams; of scans in which few met something, so many are judged: fewer tell too little."""
+_MATCHES: Final = 3
+"""Of a scan at most; each of those that follow leaves out what the one before left behind walls."""
 _OF_MAP: Final = 0.1
 """Share of the newest scan in what the map's errors are taken for."""
 _OF_WALLS: Final = 0.02
 """Share of new surroundings in how far walls are taken to be off."""
 _LEAST_BEAMS: Final = 50.0
 """Beams from which on it is known how far all walls are off alike."""
-_LEAST_WALLS: Final = 20.0
-"""Walls from which on how far they are off is known."""
 _STILL: Final = (0.0005**2, 0.0005**2, 0.0003**2)
 """m2, rad2; the least variance, of the map's errors, which more scans do not reduce."""
 
@@ -155,19 +160,27 @@ def match_ends(
     count: int,
     lanes: Floats,
 ) -> None:
-    """Move the pose to where the ends of beams, [n, 4], of a scan taken there, fit best."""
+    """Move the pose to where beams' ends, [n, 4], fit best; ``lanes`` is [BEHIND_LANES, n]."""
     belief = beliefs[0]
     pose, covariance, before = belief.pose, belief.covariance, belief.unmatched
     for row in range(3):
         before[row] = pose[row]
         for column in range(3):
             belief.unmatched_covariance[row, column] = covariance[row, column]
-        covariance[row, row] += _STILL[row]
     scales = _WIDE if _is_unsure(belief.unmatched_covariance, numbers[0]) else _NARROW
     variance, work = _beam_variance(numbers[0], place, count), belief.work
-    rounds = match_in(
-        field, place, ends, count, before, covariance, scales, variance, pose, work, lanes
-    )
+    wall_variance = wall_variance_of(belief, place)
+    fill_lanes(ends, count, lanes)
+    rounds = 0
+    for number in range(_MATCHES):
+        if number > 0 and not leave_out_behind(field, place, count, pose, wall_variance, lanes):
+            break
+        _take_back(belief)
+        for row in range(3):
+            covariance[row, row] += _STILL[row]
+        rounds = match_in(
+            field, place, count, before, covariance, scales, variance, pose, work, lanes
+        )
     share = 1.0
     if rounds > 0:
         share = believe_less(belief, field, place, lanes, count, scales[-1], variance)
@@ -187,7 +200,7 @@ def _is_unsure(covariance: Floats, numbers: Row) -> bool:
 
 @inner_part
 def _take_back(belief: Row) -> None:
-    """Leave the pose, and how unsure it is, as they were before the newest scan was matched."""
+    """Make the pose, and how unsure it is, what they were before the newest scan was matched."""
     for row in range(3):
         belief.pose[row] = belief.unmatched[row]
         for column in range(3):
@@ -204,10 +217,8 @@ def _note_map_errors(
     """
     spread, told = np.empty((3, 3)), np.empty(4)
     apart = belief.walls_apart
-    # A wall lies anywhere in its cell, whatever the few walls in sight say.
-    of_cell = place[2] * place[2] / 12.0
-    wall_variance = max(apart[0] / max(apart[1], _LEAST_WALLS), of_cell)
-    unlearned = of_cell * _LEAST_BEAMS / (_LEAST_BEAMS + belief.wall_offset[1])
+    wall_variance = wall_variance_of(belief, place)
+    unlearned = of_cell(place) * _LEAST_BEAMS / (_LEAST_BEAMS + belief.wall_offset[1])
     if not map_spread(
         field, place, ends, count, belief.pose, wall_variance, unlearned, spread, told
     ):

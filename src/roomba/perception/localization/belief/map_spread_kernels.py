@@ -15,6 +15,7 @@ import numpy as np
 
 from roomba.arrays import Floats
 from roomba.compilation import allocating_part, inner_part
+from roomba.perception.localization.belief.belief import Row
 from roomba.perception.matching.field_kernels import Field, Place, look
 from roomba.perception.matching.match_kernels import invert
 
@@ -28,6 +29,8 @@ _LARGEST: Final = (0.3, 0.3, 0.15)
 """m, rad; along what a scan does not tell the map's errors do not count for more."""
 _LEAST_WEIGHT: Final = 5.0
 """Beams that must end at surfaces."""
+_LEAST_WALLS: Final = 20.0
+"""Walls from which on how far they are off is known."""
 _FREE: Final = 3.0
 """Numbers of a pose, which a match fits to the walls."""
 
@@ -36,6 +39,22 @@ OFFSET_BEAMS: Final = 1
 APART: Final = 2
 APART_WALLS: Final = 3
 """Places in ``told`` of :func:`map_spread`."""
+
+
+@inner_part
+def wall_variance_of(belief: Row, place: Place) -> float:
+    """Return the variance of where a wall is against the map's, m2."""
+    apart = belief.walls_apart
+    # A wall lies anywhere in its cell, whatever the few walls in sight say.
+    variance: float = max(apart[0] / max(apart[1], _LEAST_WALLS), of_cell(place))
+    return variance
+
+
+@inner_part
+def of_cell(place: Place) -> float:
+    """Return the variance of where in its cell of the map a wall is, m2."""
+    variance: float = place[2] * place[2] / 12.0
+    return variance
 
 
 @allocating_part

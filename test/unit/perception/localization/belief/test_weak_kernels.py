@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap
+from roomba.perception.localization.belief.behind_kernels import BEHIND_LANES
 from roomba.perception.localization.belief.belief import Rows, numbers_of, unknown_belief
 from roomba.perception.localization.belief.correct_kernels import _NARROW, _STILL, match_ends
 from roomba.perception.localization.belief.weak_kernels import leave_out
@@ -64,7 +65,7 @@ class Corridor:
             view = model.view(seen_at(true, self.walls, generator))
             belief["pose"][:] = true.x + off, true.y, 0.0
             belief["covariance"][:] = np.diag([UNSURE**2, UNSURE**2, UNSURE_TURN**2])
-            lanes = np.empty((2, len(view)))
+            lanes = np.empty((BEHIND_LANES, len(view)))
             field = self.field
             match_ends(beliefs, NUMBERS, field.values, field.place, view.ends, len(view), lanes)
             if scan >= SCANS // 3:
@@ -105,7 +106,13 @@ def test_of_a_furnished_room_all_is_believed() -> None:
     covariance[:] = np.diag([UNSURE**2, UNSURE**2, UNSURE_TURN**2])
     prior, told, at = place.copy(), covariance + np.diag(_STILL), place.copy()
     match_ends(
-        beliefs, NUMBERS, field.values, field.place, view.ends, len(view), np.empty((2, len(view)))
+        beliefs,
+        NUMBERS,
+        field.values,
+        field.place,
+        view.ends,
+        len(view),
+        np.empty((BEHIND_LANES, len(view))),
     )
     variance = CONFIG.localization.beam_deviation**2 + (0.5 * FURNISHED.map.frame.resolution) ** 2
     match(
