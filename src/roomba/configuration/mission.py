@@ -127,7 +127,8 @@ class DrivingConfig(Frozen):
     most_touches: AtLeastOne = 4
     """Consecutive touches of the same thing, after which a path is given up."""
     lasting_radius: Length = 0.06
-    """m; what is felt again from a place nearer than this is a lasting obstacle."""
+    """m; what is felt again from a place nearer than this is a lasting obstacle, as is what is felt
+    where nothing is seen."""
     lasting_memory: Duration = 1800.0
     """s; how long a lasting obstacle is remembered."""
     gap_spare: NotNegative = 0.06

@@ -128,7 +128,7 @@ class Obstacles:
         self.forget_what_goes()
 
     def forget_what_goes(self) -> None:
-        """Forget the same but for what was felt where nothing is seen: that hardly ever goes."""
+        """Forget all obstacles but edges and what was felt where nothing is seen, as glass is."""
         self._felt.forget()
         self._lasting.forget()
         self._touched.clear()
@@ -146,7 +146,8 @@ class Obstacles:
     def at_least(self, now: float) -> list[RoundObstacle]:
         """Return the same, as small as it may be: where the bumper felt something is a guess.
 
-        What was felt again begins where the body touched it: else the way would lead there anew.
+        What was felt again, or where nothing is seen, begins where the body touched it: else the
+        way would lead there anew.
         """
         felt = [(x, y, _LEAST) for x, y, _ in self._felt.at(now)]
         felt += self._lasting.at(now, _LEAST) + self._unseen.at(now, _LEAST)

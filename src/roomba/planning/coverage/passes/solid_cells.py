@@ -46,7 +46,7 @@ class SolidCells:
 
     @cached_property
     def beside(self) -> Beside:
-        """The same for :func:`nearest_solid`."""
+        """The nearest solid cell of each row to either side, found once."""
         shape = self.solid.shape
         beside = Beside(np.empty(shape, np.int32), np.empty(shape, np.int32), self.column, self.row)
         _note_beside(np.ascontiguousarray(self.solid), beside.before, beside.after)
