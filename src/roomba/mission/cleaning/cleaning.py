@@ -326,9 +326,9 @@ class Cleaning:
             return plan_over(todo)
         frame, config = self.ledger.coverage.frame, self._config
         floor = todo & self._context.reachable((here.x, here.y), obstacles)
-        ahead = self.ledger.coverage.along(rest)
-        slivers = slivers_of(floor, ahead, frame, config.least_for_round)
-        return plan_worth_its_way(plan_over, todo, slivers, ahead, frame, config.worth_way)
+        slivers = slivers_of(floor, self.ledger.coverage.along(rest), frame, config.least_for_round)
+        planned = Path(rest).length
+        return plan_worth_its_way(plan_over, todo, slivers, frame, config.worth_way, planned)
 
     def _large(self, floor: Mask, least: float) -> Mask:
         """Return what of a floor is in patches of ``least`` m2 or more."""

@@ -12,7 +12,6 @@ from roomba.mission.cleaning.worth import (
     made_once,
     plan_worth_its_way,
     slivers_of,
-    way_at_most,
 )
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.path.planner import NoPathError, NoPathReason
@@ -58,31 +57,23 @@ def test_slivers_are_left_that_take_more_way_than_they_are_worth(
         return a_way_of(10.0 + (more if (floor & floor_of(SLIVER)).any() else 0.0))
 
     floor = floor_of(BODY, SLIVER)
-    far_away = floor_of((slice(0, 1), slice(0, 1)))
-    for ahead in (far_away, floor_of()):
-        plan = plan_worth_its_way(plan_over, floor, floor_of(SLIVER), ahead, FRAME, WORTH)
-        assert plan.length == pytest.approx(10.0 if is_left else 10.0 + more)
+    plan = plan_worth_its_way(plan_over, floor, floor_of(SLIVER), FRAME, WORTH, planned=9.0)
+    assert plan.length == pytest.approx(10.0 if is_left else 10.0 + more)
 
 
-def test_slivers_beside_what_is_ahead_need_no_second_plan() -> None:
+@pytest.mark.parametrize(("planned", "times"), [(9.41, 1), (9.39, 2)])
+def test_a_plan_that_is_hardly_longer_than_the_one_before_is_the_only_one(
+    planned: float, times: int
+) -> None:
     asked: list[Mask] = []
 
     def plan_over(floor: Mask) -> CoveragePlan:
         asked.append(floor)
         return a_way_of(10.0)
 
-    floor, sliver, ahead = floor_of(BODY, SLIVER), floor_of(SLIVER), floor_of(BODY)
-    assert plan_worth_its_way(plan_over, floor, sliver, ahead, FRAME, WORTH).length == 10.0
-    assert [np.count_nonzero(each) for each in asked] == [1260]
-
-
-def test_slivers_take_at_most_half_of_the_ways_to_each_by_itself() -> None:
-    single = (slice(50, 51), slice(40, 41))
-    slivers, ahead = floor_of(SLIVER, single), floor_of(BODY)
-    # A cell away and 59 cells long; 21 cells away.
-    assert way_at_most(slivers, ahead, FRAME) == pytest.approx(0.5 * (0.02 + 0.59 + 0.42))
-    assert way_at_most(slivers, floor_of(), FRAME) == np.inf
-    assert way_at_most(floor_of(), ahead, FRAME) == 0.0
+    floor, sliver = floor_of(BODY, SLIVER), floor_of(SLIVER)
+    assert plan_worth_its_way(plan_over, floor, sliver, FRAME, WORTH, planned).length == 10.0
+    assert [np.count_nonzero(each) for each in asked] == [1260, 1200][:times]
 
 
 def test_where_there_are_no_slivers_or_nothing_else_it_plans_once() -> None:
@@ -93,7 +84,7 @@ def test_where_there_are_no_slivers_or_nothing_else_it_plans_once() -> None:
         return a_way_of(1000.0)
 
     for floor, slivers in ((BODY, floor_of()), (SLIVER, floor_of(SLIVER))):
-        plan_worth_its_way(plan_over, floor_of(floor), slivers, floor_of(), FRAME, WORTH)
+        plan_worth_its_way(plan_over, floor_of(floor), slivers, FRAME, WORTH, planned=0.0)
     assert [np.count_nonzero(each) for each in asked] == [1200, 60]
 
 
