@@ -44,14 +44,9 @@ class BumpingState(Enum):
         return self in _DRIVES
 
 
-_DRIVES: Final = frozenset(
-    {
-        BumpingState.LEAVING,
-        BumpingState.SWEEPING,
-        BumpingState.HOMING,
-        BumpingState.DOCKING,
-    }
-)
+_HOMEWARD: Final = frozenset({BumpingState.HOMING, BumpingState.DOCKING})
+"""States whose aim is the station."""
+_DRIVES: Final = frozenset({BumpingState.LEAVING, BumpingState.SWEEPING, *_HOMEWARD})
 _WAITS: Final = frozenset({BumpingState.PAUSED, BumpingState.HELD})
 """States in which it can be told to go on."""
 
@@ -113,9 +108,11 @@ class BumpingBrain:
             self._enter(BumpingState.PAUSED)
 
     def resume(self) -> None:
-        """Go on with what it was at; a robot that was set free goes on as well."""
+        """Go on with what it was at; set free it goes on as well, and out of its station first."""
         if self.state in _WAITS and self._paused is not None:
-            self._enter(self._paused)
+            is_docked = self.readings is not None and self.readings.battery.is_docked
+            leaves = is_docked and self._paused is BumpingState.SWEEPING
+            self._enter(BumpingState.LEAVING if leaves else self._paused)
 
     def hold(self) -> None:
         """Stand until the emergency stop is released; what it was at is paused."""
@@ -135,7 +132,7 @@ class BumpingBrain:
     def _enter(self, state: BumpingState) -> None:
         self.state = state
         self._sweeping = self._approach = self._left = None
-        if state not in (BumpingState.HOMING, BumpingState.DOCKING):
+        if state not in _HOMEWARD:
             self._homing_since, self._reach = None, self._config.near_home
         self.floor.coverage.lift()
 
@@ -182,7 +179,8 @@ class BumpingBrain:
         """Notice what changes its state by itself."""
         if readings.battery.is_docked:
             self._remember_station(readings.odometry)
-            if self.state in (BumpingState.STANDING, BumpingState.HOMING):
+            is_done = self.state in _WAITS and self._paused in _HOMEWARD
+            if is_done or self.state in (BumpingState.STANDING, BumpingState.HOMING):
                 self._enter(BumpingState.DOCKED)
         elif self.state is BumpingState.DOCKED:
             self._enter(BumpingState.STANDING)

@@ -10,6 +10,7 @@ from fixtures.bumping import BumpingHome
 from roomba.bumping.brain import BumpingState
 from roomba.configuration.bumping import BumpingConfig
 from roomba.geometry import STANDSTILL, Twist
+from roomba.robot.readings import Readings
 
 SWEEPING, DOCKED = BumpingState.SWEEPING, BumpingState.DOCKED
 
@@ -100,6 +101,43 @@ def test_what_is_paused_or_held_by_the_emergency_stop_is_ended_by_stop() -> None
     home.brain.release()
     home.brain.resume()
     assert home.brain.state is BumpingState.STANDING
+
+
+def docked(home: BumpingHome) -> Readings:
+    """What it senses on its station, wherever it is: it was carried there."""
+    told = home.read()
+    return replace(told, battery=replace(told.battery, is_docked=True))
+
+
+@pytest.mark.parametrize("is_held", [False, True])
+def test_carried_onto_its_station_it_backs_out_before_it_sweeps_on(*, is_held: bool) -> None:
+    home = BumpingHome("studio", 1)
+    home.brain.clean()
+    home.pass_time(30.0, until=SWEEPING)
+    if is_held:
+        home.brain.hold()
+        home.brain.tick(docked(home))
+        home.brain.release()
+    else:
+        home.brain.pause()
+    home.brain.tick(docked(home))
+    assert home.brain.state is BumpingState.PAUSED
+    home.brain.resume()
+    assert home.brain.state is BumpingState.LEAVING
+    assert home.brain.tick(docked(home)).twist.linear < 0.0
+
+
+def test_a_way_home_that_is_held_up_is_done_once_it_stands_on_its_station() -> None:
+    home = BumpingHome("studio", 1)
+    home.brain.clean()
+    home.pass_time(30.0, until=SWEEPING)
+    home.brain.dock()
+    home.brain.hold()
+    home.brain.tick(docked(home))
+    assert home.brain.state is BumpingState.EMERGENCY
+    home.brain.release()
+    home.brain.tick(docked(home))
+    assert home.brain.state is DOCKED
 
 
 def test_lifted_it_stands_and_what_it_steers_at_a_cliff_is_back() -> None:
