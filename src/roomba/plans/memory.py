@@ -34,7 +34,9 @@ class Running(Frozen):
     tries: Count = 0
     held: Moment | None = None
     is_overruled: bool = False
-    """A person let it go on, or pressed the emergency stop: people alone decide on it."""
+    """A person let it go on: it is not paused any more for quiet hours or a person at home."""
+    is_left_to_people: bool = False
+    """The emergency stop was pressed: people alone decide on it, also if it is tried again."""
     rests_since: Moment | None = None
     """Since when the robot stands without telling how the clean ended."""
 

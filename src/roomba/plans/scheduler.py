@@ -165,9 +165,11 @@ class Scheduler:
         running = memory.running
         if running is None:
             return memory, None
+        if situation.is_held and situation.ended in (None, PlanEnd.FAILED):
+            memory, running = self._left_to_people(memory, running, now)
         if situation.ended is not None:
             return self._finish(memory, running, now, situation), None
-        if situation.is_working or situation.is_paused:
+        if situation.is_working or situation.is_paused or situation.is_held:
             rested = running.model_copy(update={"rests_since": None})
             return self._hold(memory.model_copy(update={"running": rested}), rested, now, situation)
         since = running.rests_since or now
@@ -183,6 +185,8 @@ class Scheduler:
         memory = memory.model_copy(update={"running": None})
         if situation.ended is PlanEnd.FAILED:
             reason = situation.message or "it did not get to its end"
+            if running.is_left_to_people:
+                return memory.noting(Note(at=now, plan=running.plan, text=f"ended: {reason}"))
             return self._again(memory, running.plan, running.due, running.tries, now, reason)
         said = "stopped by hand" if situation.ended is PlanEnd.STOPPED else "done"
         text = f"{said}: {situation.message}" if situation.message else said
@@ -217,8 +221,8 @@ class Scheduler:
 
         Once a person pressed the emergency stop the clean is left to people.
         """
-        if situation.is_held:
-            return self._left_to_people(memory, running, now), None
+        if running.is_left_to_people:
+            return memory, None
         quiet = self._quiet(now)
         if quiet and not running.is_overruled:
             return self._home(memory, running, now, quiet)
@@ -243,13 +247,15 @@ class Scheduler:
         return memory, None
 
     @staticmethod
-    def _left_to_people(memory: Memory, running: Running, now: dt.datetime) -> Memory:
+    def _left_to_people(
+        memory: Memory, running: Running, now: dt.datetime
+    ) -> tuple[Memory, Running]:
         """Return what is remembered of a clean during which the emergency stop was pressed."""
-        theirs = running.model_copy(update={"held": None, "is_overruled": True})
-        if theirs == running:
-            return memory
+        if running.is_left_to_people:
+            return memory, running
+        theirs = running.model_copy(update={"held": None, "is_left_to_people": True})
         told = Note(at=now, plan=running.plan, text="left to you: the emergency stop was pressed")
-        return _running(memory.noting(told), theirs)
+        return _running(memory.noting(told), theirs), theirs
 
     def _home(
         self, memory: Memory, running: Running, now: dt.datetime, reason: str

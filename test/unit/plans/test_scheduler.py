@@ -6,6 +6,7 @@ import datetime as dt
 from dataclasses import replace
 from zoneinfo import ZoneInfo
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -210,6 +211,43 @@ def test_a_clean_during_which_the_emergency_stop_was_pressed_is_left_to_people()
     assert days.notes[-1] == "left to you: the emergency stop was pressed"
     assert days.at("22:10", Situation(ended=PlanEnd.DONE)) is None
     assert begins(days.at("03-03 09:00")) == "all"
+
+
+@pytest.mark.parametrize("is_at_rest", [False, True])
+def test_what_is_left_to_people_is_not_begun_again_if_it_ended_without_word(
+    *, is_at_rest: bool
+) -> None:
+    days = Days(plan())
+    days.at("09:00")
+    days.at("09:10", WORKING)
+    held = Situation(
+        unfit="the emergency stop holds the drive", is_working=not is_at_rest, is_held=True
+    )
+    for minute in range(11, 20):
+        assert days.at(f"09:{minute}", held) is None
+    assert days.at("09:20") is None
+    assert days.at("09:21") is None
+    assert days.notes[1:] == [
+        "left to you: the emergency stop was pressed",
+        "ended: the robot was switched off meanwhile",
+    ]
+    assert days.at("09:52") is None
+    assert days.at("12:00") is None
+    assert begins(days.at("03-03 09:00")) == "all"
+
+
+def test_what_is_left_to_people_is_not_tried_again_if_it_fails() -> None:
+    stuck = Situation(ended=PlanEnd.FAILED, message="the robot is stuck")
+    days = Days(plan())
+    days.at("09:00")
+    days.at("09:10", replace(WORKING, is_held=True))
+    days.at("09:11", WORKING)
+    assert days.at("09:20", stuck) is None
+    assert days.notes[-1] == "ended: the robot is stuck"
+    assert days.at("12:00") is None
+    assert begins(days.at("03-03 09:00")) == "all"
+    assert days.at("03-03 09:10", replace(stuck, is_held=True)) is None, "held as it ended"
+    assert days.at("03-03 12:00") is None
 
 
 def test_a_person_who_does_not_mind_is_not_waited_for() -> None:
