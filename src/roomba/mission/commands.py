@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
 
 from roomba.configuration.mission import MissionConfig
 from roomba.errors import RoombaError
@@ -15,11 +14,8 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.at_station import why_not_emptied
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Errand, Event, next_state
-from roomba.mission.transitions import BIN_FULL, Transitions
+from roomba.mission.transitions import BIN_FULL, RELEASED, Transitions
 from roomba.vocabulary import Phase, RoomWay
-
-RELEASED: Final = "the emergency stop was released: it waits to be told to go on, or to stop"
-"""Why a job that it interrupted does not go on."""
 
 
 class CommandRefusedError(RoombaError):

@@ -15,6 +15,8 @@ from roomba.mission.phases.machine import Errand, Event, MissionState, next_stat
 from roomba.vocabulary import Phase
 
 BIN_FULL: Final = "bin full: empty the dust bin, and tell the robot (empty_bin)"
+RELEASED: Final = "the emergency stop was released: it waits to be told to go on, or to stop"
+"""Why a job that it interrupted does not go on."""
 
 
 class Transitions:
@@ -40,7 +42,10 @@ class Transitions:
     @property
     def message(self) -> str:
         """The reason, and what helps; empty when all is well."""
-        return self.reason or (BIN_FULL if self._job.bin.is_full else "")
+        full = BIN_FULL if self._job.bin.is_full else ""
+        if full and self.reason == RELEASED:
+            return f"{full}; {self.reason}"
+        return self.reason or full
 
     def go(self, event: Event, senses: Senses) -> None:
         """Let an event change the state; what belonged to the old phase ends."""

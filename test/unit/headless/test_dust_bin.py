@@ -8,12 +8,15 @@ import numpy as np
 import pytest
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import NOISY
+from fixtures.robots.headless_cleans import assert_stands, command
 from fixtures.robots.missions import FLOOR_TOO_LITTLE, STATION, TABLE, floor_clean, in_phase, until
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.commands import CommandRefusedError
+from roomba.mission.phases.machine import Event
+from roomba.mission.transitions import BIN_FULL, RELEASED
 from roomba.robot.readings import Readings
 from roomba.vocabulary import Phase
 from roomba.world.home.home import DirtSource
@@ -91,6 +94,28 @@ def test_without_a_level_sensor_the_grains_tell_and_what_was_swept_in_vain_is_sw
     assert np.count_nonzero(told & ~robot.truth.swept) < 0.02 * np.count_nonzero(told)
 
 
+def test_a_full_bin_is_told_after_an_emergency_stop_and_it_does_not_drive_out_with_it() -> None:
+    robot = HeadlessMission(HOME, with_bin(FEW_GRAMS), seed=1, empties_bin_after=1e6)
+    robot.mission.clean(CleanRequest(), robot.senses())
+    until(robot, in_phase(robot, Phase.BIN_FULL), 1200.0)
+    command(robot, Event.EMERGENCY, "a child")
+    assert_stands(robot)
+    command(robot, Event.RELEASE)
+    assert robot.mission.state.phase is Phase.PAUSED
+    assert robot.mission.message == f"{BIN_FULL}; {RELEASED}"
+    command(robot, Event.RESUME)
+    until(robot, in_phase(robot, Phase.BIN_FULL), 1.0)
+    assert robot.seen.battery.is_docked
+    command(robot, Event.EMERGENCY, "a child")
+    command(robot, Event.RELEASE)
+    robot.simulator.empty_bin()
+    robot.look()
+    robot.mission.empty_bin(robot.senses())
+    assert robot.mission.message == RELEASED
+    command(robot, Event.RESUME)
+    until(robot, in_phase(robot, Phase.CLEANING), 60.0)
+
+
 def at_emptying_station(grams: float) -> HeadlessMission:
     config = with_bin(grams)
     station = config.station.model_copy(update={"empties": True})
@@ -115,6 +140,19 @@ def test_a_station_empties_a_full_bin_and_the_clean_goes_on_by_itself() -> None:
     station = robot.simulator.emptying
     assert station is not None
     assert result.dirt == pytest.approx(station.in_bag + robot.seen.in_bin, rel=1e-6)
+
+
+def test_a_station_empties_a_bin_after_an_emergency_stop() -> None:
+    robot = at_emptying_station(FEW_GRAMS)
+    robot.mission.clean(CleanRequest(), robot.senses())
+    until(robot, in_phase(robot, Phase.EMPTYING), 1200.0)
+    command(robot, Event.EMERGENCY, "a child")
+    assert_stands(robot)
+    command(robot, Event.RELEASE)
+    command(robot, Event.RESUME)
+    result = robot.run().result
+    assert (result.outcome, result.message) == (CleanOutcome.COMPLETED, "")
+    assert not robot.emptied
 
 
 def test_a_full_bag_is_told_and_an_empty_one_helps() -> None:

@@ -35,6 +35,20 @@ def test_with_a_low_battery_it_goes_home_charges_and_goes_on() -> None:
     assert_all_clean(robot, robot.run())
 
 
+def test_a_charge_that_an_emergency_stop_held_up_ends_when_it_is_told_to_go_on() -> None:
+    robot = begun()
+    robot.simulator.set_charge(0.085)
+    until(robot, in_phase(robot, Phase.CHARGING), 120.0)
+    command(robot, Event.EMERGENCY, "a child")
+    assert_stands(robot)
+    command(robot, Event.RELEASE)
+    robot.simulator.set_charge(0.95)
+    assert_stands(robot, 20.0)
+    assert robot.mission.state.phase is Phase.PAUSED
+    command(robot, Event.RESUME)
+    assert_all_clean(robot, robot.run())
+
+
 def test_while_it_charges_time_passes_in_few_ticks_and_is_recorded() -> None:
     robot = begun()
     robot.simulator.set_charge(0.085)

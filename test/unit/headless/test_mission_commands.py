@@ -23,8 +23,9 @@ from roomba.mission.cleaning.request import (
     CleanRequest,
     MissReason,
 )
-from roomba.mission.commands import RELEASED, CommandRefusedError
+from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Event
+from roomba.mission.transitions import RELEASED
 from roomba.vocabulary import CleanMode, Phase
 from roomba.world.engine.state.arrays import Fault
 

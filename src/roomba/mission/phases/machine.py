@@ -93,8 +93,13 @@ _DRIVING: Final = _WORKING | {Phase.UNDOCKING, Phase.RETURNING, Phase.DOCKING}
 _ON_STATION: Final = frozenset((Phase.DOCKED, Phase.CHARGING, Phase.EMPTYING))
 _GOES_ON: Final = frozenset((Errand.CLEAN, Errand.EXPLORE))
 """Errands that a charge on the station only interrupts."""
-_AMID_IT: Final = frozenset((Phase.CHARGING, Phase.BIN_FULL, Phase.EMPTYING))
-"""Phases in which the robot stands amid such an errand."""
+_AMID_IT: Final = {
+    Phase.CHARGING: Phase.UNDOCKING,
+    Phase.BIN_FULL: Phase.CHARGING,
+    Phase.EMPTYING: Phase.CHARGING,
+}
+"""Phases in which the robot stands amid such an errand, and those in which it goes on from there:
+while it charges it is noticed that the bin is full."""
 _OUTLASTS_A_STOP: Final = _GOES_ON | {Errand.HOME}
 """Errands that an emergency stop only interrupts."""
 
@@ -189,7 +194,9 @@ def _standing(state: MissionState, event: Event) -> MissionState | None:
         if phase in HELD:
             # It was carried home. With an errand it resumes from there when it is told to.
             if state.errand in _GOES_ON:
-                return replace(state, phase=Phase.PAUSED, resumes=Phase.UNDOCKING)
+                at_station = state.resumes is Phase.CHARGING
+                resumes = Phase.CHARGING if at_station else Phase.UNDOCKING
+                return replace(state, phase=Phase.PAUSED, resumes=resumes)
             return MissionState(Phase.DOCKED)
     if event is Event.CONTACT_LOST:
         if phase is Phase.DOCKED:
@@ -224,7 +231,7 @@ def _where_it_goes_on(state: MissionState) -> Phase | None:
     if state.drives:
         return _again(state.phase)
     if state.errand in _GOES_ON and state.phase in _AMID_IT:
-        return Phase.UNDOCKING
+        return _AMID_IT[state.phase]
     return state.resumes
 
 

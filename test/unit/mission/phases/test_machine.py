@@ -157,7 +157,12 @@ def _as_exploration(state: MissionState | None, event: Event) -> MissionState | 
         (
             (Phase.EMPTYING, Errand.CLEAN),
             Event.PAUSE,
-            (Phase.PAUSED, Errand.CLEAN, Phase.UNDOCKING),
+            (Phase.PAUSED, Errand.CLEAN, Phase.CHARGING),
+        ),
+        (
+            (Phase.PAUSED, Errand.CLEAN, Phase.CHARGING),
+            Event.CONTACT,
+            (Phase.PAUSED, Errand.CLEAN, Phase.CHARGING),
         ),
         ((Phase.EMPTYING,), Event.PAUSE, None),
         ((Phase.IDLE,), Event.RESUME, None),
@@ -176,7 +181,7 @@ def _as_exploration(state: MissionState | None, event: Event) -> MissionState | 
         (
             (Phase.BIN_FULL, Errand.CLEAN),
             Event.EMERGENCY,
-            (Phase.EMERGENCY, Errand.CLEAN, Phase.UNDOCKING),
+            (Phase.EMERGENCY, Errand.CLEAN, Phase.CHARGING),
         ),
         (
             (Phase.ERROR, Errand.EXPLORE, Phase.EXPLORING),
