@@ -68,11 +68,11 @@ class Commands:
         if event is Event.RESUME:
             self._retries.renew()
             self._job.take_up()
-        reason = reason if event is Event.EMERGENCY else self._transitions.reason
+        held = reason if event is Event.EMERGENCY else self._transitions.reason
         self._transitions.go(event, senses)
         if event in (Event.RELEASE, Event.STOP) and senses.battery.is_docked:
             self._transitions.go(Event.CONTACT, senses)
-        self._transitions.reason = self._reason_after(event, reason)
+        self._transitions.reason = self._reason_after(event, held)
 
     def empty_bin(self, senses: Senses) -> None:
         """Note that the dust bin was emptied by hand.
@@ -103,6 +103,8 @@ class Commands:
         Raises CommandRefusedError or CleanRefusedError with the reason.
         """
         cleaning, drives = self._job.cleaning, self._drives
+        if self._transitions.state.phase is Phase.EMERGENCY:
+            raise self._refusal("change the rooms")
         if cleaning is None:
             raise CommandRefusedError("expected a clean of rooms under way, got none: begin one")
         if cleaning.change_rooms(names, each):
@@ -133,12 +135,15 @@ class Commands:
         return RELEASED if event is Event.RELEASE and phase is Phase.PAUSED else ""
 
     def _require_possible(self, event: Event) -> None:
-        state, message = self._transitions.state, self._transitions.message
-        if next_state(state, event) is None:
-            raise CommandRefusedError(
-                f"cannot {event.value} now: the robot is {state.phase.value}"
-                + (f" ({message})" if message else "")
-            )
+        if next_state(self._transitions.state, event) is None:
+            raise self._refusal(event.value)
+
+    def _refusal(self, what: str) -> CommandRefusedError:
+        """Return the refusal of what is not possible in the present phase."""
+        phase, message = self._transitions.state.phase, self._transitions.message
+        return CommandRefusedError(
+            f"cannot {what} now: the robot is {phase.value}" + (f" ({message})" if message else "")
+        )
 
     def _require_start(self, event: Event, senses: Senses) -> None:
         if self._transitions.state.phase is Phase.EMERGENCY:

@@ -108,6 +108,12 @@ def test_what_cannot_be_is_refused_and_nothing_changes() -> None:
         with pytest.raises(CleanRefusedError):
             robot.mission.change_rooms(wrong)
     assert robot.mission.queue == (HALL,)
+    robot.mission.command(Event.EMERGENCY, robot.senses(), "a child")
+    with pytest.raises(CommandRefusedError, match=r"rooms now.*emergency stop \(a child\)"):
+        robot.mission.change_rooms((DEN,))
+    assert robot.mission.queue == (HALL,)
+    robot.mission.command(Event.RELEASE, robot.senses())
+    robot.mission.command(Event.RESUME, robot.senses())
     until(robot, in_phase(robot, Phase.RETURNING))
     with pytest.raises(CleanRefusedError, match="goes home"):
         robot.mission.change_rooms((DEN,))
