@@ -113,8 +113,10 @@ class MissionOrders:
 
     def hold(self, reason: str) -> None:
         """Take an emergency stop for a reason; an empty reason releases it."""
+        if reason:
+            # A release leaves this to the tick that takes it, perhaps at this moment.
+            self._engaged = reason
         self._emergency = reason
-        self._engaged = reason or self._engaged
 
     @property
     def goal(self) -> GoalIdentity | None:

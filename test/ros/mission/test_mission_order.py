@@ -22,7 +22,7 @@ from roomba.mission.phases.machine import Event
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
-from roomba.vocabulary import RoomWay
+from roomba.vocabulary import Phase, RoomWay
 from roomba_ros.mission.goals import CleaningGoal, DockingGoal, MissionGoal
 from roomba_ros.mission.orders import Cancel, MissionOrders, Order, RoomsOrder
 from roomba_ros.mission.round import MissionRound
@@ -203,6 +203,40 @@ def test_a_clean_that_was_held_is_paused_also_if_that_was_between_two_ticks(
     rig.orders.hold("")
     assert rig.tick() == ["paused", "feedback"]
     assert rig.order(Event.RESUME)[0] == "cleaning"
+
+
+class TickedAmid:
+    """What the stop was engaged by; amid its first look at it a release is overtaken by a tick."""
+
+    def __init__(self, rig: Rig) -> None:
+        self._rig, self._value, self.is_awaited = rig, "", False
+
+    def __get__(self, orders: MissionOrders, kind: type) -> str:
+        value = self._value
+        if self.is_awaited:
+            self.is_awaited = False
+            self._rig.tick()
+        return value
+
+    def __set__(self, orders: MissionOrders, value: str) -> None:
+        self._value = value
+
+
+def test_a_release_during_a_tick_does_not_engage_it_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig(monkeypatch)
+    monkeypatch.setattr(MissionOrders, "_engaged", TickedAmid(rig), raising=False)
+    engaged = MissionOrders.__dict__["_engaged"]
+    rig.ask(CleaningGoal, CleanGoal())
+    rig.orders.hold("a child")
+    rig.orders.ask(Order(Event.RESUME, rig.world.answer))
+    engaged.is_awaited = True
+    rig.orders.hold("")
+    if engaged.is_awaited:
+        engaged.is_awaited = False
+        rig.tick()
+    assert rig.mission.state.phase is Phase.CLEANING
+    rig.tick()
+    assert rig.mission.state.phase is Phase.CLEANING
 
 
 def test_the_clean_floor_is_counted_once_for_a_state(monkeypatch: pytest.MonkeyPatch) -> None:
