@@ -94,7 +94,8 @@ class RunRecorder:
                 return None
             return run.figures(view.last), run.recording(home, layer)
         if self._run.rests_since is not None and view.time - self._run.rests_since > _GIVEN_UP:
-            self._run = None
+            run, self._run = self._run, None
+            return run.interrupted()
         return None
 
     def _source_of_run(self) -> RunSource:
@@ -107,7 +108,8 @@ class HistoryKeeper:
     """Keeps the runs of a robot that is looked at; trouble with the history is told, once each.
 
     A run under way is on the disk up to the last second. Was a program killed in the middle of one,
-    the next one goes on with it if its robot does, and else keeps it as interrupted.
+    the next one goes on with it if its robot does, and else keeps it as interrupted. So it does if
+    the robot seemed to, held by the emergency stop, and then stands without a word of its end.
     """
 
     def __init__(self, history: History, source: RunSource, tell: Callable[[str], None]) -> None:
@@ -142,7 +144,7 @@ class HistoryKeeper:
             self._keep_so_far(home, layer)
             return
         trouble = ""
-        self.interrupted = None
+        self.interrupted = _as_interrupted(ended[0])
         try:
             self.history.add(*ended)
         except RoombaError as error:
@@ -171,7 +173,7 @@ class HistoryKeeper:
         source = self._recorder.source
         runs = (run.figures for run in self.history.runs(limit=_LOOKED_THROUGH, home=source.home))
         newest = next((run for run in runs if run.source.program == source.program), None)
-        return None if newest is None or newest.outcome != INTERRUPTED else report_of(newest.report)
+        return None if newest is None else _as_interrupted(newest)
 
     def _has_kept(self, run: RunSoFar) -> bool:
         """Whether the program was killed only after it had kept the run."""
@@ -207,6 +209,7 @@ class _RunUnderWay:
         self._words: list[Word] = []
         self._theta = view.pose[2]
         self._turning = 0.0
+        self._before: RunSoFar | None = None
         self.rests_since: float | None = None
 
     def take(self, view: RobotView) -> None:
@@ -238,6 +241,14 @@ class _RunUnderWay:
         self._began, self._wall = run.clock, run.wall
         self._rows, self._words = list(run.rows), list(run.words)
         self._turning = turning_of(run.trace)
+        self._before = run
+
+    def interrupted(self) -> tuple[RunFigures, RunRecording] | None:
+        """Return it as one that came to no end; None: it was none before this program either."""
+        before = self._before
+        if before is None:
+            return None
+        return replace(before, rows=self._rows, words=self._words).interrupted()
 
     def figures(self, report: CleanReport) -> RunFigures:
         """Return what was achieved."""
@@ -263,6 +274,11 @@ class _RunUnderWay:
     def recording(self, home: HomeView, layer: Layers) -> RunRecording:
         """Return what was seen."""
         return RunRecording(self.so_far().trace, tuple(self._words), home_of(home), _cells(layer))
+
+
+def _as_interrupted(run: RunFigures) -> dict[str, Any] | None:
+    """Return how a run ended, as plain values, if it was interrupted."""
+    return report_of(run.report) if run.outcome == INTERRUPTED else None
 
 
 def _cells(layer: Layers) -> dict[str, CellLayer]:

@@ -121,6 +121,24 @@ def test_a_robot_that_goes_on_goes_on_with_its_run(
     assert not list(tmp_path.glob("unfinished-*"))
 
 
+def test_a_run_that_seemed_to_go_on_and_did_not_is_kept_as_interrupted(
+    tmp_path: Path, killed_at: float
+) -> None:
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
+    for second in range(3, 9):
+        keeper.look(view(killed_at + second, "emergency stop"), HOME, layer)
+    assert keeper.interrupted is None
+    for second in range(9, 25):
+        keeper.look(view(killed_at + second, "idle"), HOME, layer)
+    figures, recording = kept(tmp_path)
+    assert (figures.outcome, figures.message, figures.kind) == (INTERRUPTED, WHY, "clean")
+    assert recording.home["name"] == "box"
+    assert np.all(recording.layers["coverage"].cells == 1)
+    assert keeper.interrupted is not None
+    assert keeper.interrupted["outcome"] == INTERRUPTED
+    assert not list(tmp_path.glob("unfinished-*"))
+
+
 @pytest.mark.parametrize(
     ("home", "later", "phase"),
     [("other", 1.0, "cleaning"), ("box", -90.0, "cleaning"), ("box", 100.0, "cleaning")],
