@@ -25,15 +25,21 @@ def test_the_emergency_stop_is_a_button_and_a_key(opened: Opened) -> None:
     assert "held" in page.inner_text("#explanation")
     page.get_by_role("button", name="Release").click()
     opened.wait_for_phase("paused")
-    page.wait_for_function("document.getElementById('explanation').innerText.includes('released')")
+    page.wait_for_function(
+        "() => document.getElementById('explanation').innerText.includes('released')"
+    )
     page.get_by_role("button", name="Go on").click()
     opened.wait_for_phase("cleaning")
     page.get_by_role("button", name="Stop now").click()
     opened.wait_for_phase("emergency stop")
-    assert "“Go on” then goes on" in page.inner_text("#explanation")
+    assert "stands until “Go on”" in page.inner_text("#explanation")
     page.get_by_role("button", name="Stop", exact=True).click()
-    page.wait_for_selector("#stop:disabled")
+    page.wait_for_function(
+        "() => document.getElementById('last-text').innerText.includes('Stopped')"
+    )
     assert opened.phase() == "emergency stop"
+    # An exploration tells of no floor that is wanted either, and can be stopped.
+    assert page.is_enabled("#stop")
     page.get_by_role("button", name="Release").click()
     opened.wait_for_phase("idle")
     # In a dialog the key closes that alone: a robot that is held would refuse to clean.

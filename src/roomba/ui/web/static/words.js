@@ -85,9 +85,6 @@ function moves(state) { return state.speed > MOVES; }
 /** Whether the robot stands, and waits for what it is told. */
 export function stands(state) { return Boolean(state) && ["docked", "idle", "paused"].includes(state.vacuum.phase) && !moves(state); }
 
-/** Whether the emergency stop holds it amid a clean, which can go on once it is released. */
-export function isInterrupted(state) { return Boolean(state?.held) && state.vacuum.wanted > 0; }
-
 /** Whether it is not yet in the room that it cleans next. */
 function isElsewhere({ queue, room }) { return queue?.length > 0 && queue[0] !== room; }
 
@@ -98,7 +95,7 @@ export function explanation(link, state, reason, heardAt) {
   if (link === "stale") return "No news: what is shown is old.";
   if (link === "reconnecting") return `The page comes back by itself as soon as the robot's program answers.${seen}`;
   if (!state) return "";
-  if (state.held) return `The drive is held: ${state.held}. “Release” lets it go${isInterrupted(state) ? ", “Go on” then goes on where it was" : ""}.`;
+  if (state.held) return `The drive is held: ${state.held}. “Release” lets it go; then it stands until “Go on”, or another order.`;
   if (state.truth?.lifted) return "Put it down: drag it, or tap the floor and “Put the robot here”.";
   if (/^bin full/.test(state.vacuum.message)) return "Empty the dust bin, then press “Bin emptied”.";
   if (waits(state.vacuum)) return waiting(state.vacuum.message);

@@ -2,7 +2,7 @@
 import { $, offer, put } from "../dom.js";
 import { askFor, refuse, wish } from "../link.js";
 import { get, isConnected, mayMove, on, set } from "../store.js";
-import { CARPETS, EDGES, MODES, isInterrupted } from "../words.js";
+import { CARPETS, EDGES, MODES } from "../words.js";
 import { askYes } from "./ask.js";
 import * as queue from "./queue.js";
 
@@ -132,7 +132,7 @@ function show() {
   $("clean").classList.toggle("first", !isUnderWay && !isFull && !(hasNoMap && stands));
   for (const mover of document.querySelectorAll(".moves")) mover.disabled = !mayMove();
   $("pause").disabled = stands || isHeld || !isHeard || (isPaused() && !mayMove());
-  $("stop").disabled = (stands && !state?.speed) || (isHeld && !isInterrupted(state)) || !isHeard;
+  $("stop").disabled = (stands && !state?.speed && !isHeld) || !isHeard;
   $("clean").disabled ||= isHeld || adds() && queue.more().length === 0;
   $("dock").disabled ||= isHeld || phase === "docked";
   $("mode").disabled = chosen.length > 0;
