@@ -53,12 +53,14 @@ OLDEST_VACUUM_STATE: Final = 6.0
 """s of wall time; it is told every second, but a long plan may hold it up for some."""
 _SIMULATION_DEADLINE: Final = 1.0
 """s of wall time in which a simulation's service is found; a real robot has none."""
-_IS_OBEYED: Final[dict[str, Callable[[str], bool]]] = {
-    "pause": lambda phase: phase == Phase.PAUSED,
-    "resume": lambda phase: phase not in HELD,
-    "stop": lambda phase: phase in AT_REST or phase == Phase.EMERGENCY,
+_IS_OBEYED: Final[dict[str, Callable[[VacuumSnapshot], bool]]] = {
+    "pause": lambda vacuum: vacuum.phase == Phase.PAUSED,
+    "resume": lambda vacuum: vacuum.phase not in HELD,
+    "stop": lambda vacuum: (
+        vacuum.phase in AT_REST or (vacuum.phase == Phase.EMERGENCY and vacuum.wanted == 0.0)
+    ),
 }
-"""By an order whether a phase may come after it; in any other the state is from before."""
+"""By an order whether a state may come after it; any other one is from before."""
 
 
 class RosVacuum:
@@ -198,7 +200,7 @@ class RosVacuum:
             raise RequestRefusedError(answer.message)
         is_obeyed = _IS_OBEYED.get(name)
         with self._told:
-            if is_obeyed and self._vacuum is not None and not is_obeyed(self._vacuum.phase):
+            if is_obeyed and self._vacuum is not None and not is_obeyed(self._vacuum):
                 # The state comes by another connection than the answer, perhaps later.
                 self._vacuum_heard = -math.inf
 

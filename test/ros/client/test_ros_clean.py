@@ -100,10 +100,15 @@ def begin(graph: RosGraph) -> tuple[RoombaClient, FakeMission]:
     return RoombaClient.connect(), FakeMission()
 
 
-def tell(mission: FakeMission, roomba: RoombaClient, phase: str) -> None:
+def tell(mission: FakeMission, roomba: RoombaClient, phase: str, wanted: float = 0.0) -> None:
     """Let the mission tell a phase, and wait until the client has heard it."""
-    mission.state.publish(state=phase, phase=phase)
-    wait_until(lambda: roomba.robot.vacuum(30.0).phase == phase, 30.0, phase)
+
+    def is_heard() -> bool:
+        vacuum = roomba.robot.vacuum(30.0)
+        return (vacuum.phase, vacuum.wanted) == (phase, wanted)
+
+    mission.state.publish(state=phase, phase=phase, wanted=wanted)
+    wait_until(is_heard, 30.0, phase)
 
 
 def test_a_clean_from_its_goal_to_its_report(graph: RosGraph) -> None:
@@ -216,6 +221,12 @@ def test_a_state_from_before_an_order_is_none_any_more(graph: RosGraph) -> None:
         tell(mission, roomba, phase)
         roomba.robot.stop()
         assert roomba.robot.vacuum(timeout=0.2).phase == phase
+    tell(mission, roomba, "emergency stop", wanted=8.0)
+    roomba.robot.stop()
+    with pytest.raises(RobotUnavailableError):  # that clean is ended
+        roomba.robot.vacuum(timeout=0.2)
+    tell(mission, roomba, "emergency stop")
+    assert roomba.robot.vacuum(timeout=0.2).wanted == 0.0
 
 
 def test_a_mission_that_began_anew_or_is_silent_has_lost_the_clean(graph: RosGraph) -> None:
