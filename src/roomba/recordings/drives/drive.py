@@ -127,7 +127,7 @@ class LoggedDrive:
         """Read no odometry from now on, and tell why."""
         self._chosen = self._chosen.without_odometry()
         self.counts = StampCounts()
-        self._remarks = [f"the odometry is not used, it goes by scans alone: {reason}"]
+        self.remark(f"the odometry is not used, it goes by scans alone: {reason}")
         self._times, self._arrivals, self._owners, self._order = self._timed()
 
     def take_sweep(self, sweep: Sweep) -> None:
@@ -135,7 +135,7 @@ class LoggedDrive:
         self._sweep = sweep
 
     def leave_beams(self, fixed: Mask) -> None:
-        """From now on leave out what beams show, [beams], that a thing hides on the robot."""
+        """From now on leave out beams, [beams], and no others: a thing on the robot hides them."""
         self._unhidden = UnhiddenScans(fixed)
 
     def remark(self, remark: str) -> None:

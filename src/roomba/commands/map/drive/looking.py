@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
+from roomba.arrays import Mask
 from roomba.commands.map.drive.lidar_samples import LidarSamples
 from roomba.commands.map.drive.shown_mount import ShownMount, shown_mount
-from roomba.commands.map.drive.shown_odometry import odometry_fault
+from roomba.commands.map.drive.shown_odometry import odometry_fault, shown_headings
 from roomba.commands.map.drive.shown_sweep import shown_sweep
 from roomba.geometry import Pose
 from roomba.perception.matching.mounts import Mount
@@ -27,10 +29,19 @@ def look_at_drive(drive: LoggedDrive) -> None:
     """Find out what odometry and lidar are like; have the drive read so, and say so."""
     if not drive.chosen.has_odometry:
         return
-    samples = LidarSamples(drive.readings())
-    if _leaves_beams(drive, samples):
+    all_samples = samples = LidarSamples(drive.readings())
+    hidden = hidden_beams(all_samples, [sample.pose[2] for sample in all_samples.scans])
+    if hidden.any():
+        drive.leave_beams(hidden)
         samples = LidarSamples(drive.readings())
     fault = _odometry_fault(drive, samples)
+    if fault and hidden.any():
+        # They were found by headings that may be as wrong.
+        hidden = hidden_beams(all_samples, shown_headings(samples))
+        drive.leave_beams(hidden)
+        samples = LidarSamples(drive.readings())
+    if hidden.any():
+        drive.remark(_told_hidden(all_samples, hidden))
     if fault and not drive.keeps_odometry:
         drive.leave_odometry(fault)
         return
@@ -39,25 +50,43 @@ def look_at_drive(drive: LoggedDrive) -> None:
     _look_at_lidar(drive, samples)
 
 
-def _leaves_beams(drive: LoggedDrive, samples: LidarSamples) -> bool:
-    """Leave out beams that a thing hides on the robot, and say so; tell if there are some."""
+def hidden_beams(samples: LidarSamples, headings: Sequence[float]) -> Mask:
+    """Return which beams a thing hides on the robot, [beams], of most scans.
+
+    ``headings`` are the robot's at the scans, rad, not wrapped. Without scans there are no beams.
+    """
+    beams = _usual_beams(samples)
+    alike = [
+        (sample.scan.ranges, heading)
+        for sample, heading in zip(samples.scans, headings, strict=True)
+        if sample.scan.lidar.beams == beams
+    ]
+    if not alike:
+        return np.zeros(0, np.bool_)
+    ranges, of_them = zip(*alike, strict=True)
+    return fixed_beams(np.array(ranges), np.array(of_them))
+
+
+def _usual_beams(samples: LidarSamples) -> int:
+    """Return how many beams most scans have; 0 without scans."""
     sizes = Counter(sample.scan.lidar.beams for sample in samples.scans)
-    if not sizes:
-        return False
-    beams = max(sizes, key=sizes.__getitem__)
-    alike = [sample for sample in samples.scans if sample.scan.lidar.beams == beams]
-    ranges = np.array([sample.scan.ranges for sample in alike])
-    fixed = fixed_beams(ranges, np.array([sample.pose[2] for sample in alike]))
-    if not fixed.any():
-        return False
-    drive.leave_beams(fixed)
-    hidden = ranges[:, fixed]
-    away = float(np.median(hidden[np.isfinite(hidden)]))
-    drive.remark(
-        f"{np.count_nonzero(fixed)} of {beams} beams show the same wherever the robot turns, "
-        f"{away:.2f} m away: something on the robot hides what is there; they are left out"
+    return max(sizes, key=sizes.__getitem__, default=0)
+
+
+def _told_hidden(samples: LidarSamples, hidden: Mask) -> str:
+    """Return what is told of beams, [beams], that a thing hides on the robot."""
+    ranges = np.array(
+        [
+            sample.scan.ranges[hidden]
+            for sample in samples.scans
+            if len(sample.scan.ranges) == len(hidden)
+        ]
     )
-    return True
+    away = float(np.median(ranges[np.isfinite(ranges)]))
+    return (
+        f"{np.count_nonzero(hidden)} of {len(hidden)} beams show the same wherever the robot turns,"
+        f" {away:.2f} m away: something on the robot hides what is there; they are left out"
+    )
 
 
 def _odometry_fault(drive: LoggedDrive, samples: LidarSamples) -> str:

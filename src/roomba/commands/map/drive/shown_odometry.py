@@ -9,6 +9,7 @@ directions, most of the time.
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -78,6 +79,19 @@ def odometry_fault(samples: LidarSamples) -> str:
     straight = moves.where((_lengths(moves.shown) > _WAY) & (turned < _STRAIGHT))
     turns = moves.where(turned > _TURN)
     return _wrong_ways(ways) or _wrong_turns(turns) or _mirrored_ways(straight)
+
+
+def shown_headings(samples: LidarSamples) -> list[float]:
+    """Return the headings, rad, of the robot at the scans, as these show them without odometry.
+
+    The first one is 0. Where a scan does not fit the one before, the robot is taken not to turn.
+    """
+    headings = [0.0] if samples.scans else []
+    for one, other in pairwise(samples.scans):
+        points = samples.points(one), samples.points(other)
+        match = laid_on(*points, np.zeros(3), _STEP, _STEP_TURN, _FITS)
+        headings.append(headings[-1] + (0.0 if match is None else float(match.pose[2])))
+    return headings
 
 
 def _wrong_ways(moves: _Moves) -> str:

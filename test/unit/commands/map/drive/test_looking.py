@@ -9,14 +9,29 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fixtures.drives.made_logs import Item, changed, write_bag
+from fixtures.drives import made_logs
+from fixtures.drives.made_logs import (
+    BEGAN,
+    FARTHEST,
+    LASER,
+    PERIOD,
+    Item,
+    changed,
+    ranges_from,
+    write_bag,
+)
 from fixtures.drives.round_drive import round_drive
-from fixtures.drives.turning_drive import BEAM_TIME, turning_drive
+from fixtures.drives.turning_drive import BEAM_TIME, half_circle, readings_of, turning_drive
 
+from roomba.commands.map.drive.lidar_samples import LidarSamples
+from roomba.commands.map.drive.looking import hidden_beams, look_at_drive
 from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
 from roomba.commands.map.drive.report import lines_of, summary_of
 from roomba.geometry import Pose, wrap_angle
+from roomba.perception.matching.scan_view import LidarModel
 from roomba.recordings.drives.choice import Wanted
+from roomba.recordings.drives.drive import LoggedDrive
+from roomba.recordings.readings import LidarScan
 
 
 def mapped(
@@ -108,6 +123,11 @@ def in_feet(number: int, item: Item) -> Item:
     return replace(item, value=Pose(3.28 * item.value.x, 3.28 * item.value.y, item.value.theta))
 
 
+def in_degrees(number: int, item: Item) -> Item:
+    assert isinstance(item.value, Pose)
+    return replace(item, value=Pose(item.value.x, item.value.y, math.degrees(item.value.theta)))
+
+
 def no_number(number: int, item: Item) -> Item:
     return replace(item, value=Pose(math.nan, 0.0, 0.0))
 
@@ -134,6 +154,58 @@ def test_odometry_that_is_of_no_use_is_left_out_and_that_is_told(
     summary = summary_of(done, 1.0)
     assert summary.corrected_m is None
     assert not any("odometry alone" in text for _, text in lines_of(summary))
+
+
+@pytest.mark.parametrize(
+    ("items", "spoil"), [(round_drive(), in_feet), (turning_drive(), in_degrees)]
+)
+def test_hidden_beams_and_odometry_of_no_use_are_both_told(
+    tmp_path: Path, items: list[Item], spoil: Callable[[int, Item], Item]
+) -> None:
+    spoiled = changed(changed(items, "/scan", behind_a_screen), "/odom", spoil)
+    screen, odometry = mapped(tmp_path, spoiled, with_mount=True).notes[:2]
+    assert screen.startswith("100 of 180 beams show the same wherever the robot turns, 0.40 m away")
+    assert odometry.startswith("the odometry is not used, it goes by scans alone: it tells ")
+
+
+def along_a_hall() -> list[Item]:
+    """A drive that turns by 0.2 rad to and fro, with walls 0.8 m beside it."""
+    generator, items = np.random.default_rng(1), []
+    for number in range(150):
+        seconds = number * PERIOD
+        moved = Pose(0.1 * seconds, 0.0, 0.2 * math.sin(1.2 * seconds))
+        stamp = BEGAN + seconds
+        ranges = ranges_from(Pose(1.0, 0.8).compose(moved), generator)
+        items += [Item("/odom", moved, stamp, stamp), Item("/scan", ranges, stamp, stamp)]
+    return items
+
+
+def test_by_turns_that_odometry_tells_too_large_no_wall_is_taken_for_a_thing_on_the_robot(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(made_logs, "ROOM", (0.0, 0.0, 6.0, 1.6))
+    items = changed(along_a_hall(), "/odom", in_degrees)
+    samples = LidarSamples(readings_of(items, half_circle()))
+    assert hidden_beams(samples, [sample.pose[2] for sample in samples.scans]).any()
+    with LoggedDrive([write_bag(tmp_path / "hall.bag", items)]) as hall:
+        look_at_drive(hall)
+        assert not hall.chosen.has_odometry
+        assert not any("show the same" in note for note in hall.notes)
+        scans = [scan for _, scan, _ in hall.readings() if isinstance(scan, LidarScan)]
+    assert len(scans) == 150
+    assert not any(np.isneginf(scan.ranges).any() for scan in scans)
+
+
+def test_hidden_beams_are_looked_for_in_scans_of_as_many_beams_as_most_have() -> None:
+    readings = readings_of(changed(turning_drive(), "/scan", behind_a_screen), half_circle())
+    odd = LidarScan(np.array([0.4], np.float32), LidarModel(np.zeros(1), 0.05, FARTHEST, LASER))
+    for number in range(0, len(readings), 50):
+        readings[number] = readings[number]._replace(value=odd)
+    samples = LidarSamples(readings)
+    hidden = hidden_beams(samples, [sample.pose[2] for sample in samples.scans])
+    assert np.flatnonzero(hidden).tolist() == list(range(40, 140))
+    assert not hidden_beams(samples, [0.0] * len(samples.scans)).any()
+    assert hidden_beams(LidarSamples([]), []).shape == (0,)
 
 
 def test_odometry_that_was_named_is_used_all_the_same_with_a_word(tmp_path: Path) -> None:

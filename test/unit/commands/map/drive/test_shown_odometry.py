@@ -12,7 +12,7 @@ from fixtures.drives.round_drive import round_drive
 from fixtures.drives.turning_drive import half_circle, readings_of, turning_drive
 
 from roomba.commands.map.drive.lidar_samples import LidarSamples
-from roomba.commands.map.drive.shown_odometry import odometry_fault
+from roomba.commands.map.drive.shown_odometry import odometry_fault, shown_headings
 from roomba.geometry import Pose
 
 
@@ -117,6 +117,21 @@ def test_a_drive_with_few_scans_and_as_little_odometry_is_none_of_these() -> Non
     few = rare(rare(turning_drive(), "/odom", 60), "/scan", 15)
     assert fault(few) == ""
     assert fault(told_otherwise(lambda pose: Pose(9.0 * pose.x, pose.y, pose.theta), few)) == ""
+
+
+def test_headings_are_those_that_scans_show_whatever_odometry_tells() -> None:
+    true = LidarSamples(readings_of(turning_drive(), half_circle()))
+    items = told_otherwise(
+        lambda pose: Pose(pose.x, pose.y, math.degrees(pose.theta)), turning_drive()
+    )
+    samples = LidarSamples(readings_of(items, half_circle()))
+    expected = {sample.stamp: sample.pose[2] for sample in true.scans}
+    shown = shown_headings(samples)
+    assert max(shown) - min(shown) > 1.8
+    for sample, heading in zip(samples.scans, shown, strict=True):
+        if sample.stamp in expected:
+            assert heading == pytest.approx(expected[sample.stamp], abs=0.15)
+    assert shown_headings(LidarSamples([])) == []
 
 
 def test_without_anything_nothing_is_wrong() -> None:
