@@ -51,14 +51,16 @@ FOLLOWER: Final = np.dtype(
         ("keyframe_way", "f8"),  # m; a scan is kept that is so far from the newest keyframe,
         ("keyframe_turn", "f8"),  # rad; or turned by so much
         ("standing", "f8", (3,)),  # m2, rad2; variances of a step that is told to be none
-        ("work", "f8", (15 + ALIGN_WORK, 3)),  # what the kernel works in; means nothing between
+        ("work", "f8", (18 + ALIGN_WORK, 3)),  # what the kernel works in; means nothing between
     ],
     align=True,
 )
 """State and numbers of a follower, one row."""
 
 COVARIANCE: Final = 4
-"""The first of three rows of ``work`` with that of the newest pose, once it was matched."""
+"""The first of three rows of ``work`` with that of the newest pose, once it was matched.
+
+The next three are the information of the points that it was matched by."""
 _FIRST_SCALES: Final = (0.1, 0.05)
 """m; of the first rounds of a match."""
 _LEARNING: Final = 0.02
@@ -194,24 +196,25 @@ def _look_farther(
     The result is kept only if it agrees as ``expected``, and clearly better than before, and is no
     leap of more than ``farthest``, m.
     """
-    pose, covariance = follower.work[1], follower.work[COVARIANCE : COVARIANCE + 3]
-    before, sure = follower.work[10:13], follower.work[13]
+    pose, matrices = follower.work[1], follower.work[COVARIANCE : COVARIANCE + 6]
+    sure, before = follower.work[10], follower.work[11:17]
     met, close = follower.met, follower.close
-    for row in range(3):
-        sure[row] = pose[row]
-        for column in range(3):
-            before[row, column] = covariance[row, column]
-            covariance[row, column] = 0.0
-        covariance[row, row] = _FARTHER_SPREAD[row]
+    for axis in range(3):
+        sure[axis] = pose[axis]
+        for row in range(6):
+            before[row, axis] = matrices[row, axis]
+        for row in range(3):
+            matrices[row, axis] = 0.0
+        matrices[axis, axis] = _FARTHER_SPREAD[axis]
     _match(follower, surfels, points, count, guess, _FAR_REACH, _FARTHER_SCALES)
     is_better = follower.met * follower.close >= max(expected, _CLEARLY * met * close)
     if is_better and not _is_leap(follower, farthest):
         return
     follower.met, follower.close = met, close
-    for row in range(3):
-        pose[row] = sure[row]
-        for column in range(3):
-            covariance[row, column] = before[row, column]
+    for axis in range(3):
+        pose[axis] = sure[axis]
+        for row in range(6):
+            matrices[row, axis] = before[row, axis]
 
 
 @inner_part
@@ -241,7 +244,7 @@ def _match(
     Returns whether the scan shows enough to say anything.
     """
     work = follower.work
-    pose, scales, counts = work[1], work[3], work[14]
+    pose, scales, counts = work[1], work[3], work[17]
     covariance, information = work[COVARIANCE : COVARIANCE + 3], work[7:10]
     for axis in range(3):
         pose[axis] = prior[axis]
@@ -251,7 +254,7 @@ def _match(
     stride = _STRIDE if count >= _MANY else 1
     is_solved = align(
         surfels, points, count, stride, reach, prior, covariance, tolerances, int(_ROUNDS), pose,
-        information, counts, work[15:],
+        information, counts, work[18:],
     )  # fmt: skip
     is_solved = is_solved and math.isfinite(pose[0] + pose[1] + pose[2])
     follower.met = follower.close = 0.0
@@ -300,7 +303,7 @@ def _of_noise(follower: Row, x: float, y: float, turn: float) -> float:
     That is x and y, m, in the submap's frame, and the turn, rad; the other ones are 0.
     """
     covariance, information = follower.work[COVARIANCE : COVARIANCE + 3], follower.work[7:10]
-    told = follower.work[15]
+    told = follower.work[18]
     variance = 0.0
     for row in range(3):
         told[row] = covariance[row, 0] * x + covariance[row, 1] * y + covariance[row, 2] * turn

@@ -7,8 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fixtures.robots.located import Eye
+from fixtures.robots.mapped import FURNISHED, START, points_of, row
 
+from roomba.geometry import Pose
+from roomba.perception.localization.belief.belief import BELIEF
 from roomba.perception.slam.following import follow_kernels
+from roomba.perception.slam.following.follow_kernels import COVARIANCE, FOLLOWER, follow
+from roomba.perception.slam.scan_matching.surfels import SurfelGrid
 
 BETWEEN_SCANS = 0.1
 """s."""
@@ -47,7 +53,7 @@ FARTHEST = 0.045
 
 def looked_farther(monkeypatch: pytest.MonkeyPatch, found: tuple[float, ...]) -> float:
     """Return where along x a scan is taken to be from that fits perfectly at ``found`` alone."""
-    work = np.zeros((20, 3))
+    work = np.zeros(FOLLOWER["work"].shape)
     work[0], work[1], work[2] = ODOMETRY, ODOMETRY, PACE
     follower = SimpleNamespace(work=work, met=0.7, close=0.8)
 
@@ -84,6 +90,33 @@ def test_what_stands_by_a_scan_while_odometry_and_pace_go_on_moves_along_with_th
     assert looked_farther(monkeypatch, (0.04, 0.06, 0.0)) == ODOMETRY[0]
 
 
+def followed(expected: float) -> Any:
+    """Return the follower after a scan, seen from 5 cm beside where it thinks it is."""
+    eye, grid = Eye(FURNISHED), SurfelGrid(8.0)
+    grid.add(points_of(eye.scan(START)), row(START))
+    points = points_of(eye.scan(Pose(START.x + 0.05, START.y, START.theta)))
+    follower: Any = np.zeros(1, FOLLOWER).view(np.recarray)
+    belief: Any = np.zeros(1, BELIEF).view(np.recarray)
+    follower.here, follower.is_sure = row(START), True
+    follower.variance, follower.range_deviation = POINT_VARIANCE, 0.05
+    follower.least_points, follower.many_misses = 20, 10
+    follower.odometry_scale = 10.0
+    follower.standing = 1e-6
+    belief.spread = 0.02**2
+    follow(follower, belief, np.zeros(3), grid.arrays, points, len(points), BETWEEN_SCANS, expected)
+    return follower[0]
+
+
+def test_a_match_from_farther_away_that_is_rejected_leaves_nothing_behind() -> None:
+    """No scan agrees in more than all of its points."""
+    without, rejected = followed(0.0), followed(1.1)
+    assert rejected.is_sure
+    assert rejected.here.tolist() == without.here.tolist()
+    assert rejected.odometry_scale.tolist() == without.odometry_scale.tolist()
+    for each in range(COVARIANCE, COVARIANCE + 6):
+        assert rejected.work[each].tolist() == without.work[each].tolist()
+
+
 POINT_VARIANCE = 0.03**2
 """m2."""
 STEP_DEVIATION = 0.005
@@ -98,7 +131,7 @@ def trust_after(range_noise: float, step_error: float, scans: int = 2000) -> flo
     """
     random = np.random.default_rng(1)
     follower = SimpleNamespace(
-        work=np.zeros((20, 3)),
+        work=np.zeros(FOLLOWER["work"].shape),
         spread=np.zeros((3, 3)),
         odometry_scale=np.ones(3),
         range_deviation=range_noise,
@@ -122,7 +155,6 @@ def trust_after(range_noise: float, step_error: float, scans: int = 2000) -> flo
 
 
 def test_noise_of_ranges_is_not_taken_for_an_error_of_the_wheels() -> None:
-    assert trust_after(0.005, 0.002) < 1.5
     assert trust_after(0.07, 0.002) < 1.5
 
 
