@@ -37,40 +37,39 @@ _EDGE: Final = 1e-6
 @inner_part
 def leave_out_behind(
     field: Field, place: Place, count: int, pose: Floats, wall_variance: float, lanes: Floats
-) -> bool:
-    """Leave out beams that ended behind surfaces, with those beside them; tell if there are more.
+) -> int:
+    """Leave out beams that ended behind surfaces, with those beside them; return how many are left.
 
     ``lanes`` [BEHIND_LANES or more, n] has x and y of the ends of ``count`` beams, m, in the frame
-    of the robot at ``pose`` [3]; those that are left out are moved far off the map, where they
-    count as behind it. ``wall_variance``, m2, is that of where walls are against the map.
+    of the robot at ``pose`` [3]. Those that are left out are moved far off the map, where they
+    count as behind it when it is called again: what was left out gets a margin.
+    ``wall_variance``, m2, is that of where walls are against the map.
     """
     aside = max(1, count // _DIRECTIONS)
     beside = 2 * aside + 1
-    if count < beside:
-        return False
     cosine, sine = math.cos(pose[2]), math.sin(pose[2])
     of_wall = _DEVIATIONS * math.sqrt(wall_variance)
-    total = 0.0
+    total, left = 0.0, 0
     for index in range(count):
-        ahead, left = lanes[0, index], lanes[1, index]
-        x, y = cosine * ahead - sine * left, sine * ahead + cosine * left
+        ahead, across = lanes[0, index], lanes[1, index]
+        x, y = cosine * ahead - sine * across, sine * ahead + cosine * across
         off = _distance(field, place, pose[0] + x, pose[1] + y)
         is_behind = off < -of_wall and off < -of_wall - _OF_RANGE * math.hypot(x, y)
         lanes[_IS_BEHIND, index] = 1.0 if is_behind else 0.0
         total += lanes[_IS_BEHIND, index]
-    if total <= _MANY * beside:
-        return False
+        left += ahead != OFF_MAP
+    if count < beside or total <= _MANY * beside:
+        return left
     behind = 0.0
     for index in range(-aside, aside + 1):
         behind += lanes[_IS_BEHIND, index % count]
-    is_more = False
     for index in range(count):
         if behind > _MANY * beside and lanes[0, index] != OFF_MAP:
             lanes[0, index] = OFF_MAP
-            is_more = True
+            left -= 1
         behind += lanes[_IS_BEHIND, (index + aside + 1) % count]
         behind -= lanes[_IS_BEHIND, (index - aside) % count]
-    return is_more
+    return left
 
 
 @inner_part

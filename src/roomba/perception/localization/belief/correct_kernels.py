@@ -171,17 +171,19 @@ def match_ends(
     variance, work = _beam_variance(numbers[0], place, count), belief.work
     wall_variance = wall_variance_of(belief, place)
     fill_lanes(ends, count, lanes)
-    rounds = 0
+    rounds, used, share = 0, count, 1.0
     for number in range(_MATCHES):
-        if number > 0 and not leave_out_behind(field, place, count, pose, wall_variance, lanes):
-            break
+        if number > 0:
+            left = leave_out_behind(field, place, count, pose, wall_variance, lanes)
+            if left == used:
+                break
+            used, variance = left, _beam_variance(numbers[0], place, left)
         _take_back(belief)
         for row in range(3):
             covariance[row, row] += _STILL[row]
         rounds = match_in(
             field, place, count, before, covariance, scales, variance, pose, work, lanes
         )
-    share = 1.0
     if rounds > 0:
         share = believe_less(belief, field, place, lanes, count, scales[-1], variance)
     note_correction(belief, before)
@@ -215,8 +217,7 @@ def _note_map_errors(
 
     It told but a ``share`` of what it seemed to, as of :func:`believe_less`.
     """
-    spread, told = np.empty((3, 3)), np.empty(4)
-    apart = belief.walls_apart
+    spread, told, apart = np.empty((3, 3)), np.empty(4), belief.walls_apart
     wall_variance = wall_variance_of(belief, place)
     unlearned = of_cell(place) * _LEAST_BEAMS / (_LEAST_BEAMS + belief.wall_offset[1])
     if not map_spread(
@@ -266,8 +267,7 @@ def judge_ends(
     One that hardly fits moves nothing, while the pose is not unsure.
     """
     belief, known = beliefs[0], numbers[0]
-    pose, fit = belief.pose, belief.fit
-    counts = belief.counts
+    pose, fit, counts = belief.pose, belief.fit, belief.counts
     stride = min(int(_STRIDE), max(1, count // int(_LEAST_JUDGED)))
     judge(field, place, ends, count, pose, mount, stride, counts, lanes)
     looked_at = max(counts[LOOKED_AT], 1.0)

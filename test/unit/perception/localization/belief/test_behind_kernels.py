@@ -97,34 +97,75 @@ def test_all_of_a_scan_corrects_a_place_that_is_off_by_the_wheels(heading: float
     assert beliefs[0]["pose"][:2].tolist() == pytest.approx([pose.x, pose.y], abs=0.01)
 
 
+def middle_of_passage(angles: Floats) -> tuple[Floats, Floats]:
+    """Return ends, [n, 4], and lanes of beams of a robot 1 m before the mirror.
+
+    The passage goes on ahead of it, where beams end 1 m off as well: nothing is behind.
+    """
+    along, across = np.cos(angles), np.sin(angles)
+    lengths = 1.0 / np.maximum(np.abs(along), np.abs(across))
+    ends = np.column_stack((lengths * along, lengths * across, along, across))
+    return ends, np.vstack((ends[:, :2].T, np.zeros(len(angles))))
+
+
+AT = np.array([1.0, 0.5 * WIDTH, 0.0])
+"""The pose of :func:`middle_of_passage`."""
+ALL_AROUND = np.arange(BEAMS) * 2.0 * math.pi / BEAMS
+MIRROR = np.arange(170, 191)
+"""Beams of these to the end of the passage."""
+
+
+def left_of(lanes: Floats) -> int:
+    return leave_out_behind(FIELD.values, FIELD.place, lanes.shape[1], AT, IN_CELL, lanes)
+
+
 def test_beams_that_end_behind_a_surface_are_left_out_with_those_beside_them() -> None:
-    pose = np.array([1.0, 0.5 * WIDTH, 0.0])
-    angles = np.arange(BEAMS) * 2.0 * math.pi / BEAMS
-    lengths = 1.0 / np.maximum(np.abs(np.cos(angles)), np.abs(np.sin(angles)))
-    lanes = np.empty((BEHIND_LANES, BEAMS))
-    lanes[0], lanes[1] = lengths * np.cos(angles), lengths * np.sin(angles)
-    lanes[0, angles == 0.0] = 1.0  # the passage goes on there: nothing is behind
-    behind = np.arange(170, 191)
-    lanes[0, behind] -= np.where(behind % 2, 0.2, 0.0)
+    _, lanes = middle_of_passage(ALL_AROUND)
+    lanes[0, MIRROR] -= np.where(MIRROR % 2, 0.2, 0.0)
     kept = lanes.copy()
-    assert leave_out_behind(FIELD.values, FIELD.place, BEAMS, pose, IN_CELL, lanes)
+    left = left_of(lanes)
     is_out = lanes[0] == OFF_MAP
-    assert is_out[behind].all()
+    assert left == np.sum(~is_out)
+    assert is_out[MIRROR].all()
     assert not is_out[np.r_[:150, 211:360]].any()
     assert lanes[:2, ~is_out].tolist() == kept[:2, ~is_out].tolist()
 
 
+def test_what_is_left_out_gets_a_margin_when_it_is_looked_at_again() -> None:
+    _, lanes = middle_of_passage(ALL_AROUND)
+    lanes[0, MIRROR] -= 0.2
+    left_of(lanes)
+    first = np.flatnonzero(lanes[0] == OFF_MAP)
+    assert left_of(lanes) == BEAMS - len(first) - 16
+    again = np.flatnonzero(lanes[0] == OFF_MAP)
+    assert again.tolist() == list(range(first[0] - 8, first[-1] + 9))
+
+
+def test_a_scan_of_which_few_beams_are_left_tells_as_much_as_these_few() -> None:
+    few = np.linspace(0.3 * math.pi, 0.7 * math.pi, 20)
+    # Four beams to either side of those behind the mirror are left out with them.
+    aside = np.linspace(0.26 * math.pi, 0.29 * math.pi, 4)
+    many = np.r_[few, math.pi - aside, np.linspace(0.9 * math.pi, 1.1 * math.pi, 80), aside]
+    covariances = []
+    for angles in (few, many):
+        beliefs = unknown_belief()
+        beliefs[0]["pose"][:] = AT
+        unsure(beliefs, 0.02)
+        ends, _ = middle_of_passage(angles)
+        ends[24:104, 0] -= 0.2
+        match(beliefs, FIELD, ends)
+        covariances.append(beliefs[0]["covariance"].ravel().tolist())
+    assert covariances[1] == pytest.approx(covariances[0], rel=1e-6, abs=1e-12)
+
+
 def test_walls_that_are_off_by_less_than_is_usual_are_kept() -> None:
-    pose = np.array([1.0, 0.5 * WIDTH, 0.0])
-    angles = np.linspace(2.5, 3.8, 60)
-    lanes = np.empty((BEHIND_LANES, 60))
-    lanes[0], lanes[1] = -1.03, -1.03 * np.tan(angles)
-    assert not leave_out_behind(FIELD.values, FIELD.place, 60, pose, IN_CELL, lanes)
+    _, lanes = middle_of_passage(np.linspace(2.5, 3.8, 60))
+    lanes[:2] *= 1.03
+    assert left_of(lanes) == 60
 
 
 def test_what_ends_off_the_map_is_behind_its_edge() -> None:
-    pose = np.array([1.0, 0.5 * WIDTH, 0.0])
-    lanes = np.zeros((BEHIND_LANES, 60))
+    _, lanes = middle_of_passage(np.linspace(2.5, 3.8, 60))
     lanes[0] = -1.0 - 2.0 * WALL
-    assert leave_out_behind(FIELD.values, FIELD.place, 60, pose, IN_CELL, lanes)
+    assert left_of(lanes) == 0
     assert (lanes[0] == OFF_MAP).all()
