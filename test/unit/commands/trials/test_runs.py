@@ -309,4 +309,4 @@ def test_low_things_of_the_cottage_are_felt_kept_and_offered_and_zones_spare_the
     zones = tuple(box.bounds for box in boxes)
     second = run_trial(Trial(home="cottage", seed=1, no_go=zones))
     assert second.figures.is_completed
-    assert second.figures.hits <= 0.3 * first.figures.hits
+    assert second.figures.hits <= 0.4 * first.figures.hits
