@@ -141,8 +141,9 @@ class Commands:
     def _refusal(self, what: str) -> CommandRefusedError:
         """Return the refusal of what is not possible in the present phase."""
         phase, message = self._transitions.state.phase, self._transitions.message
+        state = "held by the emergency stop" if phase is Phase.EMERGENCY else phase.value
         return CommandRefusedError(
-            f"cannot {what} now: the robot is {phase.value}" + (f" ({message})" if message else "")
+            f"cannot {what} now: the robot is {state}" + (f" ({message})" if message else "")
         )
 
     def _require_start(self, event: Event, senses: Senses) -> None:
