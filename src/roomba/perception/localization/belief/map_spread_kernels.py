@@ -45,7 +45,7 @@ APART_WALLS: Final = 3
 def wall_variance_of(belief: Row, place: Place) -> float:
     """Return the variance of where a wall is against the map's, m2."""
     apart = belief.walls_apart
-    # A wall lies anywhere in its cell, whatever the few walls in sight say.
+    # A wall lies anywhere in its cell: that few walls in sight agree tells nothing of the others.
     variance: float = max(apart[0] / max(apart[1], _LEAST_WALLS), of_cell(place))
     return variance
 
