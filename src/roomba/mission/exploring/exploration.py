@@ -77,6 +77,7 @@ class Exploration:
         self.is_as_near_as_it_gets = False
         """Whether it touched something by the viewpoint that it is on its way to."""
         self.times_stuck = 0
+        self.times_shut_in = 0
         self.looked_again = False
         """Whether what stands in the way was looked for anew before the end."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Final
 
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.driving.drives import Drives
@@ -12,6 +13,9 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
+
+_MOST_SHUT_IN: Final = 3
+"""Times that it forgets what shuts it in, before it takes what it knows for all."""
 
 
 def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: int) -> PhaseStep:
@@ -27,12 +31,27 @@ def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: 
     points = exploration.next_path(senses.pose, drives.context, obstacles)
     if points is None:
         # It may have given up before it tried all.
-        is_done = exploration.times_given_up == given_up and not forget_obstacles_once(
-            exploration, drives
-        )
-        return PhaseStep(event=Event.FINISHED if is_done else None)
+        if (
+            exploration.times_given_up > given_up
+            or forget_obstacles_once(exploration, drives)
+            or _forgets_what_shuts_in(exploration, drives, senses)
+        ):
+            return PhaseStep()
+        return PhaseStep(event=Event.FINISHED)
     drives.begin(points, senses)
     return replace(look_on(exploration, drives, senses, limit, most_stuck), message="")
+
+
+def _forgets_what_shuts_in(exploration: Exploration, drives: Drives, senses: Senses) -> bool:
+    """Forget all that was felt if it shuts the robot in, which then has not seen all; tell whether.
+
+    It came in there: what a wide touch may have been is narrower in truth.
+    """
+    if exploration.times_shut_in >= _MOST_SHUT_IN or drives.may_go_home(senses):
+        return False
+    exploration.times_shut_in += 1
+    drives.obstacles.forget()
+    return True
 
 
 def forget_obstacles_once(exploration: Exploration, drives: Drives) -> bool:

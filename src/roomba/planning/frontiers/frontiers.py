@@ -71,7 +71,7 @@ def frontiers(
     if not frame.contains(*here):
         raise ValueError(f"expected a place on the map, got ({here[0]:.2f}, {here[1]:.2f})")
     ways = np.empty(frame.shape)
-    ways_from(fits, *frame.cell_of(*here), ways)
+    ways_from(fits, *_nearest_that_fits(fits, *frame.cell_of(*here)), ways)
     costs = ways + np.where(roomy, 0.0, choice.tight_cost / frame.resolution)
     labels = np.empty(frame.shape, np.int32)
     count = _numbered_frontiers(occupancy, choice.least_unknown, labels)
@@ -95,6 +95,18 @@ def frontiers(
         length, way = (last - first) * frame.resolution, float(ways[row, column]) * frame.resolution
         found.append(Frontier((x, y), frame.centre_of(row, column), way, length))
     return sorted(found, key=lambda frontier: _cost(frontier, choice))
+
+
+def _nearest_that_fits(fits: NDArray[np.bool_], row: int, column: int) -> tuple[int, int]:
+    """Return the cell from which ways begin: of a robot that touches something not always its own.
+
+    It is its own where none fits at all.
+    """
+    if fits[row, column] or not fits.any():
+        return row, column
+    cells = np.argwhere(fits)
+    nearest = cells[np.argmin(np.hypot(cells[:, 0] - row, cells[:, 1] - column))]
+    return int(nearest[0]), int(nearest[1])
 
 
 def is_frontier(occupancy: OccupancyMap, point: Point, radius: float, least: int) -> bool:

@@ -2,28 +2,55 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from fixtures.homes.obstacles import Standing
-from fixtures.robots.missions import TWO_ROOMS
+from fixtures.robots.missions import DOOR, TWO_ROOMS, WALL_X
 
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.mission.driving.drives import Drives
+from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
-from roomba.mission.phases.exploring import look_on
+from roomba.mission.phases.exploring import explore, look_on
+from roomba.mission.phases.job import Job
+from roomba.mission.phases.machine import Event
+from roomba.mission.phases.step import PhaseStep
+from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.swept.dirt_map import DirtMap
+from roomba.perception.things.layer import ThingLayer
 from roomba.planning.frontiers.frontiers import Frontier
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
 SITE = PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
+DRIVING = CONFIG.driving
+SEEN = ThingLayer(SurfaceField.of(TWO_ROOMS.map))
 IN_THE_DEN = Senses(0.0, Pose(3.0, 1.2, 0.0))
 SPEED = 0.3
+
+
+def test_shut_in_by_what_it_touched_it_forgets_that_before_it_takes_all_for_seen() -> None:
+    drives = Drives(SITE, ROBOT, CONFIG.driving, Obstacles(SEEN, ROBOT.walk, ROBOT.body, DRIVING))
+    job = Job(DirtMap(TWO_ROOMS.map), CONFIG, 100.0, IN_THE_DEN)
+    job.exploration = Exploration(CONFIG.exploring)
+    # Glass in the doorway, as it seems: neither the map nor the lidar shows it.
+    for y in np.arange(DOOR[0], DOOR[1], 0.1).tolist():
+        beside = Pose(WALL_X + 0.2, y, math.pi)
+        drives.obstacles.feel(replace(IN_THE_DEN, pose=beside, bumper_left=True, bumper_right=True))
+    assert not drives.may_go_home(IN_THE_DEN)
+    steps = [explore(job, drives, IN_THE_DEN, SPEED, 3)]
+    while steps[-1] == PhaseStep():
+        steps.append(explore(job, drives, IN_THE_DEN, SPEED, 3))
+        assert len(steps) < 10
+    assert steps[-1].event is Event.FINISHED
+    assert drives.may_go_home(IN_THE_DEN)
 
 
 @pytest.mark.parametrize("way", [0.05, 0.5])

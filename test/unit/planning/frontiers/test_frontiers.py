@@ -66,6 +66,13 @@ def test_in_a_closed_room_there_is_none() -> None:
     assert found_in(room(gaps=())) == []
 
 
+def test_one_is_found_from_where_the_body_does_not_fit() -> None:
+    # It touches the walls of a corner: two cells farther off it fits.
+    assert [each.middle for each in found_in(room(), (0.03, 0.03))] == [
+        each.middle for each in found_in(room())
+    ]
+
+
 def test_a_doorway_to_the_unknown_is_one() -> None:
     made = room()
     (frontier,) = found_in(made)
