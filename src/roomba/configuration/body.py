@@ -66,6 +66,12 @@ class BodyConfig(Frozen):
         """Radius of the body's disc, m."""
         return self.diameter / 2.0
 
+    def pressed(self, left: bool, right: bool) -> tuple[float, float]:
+        """Return between which bearings of the rim something presses halves of the bumper, rad."""
+        if left and right:
+            return min(self.bumper_middle), max(self.bumper_middle)
+        return (0.0, math.pi / 2.0) if left else (-math.pi / 2.0, 0.0)
+
     def docked_at(self, station: Pose) -> Pose:
         """Return the pose of the robot for that of its station, which looks into the station.
 

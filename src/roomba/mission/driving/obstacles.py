@@ -102,19 +102,22 @@ class Obstacles:
         self._touched.append((here.x, here.y))
         places = self._felt.places(here, *senses.touches)
         is_unseen = senses.knowledge is Knowledge.KNOWN and not self._is_any_seen(places)
+        known_or_new = self._lasting if is_again else self._felt
+        self.felt_version += 1
         if senses.cliff:
-            where = self._edges
+            self._edges.felt(senses.now, here, *senses.touches)
+        elif is_unseen and (walls := self._bearings_of_walls(senses)):
+            # What it met aside, where a gap is narrow: nothing stands before it.
+            known_or_new.felt_at(senses.now, here, walls)
         elif is_unseen:
-            where = self._unseen
+            self._unseen.felt(senses.now, here, *senses.touches)
             # The touch was somewhere along that half of the front.
             x, y = np.mean(places, axis=0).tolist()
             self.low = self.low.felt_at(x, y, self._low_config)
         else:
-            where = self._lasting if is_again else self._felt
-        where.felt(senses.now, here, *senses.touches)
-        # A wall that it drove against, being late, is on the map.
-        self._felt.drop(self.seen.is_mapped)
-        self.felt_version += 1
+            known_or_new.felt(senses.now, here, *senses.touches)
+            # A wall that it drove against, being late, is on the map.
+            self._felt.drop(self.seen.is_mapped)
 
     def forget_felt_at(self, senses: Senses) -> None:
         """Forget what was felt where the robot itself stands: it cannot be there."""
@@ -176,6 +179,11 @@ class Obstacles:
             for x, y, radius in self.seen.obstacles()
             for place in places
         )
+
+    def _bearings_of_walls(self, senses: Senses) -> list[float]:
+        """Return where on the pressed part of the rim the map shows a surface, rad from ahead."""
+        rim = self._felt.rim(senses.pose, *senses.touches)
+        return [angle for angle, x, y in rim if self.seen.is_mapped(x, y)]
 
     def _all_felt(self, now: float) -> list[RoundObstacle]:
         return self._felt.at(now) + self._lasting.at(now) + self._unseen.at(now)

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Iterable
+from typing import Final, NamedTuple
+
+import numpy as np
 
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import WalkConfig
 from roomba.geometry import Pose, RoundObstacle
+
+_STEP: Final = 0.1
+"""rad; from one place on the rim to the next."""
 
 
 class _Touch(NamedTuple):
@@ -38,12 +43,16 @@ class UnknownThings:
         self._reach = body.radius + walk.bump_radius
         self._left, self._both = body.bumper_side, body.bumper_middle
         self._right = tuple(-angle for angle in body.bumper_side)
-        self._memory = memory
+        self._pressed, self._memory = body.pressed, memory
         self._felt: list[_Touch] = []
 
     def felt(self, now: float, pose: Pose, left: bool, right: bool) -> None:
         """Remember what is in the way of the front's halves while the body stands at ``pose``."""
-        for angle in self._angles(left, right):
+        self.felt_at(now, pose, self._angles(left, right))
+
+    def felt_at(self, now: float, pose: Pose, angles: Iterable[float]) -> None:
+        """Remember what is in the way of the rim at some bearings, rad from ahead."""
+        for angle in angles:
             self._felt.append(_Touch(now, pose.x, pose.y, pose.theta + angle))
 
     def places(self, pose: Pose, left: bool, right: bool) -> list[tuple[float, float]]:
@@ -51,6 +60,14 @@ class UnknownThings:
         return [
             _Touch(0.0, pose.x, pose.y, pose.theta + angle).beyond(self._body_radius)
             for angle in self._angles(left, right)
+        ]
+
+    def rim(self, pose: Pose, left: bool, right: bool) -> list[tuple[float, float, float]]:
+        """Return bearings all along the pressed part of the rim, and x and y there, rad and m."""
+        angles = np.arange(*self._pressed(left, right), _STEP).tolist()
+        return [
+            (angle, *_Touch(0.0, pose.x, pose.y, pose.theta + angle).beyond(self._body_radius))
+            for angle in angles
         ]
 
     def _angles(self, left: bool, right: bool) -> tuple[float, ...]:

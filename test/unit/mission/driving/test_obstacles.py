@@ -219,6 +219,20 @@ def test_the_least_of_what_is_felt_again_begins_where_the_body_touched_it() -> N
         assert math.dist((x, y), (again.x, again.y)) == pytest.approx(BODY + radius)
 
 
+@pytest.mark.parametrize("is_again", [False, True])
+def test_a_wall_that_was_met_aside_leaves_the_way_ahead_open(is_again: bool) -> None:
+    known, _ = obstacles()
+    # Along the wall x = 0, which is on its left.
+    along = Pose(BODY + 0.012, 3.0, math.pi / 2.0)
+    touched = replace(bumped(0.0, along), bumper_left=True, bumper_right=False)
+    for _ in range(1 + is_again):
+        known.feel(replace(touched, pose=along, knowledge=Knowledge.KNOWN))
+    felt = known.standing(0.0)
+    assert felt, "it keeps away from the wall by as much as its place may be off"
+    assert all(x < 0.06 for x, _, _ in felt)
+    assert known.low.all == ()
+
+
 def test_another_place_beside_a_wall_is_another_thing() -> None:
     known, _ = obstacles()
     known.feel(bumped(0.0, Pose(0.17, 3.0, math.pi)))
