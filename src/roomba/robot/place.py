@@ -15,6 +15,7 @@ from roomba.perception.calibration.lidar import CorrectedLidar, lidar_correction
 from roomba.perception.localization.estimate import Estimate
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel, PlacedScan
+from roomba.perception.slam.mapper import Mapper
 from roomba.robot.look_around import SearchDrive
 from roomba.robot.readings import Readings, ScanReading
 
@@ -78,16 +79,25 @@ class PlaceKeeper:
         self.scans = ScanSelection(robot.timing)
         self._lidars = CorrectedLidar()
         self._search = SearchDrive(robot.body, robot.looking_around)
+        self._body, self._was_touching = robot.body, False
 
     def follow(self, readings: Readings) -> ScanReading | None:
         """Take the readings of a tick; return the scan that was passed on, if there was one."""
         self.place.lift(readings.is_lifted)
         self.place.move(readings.time, readings.odometry, readings.turning)
+        self._feel(readings)
         scan = readings.scan
         if scan is None or not self.scans.selects(scan):
             return None
         self.place.see(scan.stamp, scan.ranges, self.lidar(scan.lidar))
         return self.recalibrated(scan)
+
+    def _feel(self, readings: Readings) -> None:
+        """Pass on what the bumper begins to feel, to a mapper: it may be a mirror."""
+        is_new, self._was_touching = readings.bumps and not self._was_touching, readings.bumps
+        if is_new and isinstance(self.place, Mapper):
+            left, right = readings.bumper_left, readings.bumper_right
+            self.place.feel(self._body.radius, *self._body.pressed(left, right))
 
     def lidar(self, told: LidarModel) -> LidarModel:
         """Return a lidar as it is mounted, by what the robot measured of that."""

@@ -16,6 +16,7 @@ from roomba.files.arrays import read_arrays
 from roomba.files.kept import KeptFileError, read_kept, remove_kept, write_kept
 from roomba.geometry import Pose
 from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
+from roomba.perception.slam.mirrors.mirror import KeptMirror
 from roomba.perception.slam.scan_matching.surface_kernels import POINT
 from roomba.perception.slam.submaps.pose_graph import Link
 from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe
@@ -110,6 +111,9 @@ def _arrays_of(kept: KeptMap) -> dict[str, NDArray[Any]]:
         "link_information": np.array([link.information for link in links]).reshape(-1, 3, 3),
         "link_doubts": np.array([link.may_be_wrong for link in links], np.bool_),
         "link_guesses": np.array([link.is_guessed for link in links], np.bool_),
+        "mirror_submaps": np.array([mirror.submap for mirror in state.mirrors], np.int64),
+        "mirror_planes": np.array([mirror.plane for mirror in state.mirrors]).reshape(-1, 3),
+        "mirror_reaches": np.array([mirror.reach for mirror in state.mirrors]).reshape(-1, 2),
     }
 
 
@@ -185,6 +189,7 @@ def _kept_of(fields: _Fields) -> KeptMap:
         _lidar_of(fields),
         int(fields.counts("version")),
         bool(fields.flags("is_lost")),
+        _mirrors_of(fields, len(submaps)),
     )
     return KeptMap(
         state,
@@ -239,6 +244,17 @@ def _links_of(fields: _Fields, submaps: int) -> tuple[Link, ...]:
             ends.tolist(), relatives, information, doubts, guesses, strict=True
         )
     )
+
+
+def _mirrors_of(fields: _Fields, submaps: int) -> tuple[KeptMirror, ...]:
+    if not fields.has("mirror_submaps"):
+        return ()
+    numbers = fields.counts("mirror_submaps", -1)
+    if numbers.size and numbers.max() >= submaps:
+        raise ValueError(f"expected mirrors in {submaps} submaps, got one in {numbers.max()}")
+    planes = fields.floats("mirror_planes", len(numbers), 3)
+    reaches = fields.floats("mirror_reaches", len(numbers), 2)
+    return tuple(KeptMirror(*each) for each in zip(numbers.tolist(), planes, reaches, strict=True))
 
 
 def _lidar_of(fields: _Fields) -> LidarNumbers:

@@ -9,9 +9,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from fixtures.homes.free_walls import home_with, straight_wall
 from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import IDEAL, NOISY
-from fixtures.robots.mapped import wrong_cells
+from fixtures.robots.mapped import CUPBOARD, SHELF, wrong_cells
 from fixtures.robots.missions import HOME, TWO_ROOMS
 
 from roomba.configuration.mapping import MappingConfig
@@ -49,6 +50,19 @@ def assert_explored(robot: HeadlessMission, record: ExploreRecord, home: Home) -
     assert record.result.known == pytest.approx(known, rel=0.05)
     away = np.hypot(*(record.poses[:, 1:3] - record.believed[:, 1:3]).T)
     assert away.max() < WORST
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_mirror_that_it_drove_against_is_the_end_of_the_room(seed: int) -> None:
+    mirror = straight_wall([(0.8, 3.98), (2.6, 3.98)], "mirror", 0.02)
+    home = home_with([mirror], [CUPBOARD, SHELF], Pose(0.2, 2.5, np.pi))
+    robot = HeadlessMission(home, NOISY, known=MappingConfig(), seed=seed)
+    record = robot.explore()
+    assert record.result.outcome is CleanOutcome.COMPLETED
+    assert wrong_cells(record.occupancy, home) == (0, 0)
+    assert record.result.known == pytest.approx(free_area(home), rel=0.05)
+    # It did not know the mirror before, and once it did it had no wish to get behind it.
+    assert 1 <= record.hits <= 3
 
 
 def until(robot: HeadlessMission, is_so: Callable[[], bool], seconds: float = 300.0) -> None:

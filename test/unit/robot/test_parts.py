@@ -13,6 +13,7 @@ from fixtures.homes.worlds import NOISY
 from fixtures.robots.missions import HOME
 from numpy.typing import NDArray
 
+from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.control.speed_loop import Hazards
 from roomba.geometry import Pose, Twist
@@ -22,6 +23,7 @@ from roomba.mission.inputs.senses import EmptyingTold
 from roomba.perception.localization.belief.belief import unknown_belief
 from roomba.perception.localization.estimate import Estimate, Knowledge
 from roomba.perception.matching.scan_view import LidarModel, PlacedScan
+from roomba.perception.slam.mapper import Mapper
 from roomba.robot.command import Command
 from roomba.robot.place import PlaceKeeper
 from roomba.robot.readings import CliffReading, Readings, ScanReading, senses_of
@@ -188,3 +190,25 @@ def test_what_a_body_tells_needs_no_compiled_code() -> None:
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
     )
     assert told.stdout.strip() == b"False"
+
+
+def test_a_mapper_is_told_what_the_bumper_begins_to_feel(monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[tuple[float, float, float]] = []
+    monkeypatch.setattr(Mapper, "feel", lambda _, *touch: told.append(touch))
+    mapper = Mapper(MappingConfig(), NOISY.localization, NOISY.gyro, Pose())
+    keeper, radius = PlaceKeeper(mapper, NOISY), NOISY.body.radius
+    quarter, middle = 0.5 * np.pi, max(NOISY.body.bumper_middle)
+    for time, left, right in (
+        (1, True, False),
+        (2, True, True),
+        (3, False, False),
+        (4, True, True),
+    ):
+        keeper.follow(Readings(time, Pose(), bumper_left=left, bumper_right=right))
+    assert told == [(radius, 0.0, quarter), (radius, -middle, middle)]
+    keeper.follow(Readings(5.0, Pose()))
+    keeper.follow(Readings(6.0, Pose(), bumper_right=True))
+    assert told[2:] == [(radius, -quarter, 0.0)]
+    # A localizer goes by its map.
+    PlaceKeeper(Noted(), NOISY).follow(Readings(1.0, Pose(), bumper_left=True))
+    assert len(told) == 3

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from roomba.geometry import Pose
 from roomba.perception.slam.mapper_state import MapperState
+from roomba.perception.slam.mirrors.mirror import KeptMirror
 from roomba.perception.slam.submaps.pose_graph import Link
 from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe
 from roomba.storage.mapper import (
@@ -54,6 +55,8 @@ def are_same(one: KeptMap, other: KeptMap) -> bool:
             (k.parent, k.child, k.may_be_wrong, k.relative.tobytes(), k.information.tobytes())
             for k in its.links
         ]
+        and [(m.submap, m.plane.tobytes(), m.reach.tobytes()) for m in mine.mirrors]
+        == [(m.submap, m.plane.tobytes(), m.reach.tobytes()) for m in its.mirrors]
     )
 
 
@@ -73,6 +76,13 @@ def test_it_comes_back_bit_for_bit(tmp_path: Path, station: Pose | None) -> None
     remove_mapper(path)
     remove_mapper(path)
     assert load_mapper(path, pytest.fail) is None
+
+
+@st.composite
+def mirrors(draw: st.DrawFn, submaps: int) -> KeptMirror:
+    """Any mirror in one of so many submaps."""
+    plane, reach = draw(st.tuples(NUMBERS, NUMBERS, NUMBERS)), draw(st.tuples(NUMBERS, NUMBERS))
+    return KeptMirror(draw(st.integers(0, submaps - 1)), np.array(plane), np.array(reach))
 
 
 @st.composite
@@ -105,6 +115,7 @@ def kept_maps(draw: st.DrawFn) -> KeptMap:
         LIDAR,
         draw(st.integers(0, 2**40)),
         draw(st.booleans()),
+        tuple(draw(st.lists(mirrors(len(sizes)), max_size=3))),
     )
     stations = st.none() | st.builds(Pose, NUMBERS, NUMBERS, NUMBERS)
     run = draw(st.text(st.characters(blacklist_characters="\0", blacklist_categories=["Cs"])))
@@ -192,6 +203,8 @@ def rewritten(path: Path, **changes: NDArray[Any] | None) -> None:
         ({"open": np.zeros((1, 2), np.float32)}, "open: expected float32"),
         ({"keyframe_open": np.array([1, 1])}, "keyframe_open: expected"),
         ({"link_ends": np.array([[0, 1], [0, 3]])}, "expected links between 3 submaps"),
+        ({"mirror_submaps": np.array([3])}, "expected mirrors in 3 submaps, got one in 3"),
+        ({"mirror_reaches": np.zeros((2, 2))}, "mirror_reaches: expected"),
         ({"lidar_beams": np.array(0)}, "expected a lidar with beams"),
         ({"lidar_numbers": np.array([0.0, 0.1, 3.0, 1.0])}, "reaches from near to far"),
         ({"lidar_mount": np.full(3, np.nan)}, "and a mount"),
@@ -220,12 +233,14 @@ def test_what_does_not_fit_together_is_refused(
         load_mapper(path, pytest.fail)
 
 
-def test_a_file_of_an_older_program_has_no_open_ways(tmp_path: Path) -> None:
+def test_a_file_of_an_older_program_has_no_open_ways_and_no_mirrors(tmp_path: Path) -> None:
     path = tmp_path / "robot.npz"
     save_mapper(kept_map(), path)
-    rewritten(path, keyframe_open=None, open=None)
+    gone = ("keyframe_open", "open", "mirror_submaps", "mirror_planes", "mirror_reaches")
+    rewritten(path, **dict.fromkeys(gone))
     read = load_mapper(path, pytest.fail)
     assert read is not None
+    assert read.state.mirrors == ()
     frames = [frame for submap in read.state.submaps for frame in submap.keyframes]
     assert {frame.open.shape for frame in frames} == {(0, 2)}
     assert sum(len(frame.points) for frame in frames) == 12

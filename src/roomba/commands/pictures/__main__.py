@@ -45,6 +45,7 @@ from roomba.commands.pictures.teaching.bends import picture_of_bends
 from roomba.commands.pictures.teaching.floor_plan import picture_of_floor_plan
 from roomba.commands.pictures.teaching.loop import picture_of_loop_closing
 from roomba.commands.pictures.teaching.matching import picture_of_matching
+from roomba.commands.pictures.teaching.mirror import picture_of_a_mirror
 from roomba.commands.pictures.teaching.paths import picture_of_paths
 from roomba.commands.pictures.teaching.stages import picture_of_stages
 from roomba.commands.pictures.teaching.things import picture_of_things
@@ -89,6 +90,7 @@ PICTURES: dict[str, tuple[str, Callable[[Home], Picture]]] = {
     "layers": ("empty", picture_of_layers),
     "floor_plan": ("flat", picture_of_floor_plan),
     "matching": ("studio", picture_of_matching),
+    "mirror": ("loft", picture_of_a_mirror),
     "belief": ("flat", picture_of_belief),
     "things": ("studio", picture_of_things),
     "stages": ("studio", picture_of_stages),

@@ -26,6 +26,8 @@ from roomba.perception.slam.following.scan_follower import ScanFollower
 from roomba.perception.slam.following.scan_kernels import Following
 from roomba.perception.slam.mapper_estimate import estimate_at, lost_estimate
 from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
+from roomba.perception.slam.mirrors.mirrors import PlacedPoints
+from roomba.perception.slam.mirrors.search import Touch
 from roomba.perception.slam.submap_map import SubmapMap
 from roomba.perception.slam.submaps.heading_drift import HeadingDrift
 from roomba.perception.slam.submaps.parts import Carried
@@ -179,6 +181,18 @@ class Mapper:
         show where on the map it is.
         """
         self._relocation.lift(is_lifted)
+
+    def feel(self, radius: float, first: float, last: float) -> None:
+        """Take a touch of the robot's round body, of ``radius``, m.
+
+        ``first`` and ``last``, rad, robot's frame, are the bearings between which its rim was
+        pressed. If that was a mirror, as what was seen says, the map ends there.
+        """
+        if self.version and self._relocation.is_placed and not self._is_elsewhere:
+            here = self.pose
+            turned = here.theta + first, here.theta + last
+            newest = PlacedPoints(self._follower.points, self.at_scan.as_array())
+            self._map.feel(Touch(here.x, here.y, radius, *turned), newest)
 
     def set_down(self) -> None:
         """Go on where it was set down, wherever that is: the map goes on in a piece of its own.

@@ -9,6 +9,7 @@ import numpy as np
 from roomba.arrays import Floats
 from roomba.geometry import Pose
 from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.slam.mirrors.mirror import KeptMirror
 from roomba.perception.slam.submaps.pose_graph import Link
 from roomba.perception.slam.submaps.submap import KeptSubmap
 
@@ -51,7 +52,7 @@ class MapperState:
     ``poses``, float64 [n, 3], are those of the ``submaps`` on the map, as the ``links`` have them;
     the newest is the last. ``way`` was driven in all, m. Walls lie ``phase``, m, off whole cells.
     ``version`` is that of the :class:`roomba.perception.slam.mapper.Mapper`. A robot that was
-    carried ``is_lost``.
+    carried ``is_lost``. ``mirrors`` are in the frames of submaps.
     """
 
     submaps: tuple[KeptSubmap, ...]
@@ -62,3 +63,4 @@ class MapperState:
     lidar: LidarNumbers
     version: int
     is_lost: bool = False
+    mirrors: tuple[KeptMirror, ...] = ()

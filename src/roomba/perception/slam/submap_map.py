@@ -15,6 +15,8 @@ from roomba.perception.slam.drawing.open_ways import open_ways
 from roomba.perception.slam.drawing.submap_drawing import SubmapDrawing
 from roomba.perception.slam.finishing.finish import finish
 from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
+from roomba.perception.slam.mirrors.mirrors import Mirrors, PlacedPoints
+from roomba.perception.slam.mirrors.search import Touch
 from roomba.perception.slam.scan_matching.surfels import SurfelGrid
 from roomba.perception.slam.submaps.parts import Carried
 from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe, moved
@@ -22,7 +24,7 @@ from roomba.perception.slam.submaps.submap_graph import SubmapGraph
 
 
 class SubmapMap:
-    """Submaps in their ``graph``, and how they are ``drawn``.
+    """Submaps in their ``graph``, the ``mirrors`` among them, and how all is ``drawn``.
 
     Scans are matched to ``surfels``, frame of the newest submap: those of it and of the submaps
     ``beside`` it, by their numbers. ``version`` changes whenever the map does. The lidar must be
@@ -35,7 +37,8 @@ class SubmapMap:
         """Begin with an empty submap at ``start``, float64 [3], map frame."""
         self._config = config
         self.graph = SubmapGraph(config, localization, start)
-        self.drawn = SubmapDrawing(config, self.graph)
+        self.mirrors = Mirrors(self.graph)
+        self.drawn = SubmapDrawing(config, self.graph, self.mirrors)
         self.surfels = SurfelGrid(0.0)
         self.beside: list[int] = []
         self.version = 0
@@ -46,6 +49,7 @@ class SubmapMap:
         It is whole once the lidar is told, and all is drawn anew: :meth:`use`, :meth:`redraw`.
         """
         self.graph.take_over(state.submaps, state.poses, state.links)
+        self.mirrors.take_over(state.mirrors)
         self.drawn.phase, self.version = state.phase, state.version
         self.beside = self.graph.near(here)
 
@@ -62,6 +66,7 @@ class SubmapMap:
             lidar,
             self.version,
             is_lost,
+            self.mirrors.kept,
         )
 
     def use(self, lidar: LidarBeams) -> None:
@@ -82,10 +87,19 @@ class SubmapMap:
         config = self._config.open_ways
         ways = open_ways(ranges, self._lidar, config.farthest, config.margin)
         frame = Keyframe(points.astype(np.float32), here, ways)
+        self._leave_mirrors_behind(frame)
         self.graph.newest.keyframes.append(frame)
         self.surfels.add(points, frame.pose)
         self.drawn.add(frame)
         self.version += 1
+
+    def feel(self, touch: Touch, newest: PlacedPoints) -> None:
+        """Take a touch of the robot's body, map frame: of a mirror, if what was seen says so.
+
+        ``newest`` is the scan before it.
+        """
+        if self.mirrors.feel(touch, newest, self._lidar.mount, self.drawn.occupancy()):
+            self.version += 1
 
     def is_newest_whole(self, here: Floats) -> bool:
         """Whether a keyframe at ``here`` [3], newest submap's frame, belongs to another submap."""
@@ -95,6 +109,7 @@ class SubmapMap:
     def begin(self, here: Floats, way: float, range_noise: float) -> None:
         """Begin a submap at ``here`` [3], newest one's frame, after ``way``, m, in all."""
         self.close(range_noise)
+        self._look_at_mirrors()
         self.graph.begin(here, way)
         self._enter_newest([self._newest - 1])
 
@@ -135,6 +150,7 @@ class SubmapMap:
     def finish(self, range_noise: float) -> None:
         """Bring all that was kept to agree, and draw it anew with walls along the axes."""
         self.close(range_noise)
+        self._look_at_mirrors()
         self.drawn.phase = finish(self.graph, self._config)
         self.redraw()
 
@@ -150,6 +166,19 @@ class SubmapMap:
         """
         frames = self.graph.keyframes_beside([*self.beside, self._newest])
         return [moved(frame.points, pose) for frame, pose in frames]
+
+    def _look_at_mirrors(self) -> None:
+        """Let the newest submap, which is closed, tell how far mirrors go."""
+        if len(self.mirrors) and self.graph.newest.keyframes:
+            mount, occupancy = self._lidar.mount, self.drawn.occupancy()
+            self.version += self.mirrors.see(self._newest, mount, occupancy)
+
+    def _leave_mirrors_behind(self, frame: Keyframe) -> None:
+        """Forget mirrors that the robot drove through since the last keyframe of its submap."""
+        if len(self.mirrors) and self.graph.newest.keyframes:
+            last = self.graph.placed(self.graph.newest.keyframes[-1].pose)
+            here = self.graph.placed(frame.pose)
+            self.version += self.mirrors.pass_through(last[:2], here[:2])
 
     @property
     def _newest(self) -> int:

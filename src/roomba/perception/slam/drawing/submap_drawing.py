@@ -11,6 +11,8 @@ from roomba.configuration.mapping import MappingConfig
 from roomba.grid import OccupancyMap
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.slam.drawing.occupancy_counts import OccupancyCounts
+from roomba.perception.slam.mirrors.cutting import Points, cut_at
+from roomba.perception.slam.mirrors.mirrors import Mirrors
 from roomba.perception.slam.submaps.pose_graph import relative_to
 from roomba.perception.slam.submaps.submap import Keyframe
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
@@ -22,16 +24,17 @@ _REDRAWN_TURN: Final = 0.002
 class SubmapDrawing:
     """Occupancy counts of all keyframes, each drawn where its submap lay then, map frame.
 
+    Beams that pass a mirror are drawn as ending on it.
     ``phase``, x and y, m, is where walls lie between the cells of the grid. The lidar must be told
     before anything is drawn: see :meth:`use`.
     """
 
-    def __init__(self, config: MappingConfig, graph: SubmapGraph) -> None:
+    def __init__(self, config: MappingConfig, graph: SubmapGraph, mirrors: Mirrors) -> None:
         """Begin with nothing drawn of a graph."""
-        self._config, self._graph = config, graph
+        self._config, self._graph, self._mirrors = config, graph, mirrors
         self.phase = (0.0, 0.0)
         self._counts = OccupancyCounts(config.resolution)
-        self._drawn = graph.poses.copy()
+        self._drawn, self._drawn_mirrors = graph.poses.copy(), mirrors.ends
 
     def use(self, lidar: LidarBeams) -> None:
         """Draw the scans of a lidar."""
@@ -52,6 +55,8 @@ class SubmapDrawing:
 
     def occupancy(self) -> OccupancyMap:
         """Return the map as the graph has it now; raises ValueError before the first keyframe."""
+        if self._have_mirrors_changed():
+            self.redraw()
         self._redraw_moved()
         return self._counts.occupancy(
             self._config.occupied_share, self._config.occupied_beams, self._config.least_floor
@@ -60,12 +65,29 @@ class SubmapDrawing:
     def redraw(self) -> None:
         """Draw all keyframes into new occupancy counts, where they are thought to be now."""
         self._counts = OccupancyCounts(self._config.resolution, self.phase)
+        self._drawn_mirrors = self._mirrors.ends
         for frame, pose in self._graph.keyframes():
             self._draw(frame, pose)
         self._drawn = self._graph.poses.copy()
 
     def _draw(self, frame: Keyframe, pose: Floats) -> None:
-        self._counts.draw(frame.points, self._mount, pose, frame.open)
+        points, ways = self._cut(frame, pose)
+        self._counts.draw(points, self._mount, pose, ways)
+
+    def _erase(self, frame: Keyframe, pose: Floats) -> None:
+        points, ways = self._cut(frame, pose)
+        self._counts.erase(points, self._mount, pose, ways)
+
+    def _cut(self, frame: Keyframe, pose: Floats) -> tuple[Points, Points]:
+        """Return the points of a keyframe and its open ways, with nothing behind mirrors."""
+        return cut_at(self._drawn_mirrors, pose, self._mount, frame.points, frame.open)
+
+    def _have_mirrors_changed(self) -> bool:
+        """Whether there are other mirrors than are drawn, or they lie elsewhere."""
+        now, drawn = self._mirrors.ends, self._drawn_mirrors
+        if now.shape != drawn.shape:
+            return True
+        return bool((np.abs(now - drawn) > self._config.redrawn_shift).any())
 
     def _moved(self) -> list[int]:
         """Return the numbers of the submaps that lie elsewhere than they are drawn."""
@@ -83,6 +105,6 @@ class SubmapDrawing:
             submap, pose = self._graph.submaps[number], self._graph.poses[number]
             before, after = submap.poses(self._drawn[number]), submap.poses(pose)
             for frame, there, here in zip(submap.keyframes, before, after, strict=True):
-                self._counts.erase(frame.points, self._mount, there, frame.open)
+                self._erase(frame, there)
                 self._draw(frame, here)
             self._drawn[number] = pose

@@ -1,0 +1,1 @@
+"""Mirrors found while a map is made, by a touch and by what they show."""

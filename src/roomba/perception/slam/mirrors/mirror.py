@@ -1,0 +1,127 @@
+"""A mirror on the map: its plane, and how far it reaches to both sides."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.arrays import Floats
+from roomba.perception.slam.mirrors.images import Beams, MappedFloor, Plane, images, places_of_ends
+
+_BIN: Final = 0.05
+"""m along a mirror in which beams are counted together."""
+_BINS: Final = 61
+"""Bins to either side of where it was touched: 3 m."""
+_GAP: Final = 3
+"""Bins without a beam over which a mirror goes on,"""
+_TO_SURFACE: Final = 6
+"""and over which it goes on to a surface that is seen: no robot fits through there."""
+_LEAST: Final = 3
+"""Images that fit in a bin and those beside it, for the mirror to be there."""
+_TOUCHED: Final = 1
+"""Bins to either side of the touched one that are mirror in any case: more than a point is."""
+
+
+@dataclass(slots=True, eq=False)
+class Mirror:
+    """A mirror in the frame of a submap, with whose keyframes it moves.
+
+    ``plane`` is that of the mirror, its middle where it was touched; ``right`` and ``left``, m, are
+    how far it reaches from there. ``fits`` and ``contradicts`` count beams by where they passed,
+    ``met`` those that met something beside it on its plane.
+    """
+
+    submap: int
+    plane: Plane
+    right: float
+    left: float
+    fits: NDArray[np.int64]
+    contradicts: NDArray[np.int64]
+    met: NDArray[np.int64]
+
+    @staticmethod
+    def touched(submap: int, plane: Plane) -> Mirror:
+        """Return one of which no more is known than that it was touched."""
+        counts = np.zeros((3, 2 * _BINS + 1), np.int64)
+        reach = (_TOUCHED + 0.5) * _BIN
+        return Mirror(submap, plane, reach, reach, *counts)
+
+    @staticmethod
+    def of(kept: KeptMirror) -> Mirror:
+        """Return one that was kept; what beams showed of it is counted anew."""
+        mirror = Mirror.touched(kept.submap, Plane(*kept.plane.tolist()))
+        mirror.right, mirror.left = kept.reach.tolist()
+        return mirror
+
+    @property
+    def kept(self) -> KeptMirror:
+        """What must be remembered of it."""
+        return KeptMirror(self.submap, np.array(self.plane), np.array([self.right, self.left]))
+
+    def ends(self, pose: Floats) -> Floats:
+        """Return its right and left end, float64 [2, 2], m, its submap being at ``pose`` [3]."""
+        plane = placed(self.plane, pose)
+        return plane.middle + np.outer((-self.right, self.left), plane.along)
+
+    def widen(self, beams: Beams, floor: MappedFloor, pose: Floats) -> bool:
+        """Count what beams show of it, its submap being at ``pose``; tell whether it is wider."""
+        plane = placed(self.plane, pose)
+        seen = images(beams, plane, floor)
+        _count(self.fits, seen.places[seen.informs & seen.fits])
+        _count(self.contradicts, seen.places[seen.informs & seen.contradicts])
+        _count(self.met, places_of_ends(beams, plane))
+        before = self.right, self.left
+        self.right = max(self.right, self._reach(-1))
+        self.left = max(self.left, self._reach(1))
+        return (self.right, self.left) != before
+
+    def _reach(self, step: int) -> float:
+        """Return how far images fit to one side of the touched point, m, or to a surface there."""
+        fits, contradicts = _with_beside(self.fits), _with_beside(self.contradicts)
+        last = 0
+        for at in range(1, _BINS + 1):
+            fitting, against = fits[_BINS + step * at], contradicts[_BINS + step * at]
+            if against > fitting or at - last > _TO_SURFACE:
+                break
+            if fitting >= _LEAST and at - last <= _GAP:
+                last = at
+            elif self.met[_BINS + step * at] >= _LEAST:
+                last = at
+                break
+        return (last + 0.5) * _BIN
+
+
+class KeptMirror(NamedTuple):
+    """A mirror as it is remembered: ``plane`` float64 [3], ``reach`` float64 [2], right and left,
+    m, in the frame of a submap, by its number.
+    """
+
+    submap: int
+    plane: Floats
+    reach: Floats
+
+
+def placed(plane: Plane, pose: Floats) -> Plane:
+    """Return a plane of a frame that lies at ``pose``, float64 [3]."""
+    cosine, sine = math.cos(pose[2]), math.sin(pose[2])
+    return Plane(
+        float(pose[0]) + cosine * plane.x - sine * plane.y,
+        float(pose[1]) + sine * plane.x + cosine * plane.y,
+        float(pose[2]) + plane.facing,
+    )
+
+
+def _count(counts: NDArray[np.int64], places: Floats) -> None:
+    """Count beams by where along a mirror, m, they pass or end."""
+    bins = np.floor(places / _BIN + 0.5).astype(np.int64) + _BINS
+    bins = bins[(bins >= 0) & (bins < len(counts))]
+    counts += np.bincount(bins, minlength=len(counts))
+
+
+def _with_beside(counts: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the sum of each bin and its two neighbours."""
+    return np.convolve(counts, np.ones(3, np.int64), mode="same")

@@ -1,0 +1,163 @@
+"""The mirrors of a map that is being made.
+
+A lidar takes what a mirror shows for a room behind it. A robot finds out by driving against it:
+something was touched that beams pass. If what they show behind it is the image of what is before
+it, it is a mirror, and goes as far to both sides as that holds (compare Yang and Wang, "On solving
+mirror reflection in LIDAR sensing", IEEE/ASME T-Mech 2011, who look for mirrors in gaps of walls).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.arrays import Floats
+from roomba.grid import OccupancyMap
+from roomba.perception.slam.mirrors.images import Beams, MappedFloor, Plane
+from roomba.perception.slam.mirrors.mirror import KeptMirror, Mirror, placed
+from roomba.perception.slam.mirrors.search import Touch, touched_mirror
+from roomba.perception.slam.submaps.pose_graph import composed, inverse
+from roomba.perception.slam.submaps.submap import moved
+from roomba.perception.slam.submaps.submap_graph import SubmapGraph
+
+_NEAR: Final = 6.0
+"""m; keyframes from nearer to a touch tell what was touched."""
+_MOST: Final = 400
+"""Keyframes that are looked at then."""
+_SAME_TURN: Final = 0.1
+_SAME_PLACE: Final = 0.08
+_SAME_GAP: Final = 0.3
+"""rad, m, m; mirrors that lie so alike, so near to one plane and to each other, are one."""
+
+
+class PlacedPoints(NamedTuple):
+    """What a scan met: ``points`` [n, 4], robot's frame, of a robot at ``pose`` [3], map frame."""
+
+    points: NDArray[np.float32] | Floats
+    pose: Floats
+
+
+class Mirrors:
+    """Mirrors in the frames of the graph's submaps."""
+
+    def __init__(self, graph: SubmapGraph) -> None:
+        """Begin with none."""
+        self._graph = graph
+        self._mirrors: list[Mirror] = []
+
+    def take_over(self, kept: Iterable[KeptMirror]) -> None:
+        """Go on with those that another process had found."""
+        self._mirrors = [Mirror.of(each) for each in kept]
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self._mirrors)
+
+    @property
+    def kept(self) -> tuple[KeptMirror, ...]:
+        """What must be remembered of them."""
+        return tuple(mirror.kept for mirror in self._mirrors)
+
+    @property
+    def ends(self) -> Floats:
+        """Their ends where the graph has them, float64 [n, 2, 2], m, map frame."""
+        poses = self._graph.poses
+        return np.array([mirror.ends(poses[mirror.submap]) for mirror in self._mirrors]).reshape(
+            -1, 2, 2
+        )
+
+    def feel(
+        self, touch: Touch, newest: PlacedPoints, mount: Floats, occupancy: OccupancyMap
+    ) -> bool:
+        """Find out whether a mirror was touched; tell whether there is more of one now.
+
+        ``newest`` is the scan before the touch, which need not be kept; ``mount``, x and y, m, is
+        that of the lidar; ``occupancy`` the map as it is known.
+        """
+        beams = _beams_of([*self._scans_near(touch.x, touch.y), newest], mount)
+        floor = MappedFloor.of(occupancy)
+        plane = touched_mirror(beams, floor, touch)
+        if plane is None:
+            return False
+        mirror = self._mirror_at(plane)
+        pose = self._graph.poses[mirror.submap]
+        mirror.widen(beams, floor, pose)
+        return True
+
+    def see(self, number: int, mount: Floats, occupancy: OccupancyMap) -> bool:
+        """Look how far the mirrors go by the keyframes of a submap; tell whether one is wider."""
+        submap, poses = self._graph.submaps[number], self._graph.poses
+        frames = zip(submap.keyframes, submap.poses(poses[number]), strict=True)
+        scans = [PlacedPoints(frame.points, pose) for frame, pose in frames]
+        beams, floor = _beams_of(scans, mount), MappedFloor.of(occupancy)
+        wider = [mirror.widen(beams, floor, poses[mirror.submap]) for mirror in self._mirrors]
+        return any(wider)
+
+    def pass_through(self, start: Floats, end: Floats) -> bool:
+        """Take away the mirrors between two places of the robot, [2], m, map frame: they are none.
+
+        Tell whether there were any.
+        """
+        known = len(self._mirrors)
+        poses = self._graph.poses
+        self._mirrors = [
+            mirror
+            for mirror in self._mirrors
+            if not _crosses(start, end, *mirror.ends(poses[mirror.submap]))
+        ]
+        return len(self._mirrors) < known
+
+    def _scans_near(self, x: float, y: float) -> list[PlacedPoints]:
+        scans = [
+            PlacedPoints(frame.points, pose)
+            for frame, pose in self._graph.keyframes()
+            if np.hypot(pose[0] - x, pose[1] - y) < _NEAR
+        ]
+        return scans[:: -(-len(scans) // _MOST) or 1]
+
+    def _mirror_at(self, plane: Plane) -> Mirror:
+        """Return the mirror that is known to be there, or another one, of the newest submap."""
+        poses = self._graph.poses
+        for mirror in self._mirrors:
+            if _is_of(plane, placed(mirror.plane, poses[mirror.submap]), mirror):
+                return mirror
+        newest = len(poses) - 1
+        mirror = Mirror.touched(newest, placed(plane, inverse(poses[newest])))
+        self._mirrors.append(mirror)
+        return mirror
+
+
+def _is_of(plane: Plane, other: Plane, mirror: Mirror) -> bool:
+    """Whether a plane that was touched is that of a mirror, which lies at ``other``."""
+    away = plane.middle - other.middle
+    place = float(away @ other.along)
+    return (
+        float(np.cos(plane.facing - other.facing)) > np.cos(_SAME_TURN)
+        and abs(float(away @ other.normal)) < _SAME_PLACE
+        and -mirror.right - _SAME_GAP < place < mirror.left + _SAME_GAP
+    )
+
+
+def _beams_of(scans: list[PlacedPoints], mount: Floats) -> Beams:
+    """Return the beams of one scan or more that met something, map frame."""
+    points = np.concatenate([moved(scan.points, scan.pose) for scan in scans])
+    poses = np.array([scan.pose for scan in scans])
+    lidar = np.broadcast_to(np.array([*mount[:2], 0.0]), poses.shape)
+    counts = [len(scan.points) for scan in scans]
+    starts = np.repeat(composed(poses, lidar)[:, :2], counts, axis=0)
+    return Beams(starts, points[:, :2], points[:, 2:])
+
+
+def _crosses(start: Floats, end: Floats, right: Floats, left: Floats) -> bool:
+    """Whether a way crosses a line."""
+
+    def side(a: Floats, b: Floats, point: Floats) -> float:
+        return float((b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]))
+
+    return (
+        side(right, left, start) * side(right, left, end) < 0.0
+        and side(start, end, right) * side(start, end, left) < 0.0
+    )

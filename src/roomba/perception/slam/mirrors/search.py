@@ -1,0 +1,161 @@
+"""The plane of a mirror that was touched, found by what it shows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from roomba.arrays import Floats
+from roomba.geometry import wrap_angle
+from roomba.perception.slam.mirrors.images import (
+    Beams,
+    Flags,
+    MappedFloor,
+    Plane,
+    images,
+    own_images,
+)
+
+_TURNS: Final = np.radians(np.arange(-3.0, 3.01, 0.5))
+_SHIFTS: Final = np.arange(-0.06, 0.061, 0.01)
+"""rad and m; planes that are tried around where the touch, and the way that walls lie, put it."""
+_SPARE: Final = 0.1
+"""rad; what was touched may be so far beyond the pressed part of the bumper."""
+_ASIDE: Final = 0.12
+"""m; so far beside the touched point a beam passed what was touched."""
+_BEYOND: Final = 0.25
+"""m; it did pass it if it ended so much farther."""
+_LEAST: Final = 25
+"""Beams that passed, for what they show to count,"""
+_LEAST_INFORMING: Final = 10
+"""those of them whose images fit and tell something,"""
+_LEAST_FITTING: Final = 0.4
+"""the share of all whose images fit,"""
+_LEAST_SHARE: Final = 0.7
+"""and that of those which fit or contradict: of true mirrors 0.72 to 0.93, of glass 0.04 to 0.6."""
+_BEFORE: Final = 1.0
+_BEFORE_ASIDE: Final = 0.3
+"""m; so near before a mirror, and so near beside the touched point, a robot sees itself,"""
+_LEAST_STOOD: Final = 2
+"""from so many places,"""
+_LEAST_SHOWN: Final = 0.6
+"""which is this share of all: of true mirrors all of them, of glass one of ten at most."""
+_ALIKE: Final = 0.02
+"""Share of the beams by which planes differ that fit alike."""
+_MOST: Final = 1500
+"""Beams that are looked at."""
+
+
+class Touch(NamedTuple):
+    """A touch of a round body: where its middle was, ``x`` and ``y``, and its ``radius``, m, and
+    the bearings of the part of its rim that was pressed, from ``first`` to ``last``, rad.
+
+    Map frame.
+    """
+
+    x: float
+    y: float
+    radius: float
+    first: float
+    last: float
+
+    def plane(self, facing: float, shift: float = 0.0) -> Plane:
+        """Return the plane that touches the body there and faces away from it, or farther off."""
+        away = self.radius + shift
+        return Plane(self.x + away * math.cos(facing), self.y + away * math.sin(facing), facing)
+
+    def has_pressed(self, facing: float) -> bool:
+        """Whether such a plane may have pressed that part."""
+        off = wrap_angle(facing - 0.5 * (self.first + self.last))
+        return abs(off) <= 0.5 * (self.last - self.first) + _SPARE
+
+
+def touched_mirror(beams: Beams, floor: MappedFloor, touch: Touch) -> Plane | None:
+    """Return the plane of the mirror that was touched; None if it seems to be none.
+
+    Mirrors hang on walls, or are the sides of furniture: others than such as lie as most surfaces
+    do, or at right angles to them, are not looked for. Of a plane that lies anyhow a corner of two
+    walls would often be its own image.
+    """
+    found = [
+        _best(beams, floor, touch, facing)
+        for facing in _ways_that_walls_face(beams)
+        if touch.has_pressed(facing)
+    ]
+    good = [each for each in found if each is not None]
+    return max(good)[1] if good else None
+
+
+def _ways_that_walls_face(beams: Beams) -> Iterator[float]:
+    """Yield the four directions, rad, that most of what the beams met faces."""
+    angles = np.arctan2(beams.normals[:, 1], beams.normals[:, 0])[_is_known(beams.normals)]
+    turn = float(np.angle(np.exp(4.0j * angles).sum())) / 4.0
+    yield from (turn + quarter * math.pi / 2.0 for quarter in range(4))
+
+
+def _best(
+    beams: Beams, floor: MappedFloor, touch: Touch, facing: float
+) -> tuple[int, Plane] | None:
+    """Return the plane about one that was touched of which most images fit, and how many."""
+    near = _that_passed(beams, touch.plane(facing))
+    count = len(near.starts)
+    if count < _LEAST:
+        return None
+    tried = [(turn, shift) for turn in _TURNS for shift in _SHIFTS]
+    planes = [touch.plane(facing + turn, shift) for turn, shift in tried]
+    net = np.array([_net(near, floor, plane) for plane in planes])
+    # Cells are coarse: planes in between fit as well.
+    alike = net >= net.max() - _ALIKE * count
+    turn, shift = np.array(tried)[alike].mean(axis=0).tolist()
+    plane = touch.plane(facing + turn, shift)
+    is_mirror = _is_mirror(near, floor, plane) and _shows_itself(beams, plane)
+    return (int(net.max()), plane) if is_mirror else None
+
+
+def _net(beams: Beams, floor: MappedFloor, plane: Plane) -> int:
+    """Return how many images fit more than contradict."""
+    seen = images(beams, plane, floor)
+    return int(seen.fits.sum()) - int(seen.contradicts.sum())
+
+
+def _is_mirror(beams: Beams, floor: MappedFloor, plane: Plane) -> bool:
+    """Whether beams that passed a plane show that it is one."""
+    seen = images(beams, plane, floor)
+    fitting, against = int(seen.fits.sum()), int(seen.contradicts.sum())
+    return (
+        fitting >= _LEAST_SHARE * (fitting + against)
+        and fitting >= _LEAST_FITTING * len(beams.starts)
+        and int((seen.fits & seen.informs).sum()) >= _LEAST_INFORMING
+    )
+
+
+def _shows_itself(beams: Beams, plane: Plane) -> bool:
+    """Whether the robot saw itself in a plane wherever it stood near by before its middle.
+
+    Without that the middle of a room with two walls alike would be a mirror.
+    """
+    off = beams.starts - plane.middle
+    away, aside = -off @ plane.normal, np.abs(off @ plane.along)
+    near = beams.chosen((away > 0.0) & (away < _BEFORE) & (aside < _BEFORE_ASIDE))
+    stood = len(np.unique(near.starts, axis=0))
+    shown = len(np.unique(near.starts[own_images(near, plane)], axis=0))
+    return stood >= _LEAST_STOOD and shown >= _LEAST_SHOWN * stood
+
+
+def _that_passed(beams: Beams, plane: Plane) -> Beams:
+    """Return beams, a part of them if there are many, that passed the middle of a plane."""
+    ways = beams.ends - beams.starts
+    lengths = np.hypot(ways[:, 0], ways[:, 1])
+    to_middle = plane.middle - beams.starts
+    along = np.einsum("ij,ij->i", to_middle, ways) / lengths
+    aside = np.abs(to_middle[:, 0] * ways[:, 1] - to_middle[:, 1] * ways[:, 0]) / lengths
+    passed = (aside < _ASIDE) & (along > 0.0) & (lengths > along + _BEYOND)
+    return beams.chosen(np.flatnonzero(passed)[:: max(1, int(passed.sum()) // _MOST)])
+
+
+def _is_known(normals: Floats) -> Flags:
+    known: Flags = np.any(normals != 0.0, axis=1)
+    return known

@@ -1,0 +1,108 @@
+"""The mirrors of a map: found by a touch, wider with what is seen, gone when it drives through."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from fixtures.drives.mirror_room import HEIGHT, RADIUS, Kind, MirrorRoom, drawn
+from numpy.typing import NDArray
+
+from roomba.configuration.localization import LocalizationConfig
+from roomba.configuration.mapping import MappingConfig
+from roomba.perception.slam.mirrors.mirrors import Mirrors, PlacedPoints
+from roomba.perception.slam.submaps.submap import Keyframe
+from roomba.perception.slam.submaps.submap_graph import SubmapGraph
+
+MOUNT = np.zeros(3)
+Seen = list[tuple[Keyframe, NDArray[np.float64]]]
+TO_THE_MIRROR = ((0.6, 0.6), (3.4, 0.5), (3.4, 2.0), (1.8, 2.2), (1.8, HEIGHT - RADIUS))
+
+
+def graph_of(frames: Seen) -> SubmapGraph:
+    """A graph of one submap, at (0, 0), with these keyframes."""
+    graph = SubmapGraph(MappingConfig(), LocalizationConfig(), np.zeros(3))
+    for frame, pose in frames:
+        graph.newest.keyframes.append(Keyframe(frame.points, pose))
+    return graph
+
+
+def newest(frames: Seen) -> PlacedPoints:
+    """The last of them, as the scan before a touch."""
+    frame, pose = frames[-1]
+    return PlacedPoints(frame.points, pose)
+
+
+def touched(room: MirrorRoom) -> tuple[Mirrors, Seen]:
+    frames = room.drive(*TO_THE_MIRROR)
+    mirrors = Mirrors(graph_of(frames))
+    mirrors.feel(room.touch(1.8), newest(frames), MOUNT, drawn(frames))
+    return mirrors, frames
+
+
+def test_a_mirror_that_was_touched_is_known_with_what_was_seen_of_it() -> None:
+    mirrors, _ = touched(MirrorRoom())
+    assert len(mirrors) == 1
+    (right, left), *_ = mirrors.ends
+    assert right[1] == pytest.approx(HEIGHT, abs=0.04)
+    assert left[1] == pytest.approx(HEIGHT, abs=0.04)
+    assert left[0] == pytest.approx(1.0, abs=0.15)
+    assert right[0] == pytest.approx(2.5, abs=0.15)
+
+
+def test_glass_is_none() -> None:
+    mirrors, _ = touched(MirrorRoom(kind=Kind.GLASS))
+    assert len(mirrors) == 0
+    assert mirrors.ends.shape == (0, 2, 2)
+
+
+def test_touched_again_it_is_the_same_one() -> None:
+    room = MirrorRoom()
+    mirrors, frames = touched(room)
+    before = mirrors.ends
+    assert mirrors.feel(room.touch(1.7), newest(frames), MOUNT, drawn(frames))
+    assert len(mirrors) == 1
+    assert mirrors.ends == pytest.approx(before, abs=0.06)
+
+
+def test_it_moves_with_its_submap() -> None:
+    mirrors, frames = touched(MirrorRoom())
+    before = mirrors.ends
+    graph = graph_of(frames)
+    moved = Mirrors(graph)
+    moved.take_over(mirrors.kept)
+    assert moved.ends == pytest.approx(before)
+    graph.poses[0] = (0.5, -0.2, math.pi / 2.0)
+    assert moved.ends[..., 0] == pytest.approx(0.5 - before[..., 1])
+    assert moved.ends[..., 1] == pytest.approx(-0.2 + before[..., 0])
+
+
+def test_a_submap_that_shows_more_of_it_makes_it_wider() -> None:
+    room = MirrorRoom()
+    # From here little of it is seen.
+    frames = room.drive((1.8, 2.2), (1.8, HEIGHT - RADIUS))
+    around = room.drive((0.6, 0.6), (3.4, 0.5), (3.4, 2.3), (0.6, 2.3))
+    occupancy = drawn(frames + around)
+    graph = graph_of(frames)
+    mirrors = Mirrors(graph)
+    assert mirrors.feel(room.touch(1.8), newest(frames), MOUNT, occupancy)
+    narrow = np.ptp(mirrors.ends[0, :, 0])
+    graph.begin(np.zeros(3), 1.0)
+    for frame, pose in around:
+        graph.newest.keyframes.append(Keyframe(frame.points, pose))
+    mirrors.see(1, MOUNT, occupancy)
+    assert np.ptp(mirrors.ends[0, :, 0]) >= narrow
+    assert np.ptp(mirrors.ends[0, :, 0]) > 1.4
+    assert not mirrors.see(1, MOUNT, occupancy), "there is no more of it"
+
+
+def test_what_the_robot_drives_through_is_none() -> None:
+    mirrors, _ = touched(MirrorRoom())
+    before, behind = np.array([1.8, HEIGHT - 0.3]), np.array([1.8, HEIGHT + 0.3])
+    beside = np.array([3.8, HEIGHT + 0.3])
+    assert not mirrors.pass_through(before, np.array([1.0, HEIGHT - 0.3]))
+    assert not mirrors.pass_through(np.array([3.8, HEIGHT - 0.3]), beside)
+    assert len(mirrors) == 1
+    assert mirrors.pass_through(before, behind)
+    assert len(mirrors) == 0

@@ -1,0 +1,92 @@
+"""A robot that drives against a mirror: its map ends there, and stays so."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from fixtures.homes.free_walls import home_with, straight_wall
+from fixtures.homes.worlds import DT, NOISY
+from fixtures.robots.mapped import CIRCLE, CUPBOARD, SHELF, Mapped, wrong_cells
+
+from roomba.configuration.mapping import MappingConfig
+from roomba.geometry import Pose, Twist
+from roomba.grid import FREE
+from roomba.perception.slam.mapper import Mapper
+
+MIRROR = straight_wall([(0.8, 3.98), (2.6, 3.98)], "mirror", 0.02)
+"""On the upper wall of the room, y = 4."""
+GLASS = straight_wall([(0.8, 3.0), (2.6, 3.0)], "glass", 0.02)
+START = Pose(2.5, 1.2, 0.0)
+BODY = NOISY.body
+
+
+def floor_behind(robot: Mapped, y: float = 4.1) -> float:
+    """Return how much floor its map shows beyond a line, m2."""
+    made = robot.mapper.occupancy()
+    _, rows_y = made.frame.centres()
+    beyond = made.values[np.asarray(rows_y).ravel() > y]
+    return float((beyond == FREE).sum()) * made.frame.resolution**2
+
+
+def driven_against(kind: str = "mirror", seed: int = 1) -> Mapped:
+    """A robot that drove a circle, and then up until its bumper was pressed."""
+    wall = MIRROR if kind == "mirror" else GLASS
+    robot = Mapped(home_with([wall], (CUPBOARD, SHELF)), START, seed=seed)
+    robot.drive(CIRCLE, 2.0 * math.pi * 0.75 / CIRCLE.angular)
+    while abs(math.pi / 2.0 - robot.world.pose.theta % (2.0 * math.pi)) > 0.05:
+        robot.drive(Twist(0.0, 0.4), DT)
+    while not robot.world.observe().bumper.pressed:
+        robot.drive(Twist(0.2, 0.0), DT)
+    return robot
+
+
+def feel(robot: Mapped) -> None:
+    bumper = robot.world.observe().bumper
+    robot.mapper.feel(BODY.radius, *BODY.pressed(bumper.left, bumper.right))
+
+
+def test_the_room_behind_a_touched_mirror_is_gone() -> None:
+    robot = driven_against()
+    before, version = floor_behind(robot), robot.mapper.version
+    assert before > 3.0, "it took what it saw in it for a room"
+    feel(robot)
+    assert robot.mapper.version > version
+    assert floor_behind(robot) < 0.1
+    robot.drive(Twist(-0.1, 0.0), 2.0).drive(Twist(0.0, 0.5), 8.0)
+    assert floor_behind(robot) < 0.1
+    finished = robot.mapper.finish()
+    assert floor_behind(robot) < 0.1
+    assert wrong_cells(finished, robot.world.home) == (0, 0)
+
+
+def test_glass_does_not_hide_what_is_behind_it() -> None:
+    robot = driven_against("glass")
+    before, version = floor_behind(robot, 3.1), robot.mapper.version
+    feel(robot)
+    assert robot.mapper.version == version
+    assert floor_behind(robot, 3.1) == before > 1.0
+
+
+def test_another_process_knows_the_mirror_too() -> None:
+    robot = driven_against()
+    feel(robot)
+    state = robot.mapper.state()
+    assert state is not None
+    assert len(state.mirrors) == 1
+    config, here = robot.world.config, robot.mapper.pose
+    robot.mapper = Mapper.taken_up(MappingConfig(), config.localization, config.gyro, state, here)
+    assert floor_behind(robot) < 0.1
+    robot.drive(Twist(-0.1, 0.0), 2.0).drive(Twist(0.0, 0.5), 8.0)
+    assert floor_behind(robot) < 0.1
+
+
+@pytest.mark.parametrize("is_lifted", [False, True])
+def test_before_it_knows_where_it_is_a_touch_tells_nothing(is_lifted: bool) -> None:
+    robot = driven_against() if is_lifted else Mapped()
+    if is_lifted:
+        robot.mapper.lift(is_lifted=True)
+    version = robot.mapper.version
+    robot.mapper.feel(BODY.radius, 0.0, 1.5)
+    assert robot.mapper.version == version
