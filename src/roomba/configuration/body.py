@@ -69,7 +69,8 @@ class BodyConfig(Frozen):
     def pressed(self, left: bool, right: bool) -> tuple[float, float]:
         """Return between which bearings of the rim something presses halves of the bumper, rad."""
         if left and right:
-            return min(self.bumper_middle), max(self.bumper_middle)
+            farthest = max(abs(angle) for angle in self.bumper_middle)
+            return -farthest, farthest
         return (0.0, math.pi / 2.0) if left else (-math.pi / 2.0, 0.0)
 
     def docked_at(self, station: Pose) -> Pose:

@@ -254,6 +254,8 @@ def _mirrors_of(fields: _Fields, submaps: int) -> tuple[KeptMirror, ...]:
         raise ValueError(f"expected mirrors in {submaps} submaps, got one in {numbers.max()}")
     planes = fields.floats("mirror_planes", len(numbers), 3)
     reaches = fields.floats("mirror_reaches", len(numbers), 2)
+    if reaches.size and reaches.min() <= 0.0:
+        raise ValueError(f"expected mirrors that reach farther than 0, got {reaches.min()}")
     return tuple(KeptMirror(*each) for each in zip(numbers.tolist(), planes, reaches, strict=True))
 
 

@@ -230,7 +230,7 @@ class LocalizationTopics:
             localizer.lift(readings.is_lifted)
             localizer.move(readings.time, readings.odometry, readings.turning)
         if self.is_mapping_held:
-            readings = replace(readings, scan=None)
+            readings = replace(readings, scan=None, bumper_left=False, bumper_right=False)
         self.seen = keeper.follow(readings) or self.seen
 
     def _hear_people(self, localizer: Localizer) -> None:

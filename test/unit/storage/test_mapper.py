@@ -81,7 +81,8 @@ def test_it_comes_back_bit_for_bit(tmp_path: Path, station: Pose | None) -> None
 @st.composite
 def mirrors(draw: st.DrawFn, submaps: int) -> KeptMirror:
     """Any mirror in one of so many submaps."""
-    plane, reach = draw(st.tuples(NUMBERS, NUMBERS, NUMBERS)), draw(st.tuples(NUMBERS, NUMBERS))
+    away = st.floats(0.01, 1e6)
+    plane, reach = draw(st.tuples(NUMBERS, NUMBERS, NUMBERS)), draw(st.tuples(away, away))
     return KeptMirror(draw(st.integers(0, submaps - 1)), np.array(plane), np.array(reach))
 
 
@@ -205,6 +206,7 @@ def rewritten(path: Path, **changes: NDArray[Any] | None) -> None:
         ({"link_ends": np.array([[0, 1], [0, 3]])}, "expected links between 3 submaps"),
         ({"mirror_submaps": np.array([3])}, "expected mirrors in 3 submaps, got one in 3"),
         ({"mirror_reaches": np.zeros((2, 2))}, "mirror_reaches: expected"),
+        ({"mirror_reaches": np.array([[0.4, 0.0]])}, "mirrors that reach farther than 0"),
         ({"lidar_beams": np.array(0)}, "expected a lidar with beams"),
         ({"lidar_numbers": np.array([0.0, 0.1, 3.0, 1.0])}, "reaches from near to far"),
         ({"lidar_mount": np.full(3, np.nan)}, "and a mount"),

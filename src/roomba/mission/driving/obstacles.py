@@ -29,6 +29,8 @@ _TOUCHES: Final = 20
 _SPARED: Final = 0.010
 """m; so much nearer to a thing than planned it may come, of the 0.02 m that a thing is thought
 thicker than it was seen: else each new look at it would break a path along it."""
+_MOST_BESIDE: Final = 2
+"""Touches from one place that a wall beside the robot explains; after them something else must."""
 _LEAST: Final = 0.01
 """m; the thinnest thing that stands."""
 
@@ -66,6 +68,8 @@ class Obstacles:
         self._touched: deque[tuple[float, float]] = deque(maxlen=_TOUCHES)
         # People and chairs, which go away, are seen; glass, mirrors, cables and sills are not.
         self._unseen = UnknownThings(walk, body, config.lasting_memory)
+        # A wall that is met aside stands, but where the robot is may be off for a while.
+        self._beside = UnknownThings(walk, body, config.felt_memory)
         # Stairs do not go away.
         self._edges = UnknownThings(walk, body, _FOREVER)
         self._same_place = config.lasting_radius
@@ -89,7 +93,7 @@ class Obstacles:
         """
         self.felt_version += self.seen.version + 1
         self.seen = seen
-        for felt in (self._felt, self._lasting, self._unseen, self._edges):
+        for felt in (self._felt, self._lasting, self._unseen, self._beside, self._edges):
             felt.move(moved)
         there = [moved.compose(Pose(x, y)) for x, y in self._touched]
         self._touched = deque(((place.x, place.y) for place in there), maxlen=_TOUCHES)
@@ -98,30 +102,30 @@ class Obstacles:
     def feel(self, senses: Senses) -> None:
         """Remember what bumper or cliff sensors found where the robot stands."""
         here = senses.pose
-        is_again = any(here.distance_to(x, y) < self._same_place for x, y in self._touched)
+        before = sum(here.distance_to(x, y) < self._same_place for x, y in self._touched)
         self._touched.append((here.x, here.y))
         places = self._felt.places(here, *senses.touches)
         is_unseen = senses.knowledge is Knowledge.KNOWN and not self._is_any_seen(places)
-        known_or_new = self._lasting if is_again else self._felt
         self.felt_version += 1
         if senses.cliff:
             self._edges.felt(senses.now, here, *senses.touches)
-        elif is_unseen and (walls := self._bearings_of_walls(senses)):
+        elif is_unseen and before < _MOST_BESIDE and (walls := self._bearings_of_walls(senses)):
             # What it met aside, where a gap is narrow: nothing stands before it.
-            known_or_new.felt_at(senses.now, here, walls)
+            self._beside.felt_at(senses.now, here, walls)
         elif is_unseen:
             self._unseen.felt(senses.now, here, *senses.touches)
             # The touch was somewhere along that half of the front.
             x, y = np.mean(places, axis=0).tolist()
             self.low = self.low.felt_at(x, y, self._low_config)
         else:
-            known_or_new.felt(senses.now, here, *senses.touches)
+            where = self._lasting if before else self._felt
+            where.felt(senses.now, here, *senses.touches)
             # A wall that it drove against, being late, is on the map.
             self._felt.drop(self.seen.is_mapped)
 
     def forget_felt_at(self, senses: Senses) -> None:
         """Forget what was felt where the robot itself stands: it cannot be there."""
-        for felt in (self._felt, self._lasting, self._unseen):
+        for felt in (self._felt, self._lasting, self._unseen, self._beside):
             felt.forget_around(senses.pose.x, senses.pose.y)
         self.felt_version += 1
 
@@ -134,6 +138,7 @@ class Obstacles:
         """Forget all obstacles but edges and what was felt where nothing is seen, as glass is."""
         self._felt.forget()
         self._lasting.forget()
+        self._beside.forget()
         self._touched.clear()
         self.seen.forget()
         self.felt_version += 1
@@ -153,7 +158,8 @@ class Obstacles:
         way would lead there anew.
         """
         felt = [(x, y, _LEAST) for x, y, _ in self._felt.at(now)]
-        felt += self._lasting.at(now, _LEAST) + self._unseen.at(now, _LEAST)
+        for touched in (self._lasting, self._unseen, self._beside):
+            felt += touched.at(now, _LEAST)
         return self._edges.at(now) + felt + [(x, y, _LEAST) for x, y, _ in self.seen.obstacles()]
 
     def felt(self, now: float) -> list[RoundObstacle]:
@@ -186,4 +192,5 @@ class Obstacles:
         return [angle for angle, x, y in rim if self.seen.is_mapped(x, y)]
 
     def _all_felt(self, now: float) -> list[RoundObstacle]:
-        return self._felt.at(now) + self._lasting.at(now) + self._unseen.at(now)
+        stores = self._felt, self._lasting, self._unseen, self._beside
+        return [thing for felt in stores for thing in felt.at(now)]

@@ -13,7 +13,7 @@ from roomba.configuration.loops import WalkConfig
 from roomba.geometry import Pose, RoundObstacle
 
 _STEP: Final = 0.1
-"""rad; from one place on the rim to the next."""
+"""rad; from one place on the rim to the next, at most."""
 
 
 class _Touch(NamedTuple):
@@ -64,7 +64,8 @@ class UnknownThings:
 
     def rim(self, pose: Pose, left: bool, right: bool) -> list[tuple[float, float, float]]:
         """Return bearings all along the pressed part of the rim, and x and y there, rad and m."""
-        angles = np.arange(*self._pressed(left, right), _STEP).tolist()
+        first, last = self._pressed(left, right)
+        angles = np.linspace(first, last, 1 + math.ceil((last - first) / _STEP)).tolist()
         return [
             (angle, *_Touch(0.0, pose.x, pose.y, pose.theta + angle).beyond(self._body_radius))
             for angle in angles

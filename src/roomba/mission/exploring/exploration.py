@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.mission import ExploringConfig
 from roomba.geometry import Pose, RoundObstacle
-from roomba.grid import OccupancyMap
+from roomba.grid import FREE, OccupancyMap
 from roomba.mission.cleaning.request import CleanOutcome
 from roomba.mission.exploring.open_edges import GivenUp, open_edges
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -108,6 +108,14 @@ class Exploration:
         self.given_up[middle] = GivenUp(
             middle, min(seen_from, known.seen_from), known.was_looked_at or seen_from > 0.0
         )
+
+    def give_up_all(self, here: Pose, context: PlanningContext) -> None:
+        """Give up all frontiers of the floor that is known, also where the robot cannot get to."""
+        floor = context.known.values == FREE
+        at = (here.x, here.y)
+        left = frontiers(context.known, floor, floor, at, self.unseen, self._choice)
+        for frontier in left:
+            self.give_up(frontier.middle)
 
     @property
     def unseen(self) -> list[Point]:

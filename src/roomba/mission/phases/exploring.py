@@ -37,6 +37,8 @@ def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: 
             or _forgets_what_shuts_in(exploration, drives, senses)
         ):
             return PhaseStep()
+        if not drives.may_go_home(senses):
+            exploration.give_up_all(senses.pose, drives.context)
         return PhaseStep(event=Event.FINISHED)
     drives.begin(points, senses)
     return replace(look_on(exploration, drives, senses, limit, most_stuck), message="")

@@ -19,6 +19,7 @@ from roomba.perception.slam.mirrors.mirrors import Mirrors, PlacedPoints
 from roomba.perception.slam.mirrors.search import Touch
 from roomba.perception.slam.scan_matching.surfels import SurfelGrid
 from roomba.perception.slam.submaps.parts import Carried
+from roomba.perception.slam.submaps.pose_graph import composed
 from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe, moved
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
 
@@ -41,6 +42,9 @@ class SubmapMap:
         self.drawn = SubmapDrawing(config, self.graph, self.mirrors)
         self.surfels = SurfelGrid(0.0)
         self.beside: list[int] = []
+        self._last_kept: tuple[int, Floats] | None = None
+        """In which submap the last keyframe is, and where; None if the robot may have leapt since.
+        """
         self.version = 0
 
     def take_over(self, state: MapperState, here: Floats) -> None:
@@ -109,7 +113,6 @@ class SubmapMap:
     def begin(self, here: Floats, way: float, range_noise: float) -> None:
         """Begin a submap at ``here`` [3], newest one's frame, after ``way``, m, in all."""
         self.close(range_noise)
-        self._look_at_mirrors()
         self.graph.begin(here, way)
         self._enter_newest([self._newest - 1])
 
@@ -129,6 +132,7 @@ class SubmapMap:
         """
         self.close(range_noise)
         self.graph.begin_piece(here, way, *unsure, carried=carried)
+        self._last_kept = None
         self._enter_newest([])
 
     def begin_at(self, pose: Floats, way: float, range_noise: float) -> None:
@@ -136,21 +140,22 @@ class SubmapMap:
         self.close(range_noise)
         beside = self.graph.near(pose)
         self.graph.begin_at(pose, way)
+        self._last_kept = None
         self._enter_newest(beside)
 
     def close(self, range_noise: float) -> None:
-        """Link the newest submap: others may move thereby, and the map with them.
+        """Link the newest submap: others may move thereby, and the map with them; look at mirrors.
 
         ``range_noise`` is the standard deviation of a range, m.
         """
         self.graph.use_noise(range_noise)
         self.graph.close()
         self.version += self.drawn.has_moved
+        self._look_at_mirrors()
 
     def finish(self, range_noise: float) -> None:
         """Bring all that was kept to agree, and draw it anew with walls along the axes."""
         self.close(range_noise)
-        self._look_at_mirrors()
         self.drawn.phase = finish(self.graph, self._config)
         self.redraw()
 
@@ -174,11 +179,13 @@ class SubmapMap:
             self.version += self.mirrors.see(self._newest, mount, occupancy)
 
     def _leave_mirrors_behind(self, frame: Keyframe) -> None:
-        """Forget mirrors that the robot drove through since the last keyframe of its submap."""
-        if len(self.mirrors) and self.graph.newest.keyframes:
-            last = self.graph.placed(self.graph.newest.keyframes[-1].pose)
-            here = self.graph.placed(frame.pose)
+        """Forget mirrors that the robot drove through since the last keyframe, if it drove."""
+        here = self.graph.placed(frame.pose)
+        if self._last_kept is not None and len(self.mirrors):
+            number, pose = self._last_kept
+            last = composed(self.graph.poses[number : number + 1], pose[None])[0]
             self.version += self.mirrors.pass_through(last[:2], here[:2])
+        self._last_kept = self._newest, frame.pose
 
     @property
     def _newest(self) -> int:

@@ -219,18 +219,31 @@ def test_the_least_of_what_is_felt_again_begins_where_the_body_touched_it() -> N
         assert math.dist((x, y), (again.x, again.y)) == pytest.approx(BODY + radius)
 
 
-@pytest.mark.parametrize("is_again", [False, True])
-def test_a_wall_that_was_met_aside_leaves_the_way_ahead_open(is_again: bool) -> None:
+def test_a_wall_that_was_met_aside_leaves_the_way_ahead_open() -> None:
     known, _ = obstacles()
     # Along the wall x = 0, which is on its left.
     along = Pose(BODY + 0.012, 3.0, math.pi / 2.0)
-    touched = replace(bumped(0.0, along), bumper_left=True, bumper_right=False)
-    for _ in range(1 + is_again):
-        known.feel(replace(touched, pose=along, knowledge=Knowledge.KNOWN))
-    felt = known.standing(0.0)
-    assert felt, "it keeps away from the wall by as much as its place may be off"
-    assert all(x < 0.06 for x, _, _ in felt)
-    assert known.low.all == ()
+    touched = Senses(0.0, along, bumper_left=True, knowledge=Knowledge.KNOWN)
+    for _ in range(2):
+        known.feel(touched)
+        felt = known.standing(0.0)
+        assert felt, "it keeps away from the wall by as much as its place may be off"
+        assert all(x < 0.06 for x, _, _ in felt)
+        assert known.low.all == ()
+    # Another touch elsewhere changes nothing of that.
+    known.feel(bumped(0.0, Pose(3.0, 3.0, 0.0)))
+    assert set(felt) <= set(known.standing(0.0))
+    known.forget()
+    assert known.standing(0.0) == []
+
+
+def test_what_is_felt_beside_a_wall_for_the_third_time_stands_ahead() -> None:
+    known, _ = obstacles()
+    along = Pose(BODY + 0.012, 3.0, math.pi / 2.0)
+    for _ in range(3):
+        known.feel(Senses(0.0, along, bumper_left=True, knowledge=Knowledge.KNOWN))
+    assert any(y > 3.0 + BODY and x > 0.06 for x, y, _ in known.standing(0.0))
+    assert len(known.low.all) == 1
 
 
 def test_another_place_beside_a_wall_is_another_thing() -> None:

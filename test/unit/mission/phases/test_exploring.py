@@ -14,6 +14,7 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
+from roomba.grid import UNKNOWN, OccupancyMap
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.exploring.exploration import Exploration
@@ -27,6 +28,7 @@ from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
 from roomba.planning.frontiers.frontiers import Frontier
+from roomba.vocabulary import EdgeReason
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
 SITE = PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
@@ -36,21 +38,51 @@ IN_THE_DEN = Senses(0.0, Pose(3.0, 1.2, 0.0))
 SPEED = 0.3
 
 
-def test_shut_in_by_what_it_touched_it_forgets_that_before_it_takes_all_for_seen() -> None:
+def shut_in() -> tuple[Drives, Job]:
+    """A robot in the den that felt a pane in the doorway, and explores."""
     drives = Drives(SITE, ROBOT, CONFIG.driving, Obstacles(SEEN, ROBOT.walk, ROBOT.body, DRIVING))
     job = Job(DirtMap(TWO_ROOMS.map), CONFIG, 100.0, IN_THE_DEN)
     job.exploration = Exploration(CONFIG.exploring)
-    # Glass in the doorway, as it seems: neither the map nor the lidar shows it.
+    feel_a_pane(drives)
+    assert not drives.may_go_home(IN_THE_DEN)
+    return drives, job
+
+
+def feel_a_pane(drives: Drives) -> None:
+    """Touch the doorway all along, where neither the map nor the lidar shows anything."""
     for y in np.arange(DOOR[0], DOOR[1], 0.1).tolist():
         beside = Pose(WALL_X + 0.2, y, math.pi)
         drives.obstacles.feel(replace(IN_THE_DEN, pose=beside, bumper_left=True, bumper_right=True))
-    assert not drives.may_go_home(IN_THE_DEN)
+
+
+def test_shut_in_by_what_it_touched_it_forgets_that_before_it_takes_all_for_seen() -> None:
+    drives, job = shut_in()
     steps = [explore(job, drives, IN_THE_DEN, SPEED, 3)]
     while steps[-1] == PhaseStep():
         steps.append(explore(job, drives, IN_THE_DEN, SPEED, 3))
         assert len(steps) < 10
     assert steps[-1].event is Event.FINISHED
     assert drives.may_go_home(IN_THE_DEN)
+
+
+def test_shut_in_for_good_it_tells_where_the_map_is_open() -> None:
+    drives, job = shut_in()
+    known = TWO_ROOMS.map.values.copy()
+    # The last meter of the hall, behind the pane, was not seen.
+    known[:, : TWO_ROOMS.map.frame.cell_of(1.0, 0.0)[1]] = UNKNOWN
+    seen = OccupancyMap(TWO_ROOMS.map.frame, known)
+    drives.use_context(PlanningContext(seen, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig()))
+    assert job.exploration is not None
+    steps = [explore(job, drives, IN_THE_DEN, SPEED, 3)]
+    while steps[-1] == PhaseStep():
+        feel_a_pane(drives)
+        steps.append(explore(job, drives, IN_THE_DEN, SPEED, 3))
+        assert len(steps) < 10
+    assert steps[-1].event is Event.FINISHED
+    (edge,) = job.exploration.open_edges(seen)
+    assert edge.length > 1.0
+    assert edge.x == pytest.approx(1.0, abs=0.1)
+    assert edge.reason is EdgeReason.NOT_LOOKED_AT
 
 
 @pytest.mark.parametrize("way", [0.05, 0.5])

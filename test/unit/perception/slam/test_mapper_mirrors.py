@@ -8,12 +8,17 @@ import numpy as np
 import pytest
 from fixtures.homes.free_walls import home_with, straight_wall
 from fixtures.homes.worlds import DT, NOISY
+from fixtures.robots.located import LIDAR
 from fixtures.robots.mapped import CIRCLE, CUPBOARD, SHELF, Mapped, wrong_cells
 
 from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose, Twist
 from roomba.grid import FREE
 from roomba.perception.slam.mapper import Mapper
+from roomba.perception.slam.mirrors.mirror import KeptMirror
+from roomba.perception.slam.mirrors.mirrors import Mirrors
+from roomba.perception.slam.submap_map import SubmapMap
+from roomba.perception.slam.submaps.parts import Carried
 
 MIRROR = straight_wall([(0.8, 3.98), (2.6, 3.98)], "mirror", 0.02)
 """On the upper wall of the room, y = 4."""
@@ -90,3 +95,60 @@ def test_before_it_knows_where_it_is_a_touch_tells_nothing(is_lifted: bool) -> N
     version = robot.mapper.version
     robot.mapper.feel(BODY.radius, 0.0, 1.5)
     assert robot.mapper.version == version
+
+
+def crossing(*, begins: bool, leaps: bool = False) -> SubmapMap:
+    """A map with a mirror across y = 1, and keyframes before and behind it, each of a place.
+
+    Between them a submap ``begins``, or the robot ``leaps`` into another piece.
+    """
+    config = NOISY
+    made = SubmapMap(MappingConfig(), config.localization, np.zeros(3))
+    made.use(LIDAR.arrays())
+    points, ranges = np.ones((30, 4)), np.ones(LIDAR.beams, np.float32)
+    before, behind = np.array([0.0, 0.8, 0.0]), np.array([0.0, 1.2, 0.0])
+    made.mirrors.take_over([KeptMirror(0, np.array([0.0, 1.0, math.pi / 2.0]), np.ones(2))])
+    made.keep(points, ranges, before)
+    if leaps:
+        made.begin_piece(behind, 1.0, (1.0, 1.0), 0.01, carried=Carried.TOLD)
+        behind = np.zeros(3)
+    elif begins:
+        made.begin(behind, 1.0, 0.01)
+        behind = np.zeros(3)
+    made.keep(points, ranges, behind)
+    return made
+
+
+@pytest.mark.parametrize("begins", [False, True])
+def test_what_the_robot_drives_through_is_no_mirror(begins: bool) -> None:
+    assert len(crossing(begins=begins).mirrors) == 0
+
+
+def test_a_robot_that_was_carried_did_not_drive_through() -> None:
+    assert len(crossing(begins=False, leaps=True).mirrors) == 1
+
+
+@pytest.mark.parametrize("ends", ["begin", "begin_piece", "begin_at", "finish"])
+def test_each_submap_that_ends_tells_of_mirrors(ends: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[int] = []
+
+    def see(_: Mirrors, number: int, *__: object) -> bool:
+        seen.append(number)
+        return False
+
+    monkeypatch.setattr(Mirrors, "see", see)
+    robot = driven_against()
+    feel(robot)
+    made, here = robot.mapper._map, np.zeros(3)
+    newest = len(made.graph.submaps) - 1
+    seen.clear()
+    match ends:
+        case "begin":
+            made.begin(here, 5.0, 0.01)
+        case "begin_piece":
+            made.begin_piece(here, 5.0, (1.0, 1.0), 0.01, carried=None)
+        case "begin_at":
+            made.begin_at(here, 5.0, 0.01)
+        case _:
+            made.finish(0.01)
+    assert seen == [newest]

@@ -40,9 +40,7 @@ def picture_of_a_mirror(home: Home) -> Figure:
     beams, floor = Beams(here, places, np.zeros_like(places)), MappedFloor.of(home.map)
     behind = (places - _MIRROR.middle) @ _MIRROR.normal > 0.05
     own = own_images(beams, _MIRROR)
-    turned_over = places - 2.0 * ((places - _MIRROR.middle) @ _MIRROR.normal)[:, None] * (
-        _MIRROR.normal
-    )
+    turned_over = _MIRROR.turned_over(places)
     figure = empty_figure(1150, 640)
     plan, fits = figure.subplots(1, 2, width_ratios=[1.0, 1.1])
     show_floor_plan(plan, home, _AREA)

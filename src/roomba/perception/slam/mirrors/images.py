@@ -60,6 +60,12 @@ class Plane(NamedTuple):
         """The direction into what is behind it, float64 [2]."""
         return np.array([np.cos(self.facing), np.sin(self.facing)])
 
+    def turned_over(self, points: Floats) -> Floats:
+        """Return where points, [n, 2], m, are that it shows as those."""
+        behind = (points - self.middle) @ self.normal
+        over: Floats = points - 2.0 * behind[:, None] * self.normal
+        return over
+
     @property
     def along(self) -> Floats:
         """The direction along it, to the left of one who looks at it, float64 [2]."""
@@ -109,7 +115,7 @@ def places_of_ends(beams: Beams, plane: Plane) -> Floats:
 def own_images(beams: Beams, plane: Plane) -> Flags:
     """Return which beams end behind a plane where it would show the robot itself, bool [n]."""
     behind = (beams.ends - plane.middle) @ plane.normal
-    return (behind > _BEHIND) & _is_own(beams, beams.ends - 2.0 * behind[:, None] * plane.normal)
+    return (behind > _BEHIND) & _is_own(beams, plane.turned_over(beams.ends))
 
 
 def _is_own(beams: Beams, image: Floats) -> Flags:
@@ -126,7 +132,7 @@ def images(beams: Beams, plane: Plane, floor: MappedFloor) -> Images:
     passing, before, behind = beams.chosen(passes), before[passes], behind[passes]
     share = before / (before - behind)
     there = passing.starts + share[:, None] * (passing.ends - passing.starts)
-    image = passing.ends - 2.0 * behind[:, None] * normal
+    image = plane.turned_over(passing.ends)
     rows, columns = floor.frame.cells_of(image[:, 0], image[:, 1])
     held = floor.frame.holds(rows, columns)
     rows, columns = np.where(held, rows, 0), np.where(held, columns, 0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -30,54 +30,61 @@ _TOUCHED: Final = 1
 class Mirror:
     """A mirror in the frame of a submap, with whose keyframes it moves.
 
-    ``plane`` is that of the mirror, its middle where it was touched; ``right`` and ``left``, m, are
-    how far it reaches from there. ``fits`` and ``contradicts`` count beams by where they passed,
-    ``met`` those that met something beside it on its plane.
+    ``plane`` is that of the mirror, its middle where it was touched; it goes on from there by
+    ``least``, m, to the right and to the left, in any case. ``fits`` and ``contradicts`` count
+    beams by where they passed, ``met`` those that met something beside it on its plane. Of the
+    map's keyframes so many, from the first on, are ``counted``.
     """
 
     submap: int
     plane: Plane
-    right: float
-    left: float
+    least: tuple[float, float]
     fits: NDArray[np.int64]
     contradicts: NDArray[np.int64]
     met: NDArray[np.int64]
+    counted: int = 0
 
     @staticmethod
     def touched(submap: int, plane: Plane) -> Mirror:
         """Return one of which no more is known than that it was touched."""
         counts = np.zeros((3, 2 * _BINS + 1), np.int64)
         reach = (_TOUCHED + 0.5) * _BIN
-        return Mirror(submap, plane, reach, reach, *counts)
+        return Mirror(submap, plane, (reach, reach), *counts)
 
     @staticmethod
     def of(kept: KeptMirror) -> Mirror:
-        """Return one that was kept; what beams showed of it is counted anew."""
-        mirror = Mirror.touched(kept.submap, Plane(*kept.plane.tolist()))
-        mirror.right, mirror.left = kept.reach.tolist()
-        return mirror
+        """Return one that was kept; it goes on as far as it did, and what beams show is counted."""
+        right, left = kept.reach.tolist()
+        plane = Plane(*kept.plane.tolist())
+        return replace(Mirror.touched(kept.submap, plane), least=(right, left))
 
     @property
     def kept(self) -> KeptMirror:
         """What must be remembered of it."""
-        return KeptMirror(self.submap, np.array(self.plane), np.array([self.right, self.left]))
+        return KeptMirror(self.submap, np.array(self.plane), np.array(self.reach))
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """How far it goes to the right and to the left from its plane's middle, m."""
+        return max(self.least[0], self._reach(-1)), max(self.least[1], self._reach(1))
 
     def ends(self, pose: Floats) -> Floats:
         """Return its right and left end, float64 [2, 2], m, its submap being at ``pose`` [3]."""
-        plane = placed(self.plane, pose)
-        return plane.middle + np.outer((-self.right, self.left), plane.along)
+        plane, (right, left) = placed(self.plane, pose), self.reach
+        return plane.middle + np.outer((-right, left), plane.along)
 
-    def widen(self, beams: Beams, floor: MappedFloor, pose: Floats) -> bool:
-        """Count what beams show of it, its submap being at ``pose``; tell whether it is wider."""
+    def forget(self) -> None:
+        """Forget what beams showed of it, to count it anew."""
+        for counts in (self.fits, self.contradicts, self.met):
+            counts[:] = 0
+
+    def count(self, beams: Beams, floor: MappedFloor, pose: Floats) -> None:
+        """Count what beams show of it, its submap being at ``pose``."""
         plane = placed(self.plane, pose)
         seen = images(beams, plane, floor)
         _count(self.fits, seen.places[seen.informs & seen.fits])
         _count(self.contradicts, seen.places[seen.informs & seen.contradicts])
         _count(self.met, places_of_ends(beams, plane))
-        before = self.right, self.left
-        self.right = max(self.right, self._reach(-1))
-        self.left = max(self.left, self._reach(1))
-        return (self.right, self.left) != before
 
     def _reach(self, step: int) -> float:
         """Return how far images fit to one side of the touched point, m, or to a surface there."""

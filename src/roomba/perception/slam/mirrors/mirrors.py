@@ -77,24 +77,38 @@ class Mirrors:
         ``newest`` is the scan before the touch, which need not be kept; ``mount``, x and y, m, is
         that of the lidar; ``occupancy`` the map as it is known.
         """
-        beams = _beams_of([*self._scans_near(touch.x, touch.y), newest], mount)
-        floor = MappedFloor.of(occupancy)
+        scans = self._scans_near(touch.x, touch.y)
+        beams, floor = _beams_of([*scans, newest], mount), MappedFloor.of(occupancy)
         plane = touched_mirror(beams, floor, touch)
         if plane is None:
             return False
-        mirror = self._mirror_at(plane)
-        pose = self._graph.poses[mirror.submap]
-        mirror.widen(beams, floor, pose)
-        return True
+        before = self.ends
+        known = next((mirror for mirror in self._mirrors if self._is_of(plane, mirror)), None)
+        if known is not None:
+            self._count_anew(known, beams, floor)
+        if known is None or not self._reaches(known, plane):
+            self._mirrors.append(self._begun(plane))
+            self._count_anew(self._mirrors[-1], beams, floor)
+        return not np.array_equal(self.ends, before)
 
     def see(self, number: int, mount: Floats, occupancy: OccupancyMap) -> bool:
-        """Look how far the mirrors go by the keyframes of a submap; tell whether one is wider."""
-        submap, poses = self._graph.submaps[number], self._graph.poses
-        frames = zip(submap.keyframes, submap.poses(poses[number]), strict=True)
-        scans = [PlacedPoints(frame.points, pose) for frame, pose in frames]
-        beams, floor = _beams_of(scans, mount), MappedFloor.of(occupancy)
-        wider = [mirror.widen(beams, floor, poses[mirror.submap]) for mirror in self._mirrors]
-        return any(wider)
+        """Look how far the mirrors go by the keyframes of a submap; tell whether one changed.
+
+        Keyframes that were counted before say nothing new.
+        """
+        before, floor, poses = self.ends, MappedFloor.of(occupancy), self._graph.poses
+        submap = self._graph.submaps[number]
+        first = sum(len(each.keyframes) for each in self._graph.submaps[:number])
+        scans = [
+            PlacedPoints(frame.points, pose)
+            for frame, pose in zip(submap.keyframes, submap.poses(poses[number]), strict=True)
+        ]
+        for mirror in self._mirrors:
+            new = scans[max(mirror.counted - first, 0) :]
+            if new:
+                mirror.count(_beams_of(new, mount), floor, poses[mirror.submap])
+                mirror.counted = first + len(scans)
+        return not np.array_equal(self.ends, before)
 
     def pass_through(self, start: Floats, end: Floats) -> bool:
         """Take away the mirrors between two places of the robot, [2], m, map frame: they are none.
@@ -118,27 +132,30 @@ class Mirrors:
         ]
         return scans[:: -(-len(scans) // _MOST) or 1]
 
-    def _mirror_at(self, plane: Plane) -> Mirror:
-        """Return the mirror that is known to be there, or another one, of the newest submap."""
-        poses = self._graph.poses
-        for mirror in self._mirrors:
-            if _is_of(plane, placed(mirror.plane, poses[mirror.submap]), mirror):
-                return mirror
-        newest = len(poses) - 1
-        mirror = Mirror.touched(newest, placed(plane, inverse(poses[newest])))
-        self._mirrors.append(mirror)
-        return mirror
+    def _begun(self, plane: Plane) -> Mirror:
+        """Return another mirror, in the newest submap."""
+        newest = len(self._graph.poses) - 1
+        return Mirror.touched(newest, placed(plane, inverse(self._graph.poses[newest])))
 
+    def _count_anew(self, mirror: Mirror, beams: Beams, floor: MappedFloor) -> None:
+        """Count what all keyframes about a touch show of a mirror."""
+        mirror.forget()
+        mirror.count(beams, floor, self._graph.poses[mirror.submap])
+        mirror.counted = sum(len(submap.keyframes) for submap in self._graph.submaps)
 
-def _is_of(plane: Plane, other: Plane, mirror: Mirror) -> bool:
-    """Whether a plane that was touched is that of a mirror, which lies at ``other``."""
-    away = plane.middle - other.middle
-    place = float(away @ other.along)
-    return (
-        float(np.cos(plane.facing - other.facing)) > np.cos(_SAME_TURN)
-        and abs(float(away @ other.normal)) < _SAME_PLACE
-        and -mirror.right - _SAME_GAP < place < mirror.left + _SAME_GAP
-    )
+    def _is_of(self, plane: Plane, mirror: Mirror) -> bool:
+        """Whether a plane that was touched is that of a mirror, and near to it."""
+        other = placed(mirror.plane, self._graph.poses[mirror.submap])
+        turn = float(np.cos(plane.facing - other.facing))
+        off = abs(float((plane.middle - other.middle) @ other.normal))
+        is_alike = turn > np.cos(_SAME_TURN) and off < _SAME_PLACE
+        return is_alike and self._reaches(mirror, plane, _SAME_GAP)
+
+    def _reaches(self, mirror: Mirror, plane: Plane, spare: float = 0.0) -> bool:
+        """Whether a mirror goes as far as to the middle of a plane, or to ``spare`` m before it."""
+        other, (right, left) = placed(mirror.plane, self._graph.poses[mirror.submap]), mirror.reach
+        place = float((plane.middle - other.middle) @ other.along)
+        return -right - spare <= place <= left + spare
 
 
 def _beams_of(scans: list[PlacedPoints], mount: Floats) -> Beams:

@@ -153,7 +153,8 @@ def _that_passed(beams: Beams, plane: Plane) -> Beams:
     along = np.einsum("ij,ij->i", to_middle, ways) / lengths
     aside = np.abs(to_middle[:, 0] * ways[:, 1] - to_middle[:, 1] * ways[:, 0]) / lengths
     passed = (aside < _ASIDE) & (along > 0.0) & (lengths > along + _BEYOND)
-    return beams.chosen(np.flatnonzero(passed)[:: max(1, int(passed.sum()) // _MOST)])
+    numbers = np.flatnonzero(passed)
+    return beams.chosen(numbers[:: -(-len(numbers) // _MOST) or 1])
 
 
 def _is_known(normals: Floats) -> Flags:

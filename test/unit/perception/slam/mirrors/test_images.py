@@ -68,7 +68,11 @@ def test_its_own_image_fits_though_floor_is_free_where_it_stood() -> None:
     assert not shown.contradicts.any()
 
 
-def test_a_plane_turned_about_its_middle_has_its_normal_and_its_left_turned() -> None:
-    assert UPPER_WALL.normal == pytest.approx((0.0, 1.0))
-    assert UPPER_WALL.along == pytest.approx((-1.0, 0.0))
-    assert UPPER_WALL.middle == pytest.approx((1.8, HEIGHT))
+def test_a_plane_turns_points_over_to_its_other_side_and_back() -> None:
+    plane = Plane(1.8, HEIGHT, 0.4)
+    points = np.array([[0.3, -2.0], [4.0, 1.0], [1.8, HEIGHT]])
+    over = plane.turned_over(points)
+    assert plane.turned_over(over) == pytest.approx(points)
+    off, off_over = ((each - plane.middle) @ plane.normal for each in (points, over))
+    assert off_over == pytest.approx(-off)
+    assert (over - points) @ plane.along == pytest.approx(np.zeros(3))

@@ -22,7 +22,7 @@ def widened(room: MirrorRoom, pose: NDArray[np.float64] = HOME) -> Mirror:
     plane = Plane(1.8, HEIGHT, math.pi / 2.0)
     inverse = np.array([-pose[0], -pose[1], 0.0])
     mirror = Mirror.touched(0, placed(plane, inverse))
-    assert mirror.widen(beams_of(frames), MappedFloor.of(drawn(frames)), pose)
+    mirror.count(beams_of(frames), MappedFloor.of(drawn(frames)), pose)
     return mirror
 
 
@@ -43,19 +43,29 @@ def test_a_touch_alone_is_of_more_than_a_point() -> None:
 def test_beside_an_opening_it_ends_there() -> None:
     frames = MirrorRoom(1.0, 1.5, Kind.GLASS).drive(*WAY)
     mirror = Mirror.touched(0, Plane(1.25, HEIGHT, math.pi / 2.0))
-    mirror.widen(beams_of(frames), MappedFloor.of(drawn(frames)), HOME)
+    mirror.count(beams_of(frames), MappedFloor.of(drawn(frames)), HOME)
     right, left = mirror.ends(HOME)
     assert math.dist(right, left) < 0.3, "no image fits: it stays as it was touched"
 
 
-def test_with_the_same_beams_again_it_is_no_wider() -> None:
+def test_counted_anew_it_is_as_wide_as_it_was() -> None:
     room = MirrorRoom()
     mirror, frames = widened(room), room.drive(*WAY)
     before = mirror.ends(HOME)
-    assert not mirror.widen(beams_of(frames), MappedFloor.of(drawn(frames)), HOME)
+    mirror.forget()
+    assert math.dist(*mirror.ends(HOME)) < 0.3
+    mirror.count(beams_of(frames), MappedFloor.of(drawn(frames)), HOME)
     assert (mirror.ends(HOME) == before).all()
     assert before[:, 0].min() > 0.0
     assert before[:, 0].max() < WIDTH
+
+
+def test_where_more_contradicts_than_fits_it_is_no_more() -> None:
+    mirror = widened(MirrorRoom())
+    glass = MirrorRoom(kind=Kind.GLASS).drive(*WAY)
+    for _ in range(8):
+        mirror.count(beams_of(glass), MappedFloor.of(drawn(glass)), HOME)
+    assert math.dist(*mirror.ends(HOME)) < 0.3
 
 
 def test_what_is_kept_of_it_lies_as_it_did() -> None:
@@ -76,11 +86,11 @@ def test_it_goes_on_over_what_no_beam_shows_to_a_surface_that_is_seen() -> None:
     there = np.where(behind, beams.starts[:, 0] + share * ways[:, 0], 0.0)
     # Nothing shows the mirror from 2.25 m on; from 2.5 m on a wall is seen.
     mirror = Mirror.touched(0, plane)
-    mirror.widen(beams.chosen(there < 2.25), ground, HOME)
+    mirror.count(beams.chosen(there < 2.25), ground, HOME)
     right, _ = mirror.ends(HOME)
     assert right[0] == pytest.approx(2.55, abs=0.1)
     # Where the wall is farther off than a robot is wide, it is not known to go on.
     narrower = Mirror.touched(0, plane)
-    narrower.widen(beams.chosen(there < 2.0), ground, HOME)
+    narrower.count(beams.chosen(there < 2.0), ground, HOME)
     right, _ = narrower.ends(HOME)
     assert right[0] == pytest.approx(2.05, abs=0.1)

@@ -35,14 +35,17 @@ def newest(frames: Seen) -> PlacedPoints:
 
 
 def touched(room: MirrorRoom) -> tuple[Mirrors, Seen]:
-    frames = room.drive(*TO_THE_MIRROR)
+    frames, mount = room.drive(*TO_THE_MIRROR), np.array([*room.lidar, 0.0])
     mirrors = Mirrors(graph_of(frames))
-    mirrors.feel(room.touch(1.8), newest(frames), MOUNT, drawn(frames))
+    mirrors.feel(room.touch(1.8), newest(frames), mount, drawn(frames, mount[:2]))
     return mirrors, frames
 
 
-def test_a_mirror_that_was_touched_is_known_with_what_was_seen_of_it() -> None:
-    mirrors, _ = touched(MirrorRoom())
+@pytest.mark.parametrize("lidar", [(0.0, 0.0), (0.1, -0.06)])
+def test_a_mirror_that_was_touched_is_known_with_what_was_seen_of_it(
+    lidar: tuple[float, float],
+) -> None:
+    mirrors, _ = touched(MirrorRoom(lidar=lidar))
     assert len(mirrors) == 1
     (right, left), *_ = mirrors.ends
     assert right[1] == pytest.approx(HEIGHT, abs=0.04)
@@ -61,9 +64,41 @@ def test_touched_again_it_is_the_same_one() -> None:
     room = MirrorRoom()
     mirrors, frames = touched(room)
     before = mirrors.ends
-    assert mirrors.feel(room.touch(1.7), newest(frames), MOUNT, drawn(frames))
+    assert not mirrors.feel(room.touch(1.7), newest(frames), MOUNT, drawn(frames))
     assert len(mirrors) == 1
-    assert mirrors.ends == pytest.approx(before, abs=0.06)
+    assert (mirrors.ends == before).all(), "the same scans tell no more"
+
+
+@pytest.mark.parametrize("again", ["feel", "see"])
+def test_the_same_scans_again_make_it_no_wider(again: str) -> None:
+    """Of a few beams each counts, and twice as many would be enough for more of it."""
+    room = MirrorRoom()
+    frames = [
+        (Keyframe(frame.points[::5], frame.pose), pose)
+        for frame, pose in room.drive(*TO_THE_MIRROR)
+    ]
+    mirrors = Mirrors(graph_of(frames))
+    whole, touch = drawn(room.drive(*TO_THE_MIRROR)), room.touch(1.8)
+    assert mirrors.feel(touch, newest(frames), MOUNT, whole)
+    before = mirrors.ends
+    for _ in range(4):
+        if again == "feel":
+            mirrors.feel(touch, newest(frames), MOUNT, whole)
+        else:
+            mirrors.see(0, MOUNT, whole)
+    assert (mirrors.ends == before).all()
+
+
+def test_two_mirrors_beside_each_other_are_two() -> None:
+    room = MirrorRoom(1.0, 1.7, other=(2.0, 2.7))
+    around = room.drive((0.6, 0.6), (3.4, 0.5), (3.4, 2.3), (1.35, 2.3), (1.35, HEIGHT - RADIUS))
+    frames = around + room.drive((1.35, 2.4), (2.2, 2.3), (2.2, HEIGHT - RADIUS))
+    mirrors = Mirrors(graph_of(frames))
+    assert mirrors.feel(room.touch(1.35), newest(around), MOUNT, drawn(frames))
+    assert mirrors.feel(room.touch(2.2), newest(frames), MOUNT, drawn(frames))
+    covered = [sorted(mirror[:, 0]) for mirror in mirrors.ends]
+    assert any(low < 1.35 < high for low, high in covered)
+    assert any(low < 2.2 < high for low, high in covered)
 
 
 def test_it_moves_with_its_submap() -> None:
