@@ -158,6 +158,7 @@ class SubmapMap:
         self.close(range_noise)
         self.drawn.phase = finish(self.graph, self._config)
         self.redraw()
+        self.version += self.mirrors.see_all(self._lidar.mount, self.drawn.occupancy)
 
     def redraw(self) -> None:
         """Draw all anew where it is thought to be now."""
@@ -173,10 +174,10 @@ class SubmapMap:
         return [moved(frame.points, pose) for frame, pose in frames]
 
     def _look_at_mirrors(self) -> None:
-        """Let the newest submap, which is closed, tell how far mirrors go."""
-        if len(self.mirrors) and self.graph.newest.keyframes:
-            mount, occupancy = self._lidar.mount, self.drawn.occupancy()
-            self.version += self.mirrors.see(self._newest, mount, occupancy)
+        """Let the newest submap, which is closed, tell of mirrors, and how far they go."""
+        if self.graph.newest.keyframes:
+            mount = self._lidar.mount
+            self.version += self.mirrors.see(self._newest, mount, self.drawn.occupancy)
 
     def _leave_mirrors_behind(self, frame: Keyframe) -> None:
         """Forget mirrors that the robot drove through since the last keyframe, if it drove."""

@@ -52,7 +52,15 @@ def feel(robot: Mapped) -> None:
     robot.mapper.feel(BODY.radius, *BODY.pressed(bumper.left, bumper.right))
 
 
-def test_the_room_behind_a_touched_mirror_is_gone() -> None:
+def test_a_mirror_in_which_it_saw_itself_is_no_room_even_before_it_touched_it() -> None:
+    robot = driven_against()
+    assert floor_behind(robot) < 0.1
+    assert wrong_cells(robot.mapper.finish(), robot.world.home) == (0, 0)
+
+
+def test_the_room_behind_a_touched_mirror_is_gone(monkeypatch: pytest.MonkeyPatch) -> None:
+    # It does not look for itself.
+    monkeypatch.setattr(Mirrors, "_look_for_itself", lambda *_: None)
     robot = driven_against()
     before, version = floor_behind(robot), robot.mapper.version
     assert before > 3.0, "it took what it saw in it for a room"

@@ -60,6 +60,12 @@ class Plane(NamedTuple):
         """The direction into what is behind it, float64 [2]."""
         return np.array([np.cos(self.facing), np.sin(self.facing)])
 
+    def moved(self, turn: float, shift: float) -> Plane:
+        """Return it turned about its middle, rad, and then ``shift`` m farther off."""
+        facing = self.facing + turn
+        x, y = self.x + shift * np.cos(facing), self.y + shift * np.sin(facing)
+        return Plane(float(x), float(y), facing)
+
     def turned_over(self, points: Floats) -> Floats:
         """Return where points, [n, 2], m, are that it shows as those."""
         behind = (points - self.middle) @ self.normal

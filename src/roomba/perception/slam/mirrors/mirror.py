@@ -15,22 +15,22 @@ from roomba.perception.slam.mirrors.images import Beams, MappedFloor, Plane, ima
 _BIN: Final = 0.05
 """m along a mirror in which beams are counted together."""
 _BINS: Final = 61
-"""Bins to either side of where it was touched: 3 m."""
+"""Bins to either side of where it was found: 3 m."""
 _GAP: Final = 3
 """Bins without a beam over which a mirror goes on,"""
 _TO_SURFACE: Final = 6
 """and over which it goes on to a surface that is seen: no robot fits through there."""
 _LEAST: Final = 3
 """Images that fit in a bin and those beside it, for the mirror to be there."""
-_TOUCHED: Final = 1
-"""Bins to either side of the touched one that are mirror in any case: more than a point is."""
+_FOUND: Final = 1
+"""Bins to either side of that point that are mirror in any case."""
 
 
 @dataclass(slots=True, eq=False)
 class Mirror:
     """A mirror in the frame of a submap, with whose keyframes it moves.
 
-    ``plane`` is that of the mirror, its middle where it was touched; it goes on from there by
+    ``plane`` is that of the mirror, its middle where it was found; it goes on from there by
     ``least``, m, to the right and to the left, in any case. ``fits`` and ``contradicts`` count
     beams by where they passed, ``met`` those that met something beside it on its plane. Of the
     map's keyframes so many, from the first on, are ``counted``.
@@ -45,10 +45,10 @@ class Mirror:
     counted: int = 0
 
     @staticmethod
-    def touched(submap: int, plane: Plane) -> Mirror:
-        """Return one of which no more is known than that it was touched."""
+    def found(submap: int, plane: Plane) -> Mirror:
+        """Return one of which no more is known than a point."""
         counts = np.zeros((3, 2 * _BINS + 1), np.int64)
-        reach = (_TOUCHED + 0.5) * _BIN
+        reach = (_FOUND + 0.5) * _BIN
         return Mirror(submap, plane, (reach, reach), *counts)
 
     @staticmethod
@@ -56,7 +56,7 @@ class Mirror:
         """Return one that was kept; it goes on as far as it did, and what beams show is counted."""
         right, left = kept.reach.tolist()
         plane = Plane(*kept.plane.tolist())
-        return replace(Mirror.touched(kept.submap, plane), least=(right, left))
+        return replace(Mirror.found(kept.submap, plane), least=(right, left))
 
     @property
     def kept(self) -> KeptMirror:
@@ -87,7 +87,7 @@ class Mirror:
         _count(self.met, places_of_ends(beams, plane))
 
     def _reach(self, step: int) -> float:
-        """Return how far images fit to one side of the touched point, m, or to a surface there."""
+        """Return how far images fit to one side of its middle, m, or to a surface there."""
         fits, contradicts = _with_beside(self.fits), _with_beside(self.contradicts)
         last = 0
         for at in range(1, _BINS + 1):

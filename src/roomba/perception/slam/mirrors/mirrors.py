@@ -1,14 +1,17 @@
 """The mirrors of a map that is being made.
 
-A lidar takes what a mirror shows for a room behind it. A robot finds out by driving against it:
-something was touched that beams pass. If what they show behind it is the image of what is before
-it, it is a mirror, and goes as far to both sides as that holds (compare Yang and Wang, "On solving
-mirror reflection in LIDAR sensing", IEEE/ASME T-Mech 2011, who look for mirrors in gaps of walls).
+A lidar takes what a mirror shows for a room behind it. The robot sees itself there, and at the
+latest it drives against it: something was touched that beams pass. If what they show behind it is
+the image of what is before it, it is a mirror, and goes as far to both sides as that holds (compare
+Yang and Wang, "On solving mirror reflection in LIDAR sensing", IEEE/ASME T-Mech 2011, who look for
+mirrors in gaps of walls).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Callable, Iterable
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -18,7 +21,13 @@ from roomba.arrays import Floats
 from roomba.grid import OccupancyMap
 from roomba.perception.slam.mirrors.images import Beams, MappedFloor, Plane
 from roomba.perception.slam.mirrors.mirror import KeptMirror, Mirror, placed
-from roomba.perception.slam.mirrors.search import Touch, touched_mirror
+from roomba.perception.slam.mirrors.own_image import own_image_planes
+from roomba.perception.slam.mirrors.search import (
+    Touch,
+    mirror_about,
+    touched_mirror,
+    ways_that_surfaces_face,
+)
 from roomba.perception.slam.submaps.pose_graph import composed, inverse
 from roomba.perception.slam.submaps.submap import moved
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
@@ -27,6 +36,9 @@ _NEAR: Final = 6.0
 """m; keyframes from nearer to a touch tell what was touched."""
 _MOST: Final = 400
 """Keyframes that are looked at then."""
+_RECENT: Final = 120
+"""Keyframes, the newest ones, in which the robot may have seen itself before it touched a mirror.
+"""
 _SAME_TURN: Final = 0.1
 _SAME_PLACE: Final = 0.08
 _SAME_GAP: Final = 0.3
@@ -87,28 +99,49 @@ class Mirrors:
         if known is not None:
             self._count_anew(known, beams, floor)
         if known is None or not self._reaches(known, plane):
-            self._mirrors.append(self._begun(plane))
-            self._count_anew(self._mirrors[-1], beams, floor)
+            self._add(plane, beams, floor)
         return not np.array_equal(self.ends, before)
 
-    def see(self, number: int, mount: Floats, occupancy: OccupancyMap) -> bool:
-        """Look how far the mirrors go by the keyframes of a submap; tell whether one changed.
+    def see(self, number: int, mount: Floats, occupancy: Callable[[], OccupancyMap]) -> bool:
+        """Look how far mirrors go, and for others, by a submap's keyframes; tell what changed.
 
-        Keyframes that were counted before say nothing new.
+        ``occupancy`` makes the map as it is known, if that is needed. Keyframes that were counted
+        before say nothing new of a mirror.
         """
-        before, floor, poses = self.ends, MappedFloor.of(occupancy), self._graph.poses
-        submap = self._graph.submaps[number]
+        poses, before, scans = self._graph.poses, self.ends, self._scans_of(number)
+        if not scans:
+            return False
         first = sum(len(each.keyframes) for each in self._graph.submaps[:number])
-        scans = [
-            PlacedPoints(frame.points, pose)
-            for frame, pose in zip(submap.keyframes, submap.poses(poses[number]), strict=True)
-        ]
-        for mirror in self._mirrors:
-            new = scans[max(mirror.counted - first, 0) :]
-            if new:
-                mirror.count(_beams_of(new, mount), floor, poses[mirror.submap])
-                mirror.counted = first + len(scans)
+        if self._mirrors:
+            floor = MappedFloor.of(occupancy())
+            for mirror in self._mirrors:
+                new = scans[max(mirror.counted - first, 0) :]
+                if new:
+                    mirror.count(_beams_of(new, mount), floor, poses[mirror.submap])
+                    mirror.counted = first + len(scans)
+        self._look_for_itself(self._newest_scans(), mount, occupancy)
         return not np.array_equal(self.ends, before)
+
+    def see_all(self, mount: Floats, occupancy: Callable[[], OccupancyMap]) -> bool:
+        """Look for mirrors by all keyframes, once the drive is over; tell whether one is new."""
+        known, scans = len(self._mirrors), self._scans()
+        self._look_for_itself(_some(scans), mount, occupancy)
+        return len(self._mirrors) > known
+
+    def _look_for_itself(
+        self, scans: list[PlacedPoints], mount: Floats, occupancy: Callable[[], OccupancyMap]
+    ) -> None:
+        """Take planes in which the robot saw itself for mirrors, if their images fit."""
+        beams = _beams_of(scans, mount)
+        for facing in ways_that_surfaces_face(beams):
+            for plane, farthest in own_image_planes(beams, facing):
+                if any(self._is_of(plane, mirror) for mirror in self._mirrors):
+                    continue
+                around = _beams_of(self._scans_near(plane.x, plane.y), mount)
+                floor = MappedFloor.of(occupancy())
+                found = mirror_about(around, floor, plane, farthest)
+                if found is not None:
+                    self._add(found[1], around, floor)
 
     def pass_through(self, start: Floats, end: Floats) -> bool:
         """Take away the mirrors between two places of the robot, [2], m, map frame: they are none.
@@ -124,18 +157,36 @@ class Mirrors:
         ]
         return len(self._mirrors) < known
 
-    def _scans_near(self, x: float, y: float) -> list[PlacedPoints]:
-        scans = [
-            PlacedPoints(frame.points, pose)
-            for frame, pose in self._graph.keyframes()
-            if np.hypot(pose[0] - x, pose[1] - y) < _NEAR
-        ]
-        return scans[:: -(-len(scans) // _MOST) or 1]
+    def _scans_of(self, number: int) -> list[PlacedPoints]:
+        """Return those of a submap's keyframes."""
+        submap = self._graph.submaps[number]
+        frames = zip(submap.keyframes, submap.poses(self._graph.poses[number]), strict=True)
+        return [PlacedPoints(frame.points, pose) for frame, pose in frames]
 
-    def _begun(self, plane: Plane) -> Mirror:
-        """Return another mirror, in the newest submap."""
+    def _newest_scans(self) -> list[PlacedPoints]:
+        scans = list[PlacedPoints]()
+        for number in reversed(range(len(self._graph.submaps))):
+            if len(scans) >= _RECENT:
+                break
+            scans = self._scans_of(number) + scans
+        return scans[-_RECENT:]
+
+    def _scans(self) -> list[PlacedPoints]:
+        """Return those of all keyframes, in the order of time."""
+        return [PlacedPoints(frame.points, pose) for frame, pose in self._graph.keyframes()]
+
+    def _scans_near(self, x: float, y: float) -> list[PlacedPoints]:
+        return _some([s for s in self._scans() if math.dist(s.pose[:2], (x, y)) < _NEAR])
+
+    def _add(self, plane: Plane, beams: Beams, floor: MappedFloor) -> None:
+        """Add a mirror, in the newest submap, unless the robot drove through it before."""
         newest = len(self._graph.poses) - 1
-        return Mirror.touched(newest, placed(plane, inverse(self._graph.poses[newest])))
+        mirror = Mirror.found(newest, placed(plane, inverse(self._graph.poses[newest])))
+        self._count_anew(mirror, beams, floor)
+        ends = mirror.ends(self._graph.poses[newest])
+        way = [pose[:2] for _, pose in self._graph.keyframes()]
+        if not any(_crosses(start, end, *ends) for start, end in pairwise(way)):
+            self._mirrors.append(mirror)
 
     def _count_anew(self, mirror: Mirror, beams: Beams, floor: MappedFloor) -> None:
         """Count what all keyframes about a touch show of a mirror."""
@@ -158,8 +209,15 @@ class Mirrors:
         return -right - spare <= place <= left + spare
 
 
+def _some(scans: list[PlacedPoints]) -> list[PlacedPoints]:
+    """Return all of them, or so many, evenly, that it does not take long."""
+    return scans[:: -(-len(scans) // _MOST) or 1]
+
+
 def _beams_of(scans: list[PlacedPoints], mount: Floats) -> Beams:
-    """Return the beams of one scan or more that met something, map frame."""
+    """Return the beams of scans that met something, map frame."""
+    if not scans:
+        return Beams(*np.zeros((3, 0, 2)))
     points = np.concatenate([moved(scan.points, scan.pose) for scan in scans])
     poses = np.array([scan.pose for scan in scans])
     lidar = np.broadcast_to(np.array([*mount[:2], 0.0]), poses.shape)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -62,10 +61,9 @@ class Touch(NamedTuple):
     first: float
     last: float
 
-    def plane(self, facing: float, shift: float = 0.0) -> Plane:
-        """Return the plane that touches the body there and faces away from it, or farther off."""
-        away = self.radius + shift
-        return Plane(self.x + away * math.cos(facing), self.y + away * math.sin(facing), facing)
+    def plane(self, facing: float) -> Plane:
+        """Return the plane that touches the body there and faces away from it."""
+        return Plane(self.x, self.y, facing).moved(0.0, self.radius)
 
     def has_pressed(self, facing: float) -> bool:
         """Whether such a plane may have pressed that part."""
@@ -81,37 +79,40 @@ def touched_mirror(beams: Beams, floor: MappedFloor, touch: Touch) -> Plane | No
     walls would often be its own image.
     """
     found = [
-        _best(beams, floor, touch, facing)
-        for facing in _ways_that_walls_face(beams)
+        mirror_about(beams, floor, touch.plane(facing))
+        for facing in ways_that_surfaces_face(beams)
         if touch.has_pressed(facing)
     ]
     good = [each for each in found if each is not None]
     return max(good)[1] if good else None
 
 
-def _ways_that_walls_face(beams: Beams) -> Iterator[float]:
-    """Yield the four directions, rad, that most of what the beams met faces."""
+def ways_that_surfaces_face(beams: Beams) -> list[float]:
+    """Return the four directions, rad, that most of what the beams met faces."""
     angles = np.arctan2(beams.normals[:, 1], beams.normals[:, 0])[_is_known(beams.normals)]
     turn = float(np.angle(np.exp(4.0j * angles).sum())) / 4.0
-    yield from (turn + quarter * math.pi / 2.0 for quarter in range(4))
+    return [turn + quarter * math.pi / 2.0 for quarter in range(4)]
 
 
-def _best(
-    beams: Beams, floor: MappedFloor, touch: Touch, facing: float
+def mirror_about(
+    beams: Beams, floor: MappedFloor, about: Plane, before: float = _BEFORE
 ) -> tuple[int, Plane] | None:
-    """Return the plane about one that was touched of which most images fit, and how many."""
-    near = _that_passed(beams, touch.plane(facing))
+    """Return how many images fit more than contradict, and the plane, of a mirror near a plane.
+
+    None if there seems to be none. The robot must have seen itself in it from less than ``before``
+    m away.
+    """
+    near = _that_passed(beams, about)
     count = len(near.starts)
     if count < _LEAST:
         return None
     tried = [(turn, shift) for turn in _TURNS for shift in _SHIFTS]
-    planes = [touch.plane(facing + turn, shift) for turn, shift in tried]
-    net = np.array([_net(near, floor, plane) for plane in planes])
+    net = np.array([_net(near, floor, about.moved(turn, shift)) for turn, shift in tried])
     # Cells are coarse: planes in between fit as well.
     alike = net >= net.max() - _ALIKE * count
     turn, shift = np.array(tried)[alike].mean(axis=0).tolist()
-    plane = touch.plane(facing + turn, shift)
-    is_mirror = _is_mirror(near, floor, plane) and _shows_itself(beams, plane)
+    plane = about.moved(turn, shift)
+    is_mirror = _is_mirror(near, floor, plane) and _shows_itself(beams, plane, before)
     return (int(net.max()), plane) if is_mirror else None
 
 
@@ -132,14 +133,14 @@ def _is_mirror(beams: Beams, floor: MappedFloor, plane: Plane) -> bool:
     )
 
 
-def _shows_itself(beams: Beams, plane: Plane) -> bool:
+def _shows_itself(beams: Beams, plane: Plane, before: float) -> bool:
     """Whether the robot saw itself in a plane wherever it stood near by before its middle.
 
     Without that the middle of a room with two walls alike would be a mirror.
     """
     off = beams.starts - plane.middle
     away, aside = -off @ plane.normal, np.abs(off @ plane.along)
-    near = beams.chosen((away > 0.0) & (away < _BEFORE) & (aside < _BEFORE_ASIDE))
+    near = beams.chosen((away > 0.0) & (away < before) & (aside < _BEFORE_ASIDE))
     stood = len(np.unique(near.starts, axis=0))
     shown = len(np.unique(near.starts[own_images(near, plane)], axis=0))
     return stood >= _LEAST_STOOD and shown >= _LEAST_SHOWN * stood

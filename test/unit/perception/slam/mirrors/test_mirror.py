@@ -21,7 +21,7 @@ def widened(room: MirrorRoom, pose: NDArray[np.float64] = HOME) -> Mirror:
     frames = room.drive(*WAY)
     plane = Plane(1.8, HEIGHT, math.pi / 2.0)
     inverse = np.array([-pose[0], -pose[1], 0.0])
-    mirror = Mirror.touched(0, placed(plane, inverse))
+    mirror = Mirror.found(0, placed(plane, inverse))
     mirror.count(beams_of(frames), MappedFloor.of(drawn(frames)), pose)
     return mirror
 
@@ -35,14 +35,14 @@ def test_it_goes_as_far_as_images_fit(pose: NDArray[np.float64]) -> None:
 
 
 def test_a_touch_alone_is_of_more_than_a_point() -> None:
-    right, left = Mirror.touched(0, Plane(1.0, 2.0, 0.0)).ends(HOME)
+    right, left = Mirror.found(0, Plane(1.0, 2.0, 0.0)).ends(HOME)
     assert 0.1 < math.dist(right, left) < 0.3
     assert (right + left) / 2.0 == pytest.approx((1.0, 2.0))
 
 
 def test_beside_an_opening_it_ends_there() -> None:
     frames = MirrorRoom(1.0, 1.5, Kind.GLASS).drive(*WAY)
-    mirror = Mirror.touched(0, Plane(1.25, HEIGHT, math.pi / 2.0))
+    mirror = Mirror.found(0, Plane(1.25, HEIGHT, math.pi / 2.0))
     mirror.count(beams_of(frames), MappedFloor.of(drawn(frames)), HOME)
     right, left = mirror.ends(HOME)
     assert math.dist(right, left) < 0.3, "no image fits: it stays as it was touched"
@@ -85,12 +85,12 @@ def test_it_goes_on_over_what_no_beam_shows_to_a_surface_that_is_seen() -> None:
     share = (HEIGHT - beams.starts[:, 1]) / np.where(behind, ways[:, 1], 1.0)
     there = np.where(behind, beams.starts[:, 0] + share * ways[:, 0], 0.0)
     # Nothing shows the mirror from 2.25 m on; from 2.5 m on a wall is seen.
-    mirror = Mirror.touched(0, plane)
+    mirror = Mirror.found(0, plane)
     mirror.count(beams.chosen(there < 2.25), ground, HOME)
     right, _ = mirror.ends(HOME)
     assert right[0] == pytest.approx(2.55, abs=0.1)
     # Where the wall is farther off than a robot is wide, it is not known to go on.
-    narrower = Mirror.touched(0, plane)
+    narrower = Mirror.found(0, plane)
     narrower.count(beams.chosen(there < 2.0), ground, HOME)
     right, _ = narrower.ends(HOME)
     assert right[0] == pytest.approx(2.05, abs=0.1)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
+from roomba.grid import OccupancyMap
 from roomba.perception.slam.mirrors.mirrors import Mirrors, PlacedPoints
 from roomba.perception.slam.submaps.submap import Keyframe
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
@@ -85,7 +86,7 @@ def test_the_same_scans_again_make_it_no_wider(again: str) -> None:
         if again == "feel":
             mirrors.feel(touch, newest(frames), MOUNT, whole)
         else:
-            mirrors.see(0, MOUNT, whole)
+            mirrors.see(0, MOUNT, lambda: whole)
     assert (mirrors.ends == before).all()
 
 
@@ -126,10 +127,10 @@ def test_a_submap_that_shows_more_of_it_makes_it_wider() -> None:
     graph.begin(np.zeros(3), 1.0)
     for frame, pose in around:
         graph.newest.keyframes.append(Keyframe(frame.points, pose))
-    mirrors.see(1, MOUNT, occupancy)
+    mirrors.see(1, MOUNT, lambda: occupancy)
     assert np.ptp(mirrors.ends[0, :, 0]) >= narrow
     assert np.ptp(mirrors.ends[0, :, 0]) > 1.4
-    assert not mirrors.see(1, MOUNT, occupancy), "there is no more of it"
+    assert not mirrors.see(1, MOUNT, lambda: occupancy), "there is no more of it"
 
 
 def test_what_the_robot_drives_through_is_none() -> None:
@@ -140,4 +141,39 @@ def test_what_the_robot_drives_through_is_none() -> None:
     assert not mirrors.pass_through(np.array([3.8, HEIGHT - 0.3]), beside)
     assert len(mirrors) == 1
     assert mirrors.pass_through(before, behind)
+    assert len(mirrors) == 0
+
+
+@pytest.mark.parametrize("when", ["a submap ends", "the drive is over"])
+def test_a_mirror_in_which_the_robot_saw_itself_is_known_untouched(when: str) -> None:
+    frames = MirrorRoom().drive((0.6, 0.6), (3.4, 0.5), (1.8, 0.4), (1.8, 2.4))
+    mirrors, occupancy = Mirrors(graph_of(frames)), drawn(frames)
+    if when == "a submap ends":
+        assert mirrors.see(0, MOUNT, lambda: occupancy)
+    else:
+        assert mirrors.see_all(MOUNT, lambda: occupancy)
+    ((right, left),) = mirrors.ends
+    assert right == pytest.approx((2.5, HEIGHT), abs=0.15)
+    assert left == pytest.approx((1.0, HEIGHT), abs=0.15)
+    assert not mirrors.see_all(MOUNT, lambda: occupancy), "it is known already"
+
+
+def test_in_a_room_without_one_it_needs_no_map_to_know_that() -> None:
+    frames = MirrorRoom(kind=Kind.GLASS).drive((0.6, 0.6), (3.4, 0.5), (1.8, 0.4), (1.8, 2.4))
+    mirrors = Mirrors(graph_of(frames))
+
+    def drawn_in_vain() -> OccupancyMap:
+        raise AssertionError("it is drawn for nothing")
+
+    assert not mirrors.see(0, MOUNT, drawn_in_vain)
+    assert not mirrors.see_all(MOUNT, drawn_in_vain)
+
+
+def test_where_the_robot_drove_through_no_mirror_begins() -> None:
+    room = MirrorRoom()
+    frames = room.drive((0.6, 0.6), (3.4, 0.5), (1.8, 0.4), (1.8, 2.4))
+    # Behind it by what it knew then: it drove on through what is no mirror.
+    through = [(frames[-1][0], np.array([1.8, HEIGHT + 0.3, 0.0]))]
+    mirrors = Mirrors(graph_of(frames + through))
+    assert not mirrors.see(0, MOUNT, lambda: drawn(frames))
     assert len(mirrors) == 0

@@ -1,0 +1,83 @@
+"""Planes in which a robot that drives about may have seen itself, before it touched any.
+
+Its own image is as far behind a mirror as the robot is before it. Straight ahead of the mirror a
+beam is twice as long as the way to it, from wherever it is taken: half of it ends on one plane.
+What stands still is as far from one place as it is near to another, and half of the way to it ends
+on a plane from one distance alone.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roomba.angles import wrap_angles
+from roomba.arrays import Floats
+from roomba.perception.slam.mirrors.images import Beams, Plane
+
+_AHEAD: Final = 0.03
+"""rad; a beam that is turned by less from the normal of a plane looks straight at it."""
+_FARTHEST: Final = 4.0
+"""m; from farther off hardly a beam meets its own image."""
+_BODY: Final = 0.04
+"""m; half of the way ends so far before a mirror: the image is of the robot's near side."""
+_OFF: Final = 0.05
+"""m; off one plane at most,"""
+_ASIDE: Final = 0.4
+"""and along it, of what is taken together."""
+_LEAST: Final = 6
+"""Places from which the robot saw itself in a plane,"""
+_LEAST_SPREAD: Final = 1.2
+"""m; of which the nearest and the farthest are so far apart by their distance."""
+_MOST: Final = 3
+"""Planes that are told for one direction."""
+
+
+class OwnImage(NamedTuple):
+    """A ``plane`` in which the robot may have seen itself, from ``farthest`` m on."""
+
+    plane: Plane
+    farthest: float
+
+
+def own_image_planes(beams: Beams, facing: float) -> list[OwnImage]:
+    """Return planes that face about one way, rad, in which the robot may have seen itself.
+
+    Those that it saw from most places come first.
+    """
+    ways = beams.ends - beams.starts
+    off = wrap_angles(np.arctan2(ways[:, 1], ways[:, 0]) - facing)
+    away = 0.5 * np.hypot(ways[:, 0], ways[:, 1])
+    ahead = (np.abs(off) < _AHEAD) & (away < _FARTHEST)
+    starts, away = beams.starts[ahead], away[ahead]
+    toward = Plane(0.0, 0.0, facing)
+    distance, place = starts @ toward.normal + away, starts @ toward.along
+    found, left = list[OwnImage](), np.ones(len(starts), np.bool_)
+    while len(found) < _MOST and left.any():
+        together = _most_together(starts, distance, place, left)
+        left &= ~together
+        if len(np.unique(starts[together], axis=0)) < _LEAST:
+            break
+        if np.ptp(away[together]) >= _LEAST_SPREAD:
+            middle = (np.median(distance[together]) + _BODY) * toward.normal
+            x, y = (middle + np.median(place[together]) * toward.along).tolist()
+            found.append(OwnImage(Plane(x, y, facing), float(away[together].max())))
+    return found
+
+
+def _most_together(
+    starts: Floats, distance: Floats, place: Floats, left: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Return which of those that are ``left`` end near one point of a plane, from most places."""
+    best, most = left & False, 0
+    bins = np.round(np.column_stack((distance / _OFF, place / _ASIDE))[left])
+    centres, counts = np.unique(bins, axis=0, return_counts=True)
+    for centre in centres[counts > 1]:
+        near = left & (np.abs(distance - centre[0] * _OFF) < _OFF)
+        near &= np.abs(place - centre[1] * _ASIDE) < _ASIDE
+        count = int(near.sum())
+        if count > most:
+            best, most = near, count
+    return best
