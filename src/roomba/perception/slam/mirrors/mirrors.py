@@ -103,7 +103,7 @@ class Mirrors:
         return not np.array_equal(self.ends, before)
 
     def see(self, number: int, mount: Floats, occupancy: Callable[[], OccupancyMap]) -> bool:
-        """Look how far mirrors go, and for others, by a submap's keyframes; tell what changed.
+        """Look how far mirrors go, and for others, as a submap ends; tell whether one changed.
 
         ``occupancy`` makes the map as it is known, if that is needed. Keyframes that were counted
         before say nothing new of a mirror.
