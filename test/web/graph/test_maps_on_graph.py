@@ -52,8 +52,10 @@ def test_maps_are_chosen_removed_and_saved(graph: RosGraph, tmp_path: Path) -> N
         page.get_by_role("button", name="Save the map as").click()
         page.get_by_role("textbox", name="Name").fill("given")
         page.get_by_role("button", name="OK").click()
-        page.wait_for_selector("#refusal:not([hidden])")
-        assert "given" in page.inner_text("#refusal")
+        page.wait_for_selector("#ask-fault:not([hidden])")
+        assert "given" in page.inner_text("#ask-fault")
+        assert page.get_by_role("textbox", name="Name").input_value() == "given"
+        page.get_by_role("button", name="Cancel").click()
         Probe(graph, "offers_a_change")
         publisher = rospy.Publisher("map/update", MapUpdate, queue_size=1, latch=True)
         change = MapChange(True, Point(1.0, 1.0, 0.0), 0.5, 0.4, 0.2)
