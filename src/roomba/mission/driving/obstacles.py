@@ -70,6 +70,7 @@ class Obstacles:
         self._unseen = UnknownThings(walk, body, config.lasting_memory)
         # A wall that is met aside stands, but where the robot is may be off for a while.
         self._beside = UnknownThings(walk, body, config.felt_memory)
+        self._things = self._felt, self._lasting, self._unseen, self._beside
         # Stairs do not go away.
         self._edges = UnknownThings(walk, body, _FOREVER)
         self._same_place = config.lasting_radius
@@ -93,7 +94,7 @@ class Obstacles:
         """
         self.felt_version += self.seen.version + 1
         self.seen = seen
-        for felt in (self._felt, self._lasting, self._unseen, self._beside, self._edges):
+        for felt in (*self._things, self._edges):
             felt.move(moved)
         there = [moved.compose(Pose(x, y)) for x, y in self._touched]
         self._touched = deque(((place.x, place.y) for place in there), maxlen=_TOUCHES)
@@ -125,7 +126,7 @@ class Obstacles:
 
     def forget_felt_at(self, senses: Senses) -> None:
         """Forget what was felt where the robot itself stands: it cannot be there."""
-        for felt in (self._felt, self._lasting, self._unseen, self._beside):
+        for felt in self._things:
             felt.forget_around(senses.pose.x, senses.pose.y)
         self.felt_version += 1
 
@@ -192,5 +193,4 @@ class Obstacles:
         return [angle for angle, x, y in rim if self.seen.is_mapped(x, y)]
 
     def _all_felt(self, now: float) -> list[RoundObstacle]:
-        stores = self._felt, self._lasting, self._unseen, self._beside
-        return [thing for felt in stores for thing in felt.at(now)]
+        return [thing for felt in self._things for thing in felt.at(now)]

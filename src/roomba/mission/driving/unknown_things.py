@@ -57,19 +57,16 @@ class UnknownThings:
 
     def places(self, pose: Pose, left: bool, right: bool) -> list[tuple[float, float]]:
         """Return where along the halves of its front a body at ``pose`` feels something, m."""
-        return [
-            _Touch(0.0, pose.x, pose.y, pose.theta + angle).beyond(self._body_radius)
-            for angle in self._angles(left, right)
-        ]
+        return [self._on_rim(pose, angle) for angle in self._angles(left, right)]
 
     def rim(self, pose: Pose, left: bool, right: bool) -> list[tuple[float, float, float]]:
         """Return bearings all along the pressed part of the rim, and x and y there, rad and m."""
         first, last = self._pressed(left, right)
         angles = np.linspace(first, last, 1 + math.ceil((last - first) / _STEP)).tolist()
-        return [
-            (angle, *_Touch(0.0, pose.x, pose.y, pose.theta + angle).beyond(self._body_radius))
-            for angle in angles
-        ]
+        return [(angle, *self._on_rim(pose, angle)) for angle in angles]
+
+    def _on_rim(self, pose: Pose, angle: float) -> tuple[float, float]:
+        return _Touch(0.0, pose.x, pose.y, pose.theta + angle).beyond(self._body_radius)
 
     def _angles(self, left: bool, right: bool) -> tuple[float, ...]:
         return self._both if left and right else self._left if left else self._right

@@ -54,7 +54,7 @@ def picture_of_a_mirror(home: Home) -> Figure:
     draw_robot(plan, _AT, INK)
     plan.set(xlim=_AREA[::2], ylim=_AREA[1::2], xlabel="x, m", ylabel="y, m")
     plan.legend(loc="lower right", frameon=True)
-    seen = [images(beams, _MIRROR._replace(facing=_MIRROR.facing + turn), floor) for turn in _TURNS]
+    seen = [images(beams, _MIRROR.moved(turn, 0.0), floor) for turn in _TURNS]
     turns = np.degrees(_TURNS)
     fits.plot(turns, [each.fits.sum() for each in seen], color=GREEN, label="they fit")
     against = [each.contradicts.sum() for each in seen]

@@ -24,6 +24,8 @@ _BESIDE: Final = 0.08
 """m; what is so near to a plane may be a wall on which the mirror hangs."""
 _OWN: Final = 0.25
 """m; an image so near to the lidar is that of the robot itself."""
+_AT_RIGHT_ANGLES: Final = 0.25
+"""Cosine between what was met and the plane, below which its image lies on itself."""
 _AROUND: Final = np.ones((3, 3), np.bool_)
 """Cells around an occupied one in which its surface may be."""
 
@@ -105,10 +107,6 @@ class Images(NamedTuple):
     fits: Flags
     contradicts: Flags
     informs: Flags
-
-
-_AT_RIGHT_ANGLES: Final = 0.25
-"""Cosine between what was met and the plane, below which its image lies on itself."""
 
 
 def places_of_ends(beams: Beams, plane: Plane) -> Floats:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from roomba.arrays import Floats
 from roomba.perception.slam.mirrors.images import Beams, MappedFloor, Plane, images, places_of_ends
+from roomba.perception.slam.submaps.pose_graph import composed
 
 _BIN: Final = 0.05
 """m along a mirror in which beams are counted together."""
@@ -114,12 +114,7 @@ class KeptMirror(NamedTuple):
 
 def placed(plane: Plane, pose: Floats) -> Plane:
     """Return a plane of a frame that lies at ``pose``, float64 [3]."""
-    cosine, sine = math.cos(pose[2]), math.sin(pose[2])
-    return Plane(
-        float(pose[0]) + cosine * plane.x - sine * plane.y,
-        float(pose[1]) + sine * plane.x + cosine * plane.y,
-        float(pose[2]) + plane.facing,
-    )
+    return Plane(*composed(pose[None], np.array(plane)[None])[0].tolist())
 
 
 def _count(counts: NDArray[np.int64], places: Floats) -> None:

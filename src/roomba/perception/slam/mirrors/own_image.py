@@ -56,7 +56,7 @@ def own_image_planes(beams: Beams, facing: float) -> list[OwnImage]:
     distance, place = starts @ toward.normal + away, starts @ toward.along
     found, left = list[OwnImage](), np.ones(len(starts), np.bool_)
     while len(found) < _MOST and left.any():
-        together = _most_together(starts, distance, place, left)
+        together = _most_together(distance, place, left)
         left &= ~together
         if len(np.unique(starts[together], axis=0)) < _LEAST:
             break
@@ -67,10 +67,8 @@ def own_image_planes(beams: Beams, facing: float) -> list[OwnImage]:
     return found
 
 
-def _most_together(
-    starts: Floats, distance: Floats, place: Floats, left: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
-    """Return which of those that are ``left`` end near one point of a plane, from most places."""
+def _most_together(distance: Floats, place: Floats, left: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return which of those that are ``left`` end near one point of a plane: the most that do."""
     best, most = left & False, 0
     bins = np.round(np.column_stack((distance / _OFF, place / _ASIDE))[left])
     centres, counts = np.unique(bins, axis=0, return_counts=True)

@@ -1,4 +1,4 @@
-"""The plane of a mirror that was touched, found by what it shows."""
+"""The plane of a mirror near one that was touched, or seen, found by what it shows."""
 
 from __future__ import annotations
 
