@@ -7,15 +7,19 @@ length that it is told. There is no hook for that, so three of its functions are
 from __future__ import annotations
 
 import contextlib
+import functools
+import itertools
 import socket
 import struct
 import threading
 import time
+import weakref
 from collections.abc import Callable
 from typing import Any, Final
 
 import rosgraph.xmlrpc
 import rospy
+import rospy.impl.registration
 import rospy.impl.tcpros_base as tcpros
 import rospy.msg
 from rosgraph.network import (
@@ -42,6 +46,11 @@ _LENGTH: Final = struct.Struct("<I")
 _unguarded_socket: Final = tcpros.TCPServer._create_server_sock
 _unguarded: Final = rospy.msg.deserialize_messages
 _slots = threading.BoundedSemaphore(_MOST_HANDSHAKES)
+_numbers: Final = itertools.count()
+_taken: Final[weakref.WeakKeyDictionary[socket.socket, int]] = weakref.WeakKeyDictionary()
+"""Connections to topics, by their socket, and when each was taken: the first one is 0."""
+_handing_over: Final = threading.Lock()
+"""Held while a connection becomes that of a topic."""
 
 
 class NothingSaidError(ConnectionError):
@@ -50,6 +59,10 @@ class NothingSaidError(ConnectionError):
     rospy does so with a connection to a topic that it opened twice, as all nodes start at once: no
     fault that anyone could mend.
     """
+
+
+class SupersededError(ConnectionError):
+    """A connection to a topic whose subscriber has opened another one since."""
 
 
 def guard_connections() -> None:
@@ -77,14 +90,20 @@ def _take(server: Any, connection: socket.socket, address: tuple[str, int]) -> N
         connection.close()
         _refuse(f"more than {_MOST_HANDSHAKES} of them say nothing")
         return
-    threading.Thread(target=_shake_hands, args=(server, connection, address), daemon=True).start()
+    arguments = (server, connection, address, next(_numbers))
+    threading.Thread(target=_shake_hands, args=arguments, daemon=True).start()
 
 
-def _shake_hands(server: Any, connection: socket.socket, address: tuple[str, int]) -> None:
-    """Hand a connection to the topic or service that it wants, or close it."""
+def _shake_hands(
+    server: Any, connection: socket.socket, address: tuple[str, int], number: int
+) -> None:
+    """Hand a connection to the topic or service that it wants, or close it.
+
+    ``number`` grows from one connection that was taken to the next.
+    """
     try:
-        fault = _answer(server, connection, address)
-    except NothingSaidError:
+        fault = _answer(server, connection, address, number)
+    except (NothingSaidError, SupersededError):
         connection.close()
         fault = ""
     except (OSError, ValueError, ROSHandshakeException, rospy.ROSException) as error:
@@ -97,11 +116,14 @@ def _shake_hands(server: Any, connection: socket.socket, address: tuple[str, int
             _refuse(fault)
 
 
-def _answer(server: Any, connection: socket.socket, address: tuple[str, int]) -> str:
-    """Return what is wrong with a connection; empty when it was taken."""
+def _answer(server: Any, connection: socket.socket, address: tuple[str, int], number: int) -> str:
+    """Return what is wrong with a connection; empty when it was handed over.
+
+    Raises what :func:`header_of` raises, and SupersededError.
+    """
     header = header_of(connection)
     handlers: dict[str, Callable[..., str | None]] = {
-        "topic": server.topic_connection_handler,
+        "topic": functools.partial(_serve_topic, server, number),
         "service": server.service_connection_handler,
     }
     wanted = next((name for name in handlers if name in header), "")
@@ -113,6 +135,38 @@ def _answer(server: Any, connection: socket.socket, address: tuple[str, int]) ->
         with contextlib.suppress(OSError):
             write_ros_handshake_header(connection, {"error": fault})
     return fault or ""
+
+
+def _serve_topic(
+    server: Any,
+    number: int,
+    connection: socket.socket,
+    address: tuple[str, int],
+    header: dict[str, str],
+) -> str | None:
+    """Make a connection that of its topic; return what is wrong with it.
+
+    rospy keeps one connection for each subscriber and closes the one that was there before, and a
+    subscriber closes the earlier of two that it opened. Both must keep the same one, or none is
+    left: handshakes end in any order here, but the connection that was taken last is kept.
+
+    Raises SupersededError.
+    """
+    with _handing_over:
+        if _has_later(header, number):
+            raise SupersededError("its node has opened another one since")
+        _taken[connection] = number
+        fault: str | None = server.topic_connection_handler(connection, address, header)
+    return fault
+
+
+def _has_later(header: dict[str, str], number: int) -> bool:
+    """Whether the same subscriber has a connection to the topic that was taken later."""
+    topic = rospy.impl.registration.get_topic_manager().get_publisher_impl(header["topic"])
+    served = [] if topic is None else topic.connections
+    sockets = [one.socket for one in served if one.endpoint_id == header.get("callerid")]
+    # A connection that is closed meanwhile has no socket.
+    return any(_taken.get(one, -1) > number for one in sockets if one is not None)
 
 
 def header_of(connection: socket.socket) -> dict[str, str]:

@@ -94,6 +94,37 @@ def test_an_endless_header_is_dropped_at_once_and_a_slow_one_in_time(node: RosGr
     answers(node)
 
 
+def test_of_two_connections_of_a_subscriber_the_one_that_was_opened_last_stays(
+    node: RosGraph,
+) -> None:
+    Probe(node)
+    place, _ = places(node)
+    asked = {
+        "topic": "/emergency_stop",
+        "type": "std_msgs/String",
+        "md5sum": String._md5sum,
+        "callerid": "/twice",
+    }
+    header = encode_ros_handshake_header(asked)
+    first, last = socket.create_connection(place), socket.create_connection(place)
+    first.sendall(header[:-1])
+    last.sendall(header)
+    assert last.recv(4)
+    # The first one's handshake ends after that of the other one, though it was opened before it.
+    first.sendall(header[-1:])
+    promised(lambda: is_closed(first), 2.0, "the first one is closed")
+    last.setblocking(True)
+    last.settimeout(5.0)
+    while last.recv(1 << 16)[-4:] != struct.pack("<I", 0):
+        """The rest of its header, and the message that the topic keeps: an empty text."""
+    os.environ.update(node.environment)
+    call = rospy.ServiceProxy("/emergency_stop", EmergencyStop)
+    assert call(True, "a test").success
+    assert last.recv(1 << 16).endswith(b"a test")
+    assert call(False, "").success
+    last.close()
+
+
 def test_nonsense_is_refused_in_few_lines(node: RosGraph) -> None:
     Probe(node)
     place, _ = places(node)
