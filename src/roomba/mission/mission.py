@@ -21,7 +21,7 @@ from roomba.mission.changed_home import ChangedHome
 from roomba.mission.checkpoint import checkpoint_of, remembered, state_after, take_up
 from roomba.mission.cleaning.checkpoint import Values
 from roomba.mission.cleaning.cleaning import Cleaning
-from roomba.mission.cleaning.request import CleanRequest, CleanResult
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult
 from roomba.mission.commands import Commands
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles
@@ -33,7 +33,7 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.carpet import CarpetSense
 from roomba.mission.phases.job import Job
-from roomba.mission.phases.machine import Errand, Event, MissionState
+from roomba.mission.phases.machine import Errand, Event, MissionState, way_ended
 from roomba.mission.phases.monitor import Monitor
 from roomba.mission.steady import Steady
 from roomba.mission.ticks import MissionStep, MissionTicks
@@ -159,6 +159,11 @@ class Mission:
     def take_result(self) -> CleanResult | None:
         """Return the result of a clean that ended, once."""
         return self._job.take_result()
+
+    def way_ended(self, errand: Errand) -> CleanOutcome | None:
+        """Return how a way into the station (DOCK) or out of it (UNDOCK) ended; None: not yet."""
+        transitions = self._transitions
+        return way_ended(transitions.state, errand, transitions.last_command)
 
     def checkpoint(self, senses: Senses) -> Values | None:
         """Return all that must be remembered to go on, as plain values; None without an errand."""

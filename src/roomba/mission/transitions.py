@@ -22,7 +22,8 @@ RELEASED: Final = "the emergency stop was released: it waits to be told to go on
 class Transitions:
     """Keeps the ``state``, and the ``reason`` why the robot does not do what was asked.
 
-    What belongs to a phase ends with it.
+    ``last_command`` is the last one that was obeyed, None before the first. What belongs to a phase
+    ends with it.
     """
 
     def __init__(
@@ -36,6 +37,7 @@ class Transitions:
     ) -> None:
         """Begin in a state, without a reason."""
         self.state, self.reason = state, ""
+        self.last_command: Event | None = None
         self._job, self._drives, self._obstacles = job, drives, obstacles
         self._at_station, self._retries = at_station, retries
 
@@ -50,7 +52,11 @@ class Transitions:
     def go(self, event: Event, senses: Senses) -> None:
         """Let an event change the state; what belonged to the old phase ends."""
         after = next_state(self.state, event)
-        if after is None or after == self.state:
+        if after is None:
+            return
+        if event.is_command:
+            self.last_command = event
+        if after == self.state:
             return
         before, self.state = self.state, after
         self.drop_driver()

@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 from roomba_robot.msg import (
     CleanAction,
@@ -32,7 +32,6 @@ from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Errand, Event
-from roomba.vocabulary import Phase
 from roomba_ros.convert.mission import (
     explored_message,
     feedback_message,
@@ -144,27 +143,42 @@ class CleaningGoal(MissionGoal):
         return CleanResultMessage(outcome=CleanResultMessage.STOPPED, message=message)
 
 
-class DockingGoal(MissionGoal):
+class StationGoal(MissionGoal):
+    """A way into the station, or out of it."""
+
+    _errand: ClassVar[Errand]
+    _command: ClassVar[Event]
+
+    def begin(self, mission: Mission, senses: Senses) -> None:
+        """Let the mission drive there."""
+        mission.command(self._command, senses)
+
+    def follow(self, mission: Mission, senses: Senses, ended: Ended) -> bool:
+        """Tell its end if the robot is there, or does not get there."""
+        outcome = mission.way_ended(self._errand)
+        if outcome is None:
+            return False
+        if outcome is CleanOutcome.FAULT:
+            self.given_up(mission.message)
+        elif outcome is CleanOutcome.STOPPED:
+            self.stopped(ended, "it was stopped")
+        else:
+            self._arrived()
+        return True
+
+    @abstractmethod
+    def _arrived(self) -> None:
+        """Tell that it is there."""
+
+
+class DockingGoal(StationGoal):
     """Go to the station."""
 
     name, action = "dock", DockAction
+    _errand, _command = Errand.DOCK, Event.DOCK
 
-    def begin(self, mission: Mission, senses: Senses) -> None:
-        """Let the mission go there."""
-        mission.command(Event.DOCK, senses)
-
-    def follow(self, mission: Mission, senses: Senses, ended: Ended) -> bool:
-        """Tell its end if the robot is there, or cannot get there."""
-        state = mission.state
-        if state.phase is Phase.DOCKED:
-            self._handle.set_succeeded(DockResult(True, ""), "docked")
-        elif state.phase in (Phase.ERROR, Phase.EMERGENCY):
-            self.given_up(mission.message)
-        elif state.errand is not Errand.DOCK:
-            self.stopped(ended, "it was stopped")
-        else:
-            return False
-        return True
+    def _arrived(self) -> None:
+        self._handle.set_succeeded(DockResult(True, ""), "docked")
 
     def tell(self, state: VacuumState) -> None:
         """Tell whether it drives there or is about to touch it."""
@@ -174,27 +188,14 @@ class DockingGoal(MissionGoal):
         return DockResult(False, message)
 
 
-class UndockingGoal(MissionGoal):
+class UndockingGoal(StationGoal):
     """Back out of the station."""
 
     name, action = "undock", UndockAction
+    _errand, _command = Errand.UNDOCK, Event.UNDOCK
 
-    def begin(self, mission: Mission, senses: Senses) -> None:
-        """Let the mission back out."""
-        mission.command(Event.UNDOCK, senses)
-
-    def follow(self, mission: Mission, senses: Senses, ended: Ended) -> bool:
-        """Tell its end if the robot is out, or cannot get out."""
-        state = mission.state
-        if state.phase in (Phase.ERROR, Phase.EMERGENCY):
-            self.given_up(mission.message)
-        elif state.phase is Phase.IDLE:
-            self._handle.set_succeeded(UndockResult(True, ""), "out of the station")
-        elif state.errand is not Errand.UNDOCK:
-            self.stopped(ended, "it was stopped")
-        else:
-            return False
-        return True
+    def _arrived(self) -> None:
+        self._handle.set_succeeded(UndockResult(True, ""), "out of the station")
 
     def tell(self, state: VacuumState) -> None:
         """Tell what it does."""

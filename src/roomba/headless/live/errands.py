@@ -19,11 +19,11 @@ from roomba.headless.embodied import Embodied
 from roomba.headless.live.errand import LiveErrand, Obey
 from roomba.headless.live.snapshots import ErrandsEnded
 from roomba.headless.live.views import vacuum_snapshot
-from roomba.mission.cleaning.request import CleanRequest
+from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Errand, Event
 from roomba.mission.walking.walk import WalkState, expected_duration, feedback_period
-from roomba.vocabulary import OVERTAKEN, Phase
+from roomba.vocabulary import OVERTAKEN
 
 
 class LiveWalk(LiveErrand[float, WalkReport]):
@@ -173,34 +173,26 @@ class LiveDocking(LiveErrand[str, DockReport]):
         """Begin nothing yet."""
         super().__init__(obey, ending, pace)
         self._event = event
-        is_in = event is Event.DOCK
-        self._errand = Errand.DOCK if is_in else Errand.UNDOCK
-        self._there = Phase.DOCKED if is_in else Phase.IDLE
+        self._errand = Errand.DOCK if event is Event.DOCK else Errand.UNDOCK
 
     def _begin(self, robot: Embodied) -> None:
         robot.mission.command(self._event, robot.senses())
 
     def follow(self, robot: Embodied, ended: ErrandsEnded) -> None:
-        """Tell what it does."""
-        state = robot.mission.state
-        if state.phase in (Phase.ERROR, Phase.EMERGENCY):
+        """Tell what it does, or how it ended."""
+        outcome = robot.mission.way_ended(self._errand)
+        if outcome is CleanOutcome.FAULT:
             self._end(DockReport(ErrandOutcome.FAULT, robot.mission.message))
-        elif state.errand is self._errand:
-            if self._is_due(robot):
-                self._tell(state.phase.value)
-        elif state.phase is self._there:
-            self._end(DockReport(ErrandOutcome.COMPLETED, ""))
-        else:
+        elif outcome is CleanOutcome.STOPPED:
             self._end(DockReport(ErrandOutcome.STOPPED, "it was stopped"))
+        elif outcome is CleanOutcome.COMPLETED:
+            self._end(DockReport(ErrandOutcome.COMPLETED, ""))
+        elif self._is_due(robot):
+            self._tell(robot.mission.state.phase.value)
 
     def give_way(self) -> None:
         """End, because something newer took over."""
         self._end(DockReport(ErrandOutcome.STOPPED, OVERTAKEN))
-
-    def _cancel(self, robot: Embodied) -> None:
-        super()._cancel(robot)
-        # Out of the station it would stand where it was to come to.
-        self._end(DockReport(ErrandOutcome.STOPPED, "it was stopped"))
 
     def _refused(self, reason: str) -> DockReport:
         return DockReport(ErrandOutcome.REFUSED, reason)

@@ -1,8 +1,8 @@
 """The mission's state machine: what comes after what. No clock, no I/O, no robot.
 
 A state is a :class:`Phase`, the :class:`Errand` that it is for, and, while the robot is held up,
-the phase that comes again. :func:`next_state` is a table: an event that a phase does not know
-changes nothing, and a command among them is refused.
+the phase that comes again. :func:`next_state` says what comes after an event: one that a phase does
+not know changes nothing, and a command among them is refused.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Final
 
+from roomba.mission.cleaning.request import CleanOutcome
 from roomba.vocabulary import HELD, Phase
 
 
@@ -115,6 +116,23 @@ def next_state(state: MissionState, event: Event) -> MissionState | None:
     if state.drives:
         return _driving(state, event)
     return _standing(state, event)
+
+
+def way_ended(
+    state: MissionState, errand: Errand, last_command: Event | None
+) -> CleanOutcome | None:
+    """Return how a way into the station or out of it ended; None while it is under way.
+
+    ``errand`` is DOCK or UNDOCK. A robot that was stopped on its way out stands where it was to
+    come to, off its station: by ``last_command``, the last one that it obeyed, this is no success.
+    """
+    if state.phase in (Phase.ERROR, Phase.EMERGENCY):
+        return CleanOutcome.FAULT
+    if state.errand is errand:
+        return None
+    there = Phase.DOCKED if errand is Errand.DOCK else Phase.IDLE
+    is_there = state.phase is there and last_command not in (Event.STOP, Event.RELEASE)
+    return CleanOutcome.COMPLETED if is_there else CleanOutcome.STOPPED
 
 
 def _stopped_at_once(state: MissionState) -> MissionState:

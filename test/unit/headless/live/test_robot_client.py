@@ -255,6 +255,18 @@ def test_errands_are_cancelled(robot: RobotClient) -> None:
     assert clean.report() is None
 
 
+def test_a_way_out_of_the_station_that_is_stopped_is_no_success(unhurried: RobotClient) -> None:
+    undocking = unhurried.undock()
+    assert undocking.next_feedback(DEADLINE) == "undocking"
+    unhurried.stop()
+    assert end_of(undocking).outcome is ErrandOutcome.STOPPED
+    assert end_of(unhurried.dock()).outcome is ErrandOutcome.COMPLETED
+    undocking = unhurried.undock()
+    assert undocking.next_feedback(DEADLINE) == "undocking"
+    undocking.cancel()
+    assert end_of(undocking).outcome is ErrandOutcome.STOPPED
+
+
 def test_rooms_are_cleaned_and_spots(robot: RobotClient) -> None:
     names = robot.rooms()
     assert names

@@ -9,7 +9,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.mission.phases.machine import VACUUM_STATES, Errand, Event, MissionState, next_state
+from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.phases.machine import (
+    VACUUM_STATES,
+    Errand,
+    Event,
+    MissionState,
+    next_state,
+    way_ended,
+)
 from roomba.vocabulary import Phase
 
 DRIVING = (
@@ -236,3 +244,23 @@ def test_from_anywhere_stop_clean_and_explore_work_once_the_emergency_is_over(
     assert cleaning == MissionState(Phase.UNDOCKING, Errand.CLEAN)
     exploring = next_state(stopped, Event.EXPLORE)
     assert exploring == MissionState(Phase.UNDOCKING, Errand.EXPLORE)
+
+
+def test_a_way_out_of_the_station_ends_well_only_if_it_was_not_stopped() -> None:
+    out = MissionState(Phase.IDLE)
+    way = MissionState(Phase.UNDOCKING, Errand.UNDOCK)
+    assert way_ended(way, Errand.UNDOCK, Event.UNDOCK) is None
+    assert way_ended(out, Errand.UNDOCK, Event.UNDOCK) is CleanOutcome.COMPLETED
+    assert way_ended(out, Errand.UNDOCK, Event.RESUME) is CleanOutcome.COMPLETED
+    # Held and released between two looks: it stands, out or not.
+    for command in (Event.STOP, Event.RELEASE):
+        assert way_ended(out, Errand.UNDOCK, command) is CleanOutcome.STOPPED
+
+
+@pytest.mark.parametrize("errand", [Errand.DOCK, Errand.UNDOCK])
+def test_a_way_to_the_station_or_off_it_ends_in_every_state_but_its_own(errand: Errand) -> None:
+    for state in STATES:
+        outcome = way_ended(state, errand, None)
+        is_fault = state.phase in (Phase.ERROR, Phase.EMERGENCY)
+        assert (outcome is CleanOutcome.FAULT) is is_fault
+        assert (outcome is None) is (state.errand is errand and not is_fault)
