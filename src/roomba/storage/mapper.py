@@ -114,6 +114,7 @@ def _arrays_of(kept: KeptMap) -> dict[str, NDArray[Any]]:
         "mirror_submaps": np.array([mirror.submap for mirror in state.mirrors], np.int64),
         "mirror_planes": np.array([mirror.plane for mirror in state.mirrors]).reshape(-1, 3),
         "mirror_reaches": np.array([mirror.reach for mirror in state.mirrors]).reshape(-1, 2),
+        "mirror_seen_from": np.array([mirror.seen_from for mirror in state.mirrors], np.float64),
     }
 
 
@@ -247,7 +248,7 @@ def _links_of(fields: _Fields, submaps: int) -> tuple[Link, ...]:
 
 
 def _mirrors_of(fields: _Fields, submaps: int) -> tuple[KeptMirror, ...]:
-    if not fields.has("mirror_submaps"):
+    if not fields.has("mirror_seen_from"):
         return ()
     numbers = fields.counts("mirror_submaps", -1)
     if numbers.size and numbers.max() >= submaps:
@@ -256,7 +257,11 @@ def _mirrors_of(fields: _Fields, submaps: int) -> tuple[KeptMirror, ...]:
     reaches = fields.floats("mirror_reaches", len(numbers), 2)
     if reaches.size and reaches.min() <= 0.0:
         raise ValueError(f"expected mirrors that reach farther than 0, got {reaches.min()}")
-    return tuple(KeptMirror(*each) for each in zip(numbers.tolist(), planes, reaches, strict=True))
+    seen_from = fields.floats("mirror_seen_from", len(numbers))
+    if seen_from.size and seen_from.min() < 0.0:
+        raise ValueError(f"expected mirrors seen from 0 m or farther, got {seen_from.min()}")
+    parts = zip(numbers.tolist(), planes, reaches, seen_from.tolist(), strict=True)
+    return tuple(KeptMirror(*each) for each in parts)
 
 
 def _lidar_of(fields: _Fields) -> LidarNumbers:

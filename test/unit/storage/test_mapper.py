@@ -83,7 +83,8 @@ def mirrors(draw: st.DrawFn, submaps: int) -> KeptMirror:
     """Any mirror in one of so many submaps."""
     away = st.floats(0.01, 1e6)
     plane, reach = draw(st.tuples(NUMBERS, NUMBERS, NUMBERS)), draw(st.tuples(away, away))
-    return KeptMirror(draw(st.integers(0, submaps - 1)), np.array(plane), np.array(reach))
+    submap, seen_from = draw(st.integers(0, submaps - 1)), draw(st.floats(0.0, 4.0))
+    return KeptMirror(submap, np.array(plane), np.array(reach), seen_from)
 
 
 @st.composite
@@ -207,6 +208,7 @@ def rewritten(path: Path, **changes: NDArray[Any] | None) -> None:
         ({"mirror_submaps": np.array([3])}, "expected mirrors in 3 submaps, got one in 3"),
         ({"mirror_reaches": np.zeros((2, 2))}, "mirror_reaches: expected"),
         ({"mirror_reaches": np.array([[0.4, 0.0]])}, "mirrors that reach farther than 0"),
+        ({"mirror_seen_from": np.array([-1.0])}, "mirrors seen from 0 m or farther"),
         ({"lidar_beams": np.array(0)}, "expected a lidar with beams"),
         ({"lidar_numbers": np.array([0.0, 0.1, 3.0, 1.0])}, "reaches from near to far"),
         ({"lidar_mount": np.full(3, np.nan)}, "and a mount"),
@@ -238,7 +240,8 @@ def test_what_does_not_fit_together_is_refused(
 def test_a_file_of_an_older_program_has_no_open_ways_and_no_mirrors(tmp_path: Path) -> None:
     path = tmp_path / "robot.npz"
     save_mapper(kept_map(), path)
-    gone = ("keyframe_open", "open", "mirror_submaps", "mirror_planes", "mirror_reaches")
+    mirrors = ("mirror_submaps", "mirror_planes", "mirror_reaches", "mirror_seen_from")
+    gone = ("keyframe_open", "open", *mirrors)
     rewritten(path, **dict.fromkeys(gone))
     read = load_mapper(path, pytest.fail)
     assert read is not None

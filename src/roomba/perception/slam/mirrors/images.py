@@ -24,6 +24,8 @@ _BESIDE: Final = 0.08
 """m; what is so near to a plane may be a wall on which the mirror hangs."""
 _OWN: Final = 0.25
 """m; an image so near to the lidar is that of the robot itself."""
+_PLACE: Final = 0.1
+"""m; side of the squares that count as a place each."""
 _AT_RIGHT_ANGLES: Final = 0.25
 """Cosine between what was met and the plane, below which its image lies on itself."""
 _AROUND: Final = np.ones((3, 3), np.bool_)
@@ -114,6 +116,14 @@ def places_of_ends(beams: Beams, plane: Plane) -> Floats:
     off = beams.ends - plane.middle
     places: Floats = (off @ plane.along)[np.abs(off @ plane.normal) < _BESIDE]
     return places
+
+
+def count_of_places(starts: Floats) -> int:
+    """Return from how many places beams were taken that begin at ``starts``, [n, 2], m.
+
+    A robot that turns on the spot is at one place.
+    """
+    return len(np.unique(np.floor(starts / _PLACE), axis=0))
 
 
 def own_images(beams: Beams, plane: Plane) -> Flags:

@@ -23,7 +23,9 @@ _TO_SURFACE: Final = 6
 _LEAST: Final = 3
 """Images that fit in a bin and those beside it, for the mirror to be there."""
 _FOUND: Final = 1
-"""Bins to either side of that point that are mirror in any case."""
+"""Bins to either side of that point that are mirror in any case,"""
+_LEAST_REACH: Final = ((_FOUND + 0.5) * _BIN, (_FOUND + 0.5) * _BIN)
+"""m to the right and to the left."""
 
 
 @dataclass(slots=True, eq=False)
@@ -33,7 +35,8 @@ class Mirror:
     ``plane`` is that of the mirror, its middle where it was found; it goes on from there by
     ``least``, m, to the right and to the left, in any case. ``fits`` and ``contradicts`` count
     beams by where they passed, ``met`` those that met something beside it on its plane. Of the
-    map's keyframes so many, from the first on, are ``counted``.
+    map's keyframes so many, from the first on, are ``counted``. The robot saw itself in it from
+    ``seen_from`` m away on; 0: it touched it.
     """
 
     submap: int
@@ -43,25 +46,27 @@ class Mirror:
     contradicts: NDArray[np.int64]
     met: NDArray[np.int64]
     counted: int = 0
+    seen_from: float = 0.0
 
     @staticmethod
-    def found(submap: int, plane: Plane) -> Mirror:
+    def found(submap: int, plane: Plane, seen_from: float = 0.0) -> Mirror:
         """Return one of which no more is known than a point."""
-        counts = np.zeros((3, 2 * _BINS + 1), np.int64)
-        reach = (_FOUND + 0.5) * _BIN
-        return Mirror(submap, plane, (reach, reach), *counts)
+        fits, contradicts, met = np.zeros((3, 2 * _BINS + 1), np.int64)
+        return Mirror(
+            submap, plane, _LEAST_REACH, fits, contradicts, met, counted=0, seen_from=seen_from
+        )
 
     @staticmethod
     def of(kept: KeptMirror) -> Mirror:
-        """Return one that was kept; it goes on as far as it did, and what beams show is counted."""
+        """Return one that was kept; it goes on as far as it did until its beams are counted."""
         right, left = kept.reach.tolist()
-        plane = Plane(*kept.plane.tolist())
-        return replace(Mirror.found(kept.submap, plane), least=(right, left))
+        mirror = Mirror.found(kept.submap, Plane(*kept.plane.tolist()), kept.seen_from)
+        return replace(mirror, least=(right, left))
 
     @property
     def kept(self) -> KeptMirror:
         """What must be remembered of it."""
-        return KeptMirror(self.submap, np.array(self.plane), np.array(self.reach))
+        return KeptMirror(self.submap, np.array(self.plane), np.array(self.reach), self.seen_from)
 
     @property
     def reach(self) -> tuple[float, float]:
@@ -75,6 +80,7 @@ class Mirror:
 
     def forget(self) -> None:
         """Forget what beams showed of it, to count it anew."""
+        self.least = _LEAST_REACH
         for counts in (self.fits, self.contradicts, self.met):
             counts[:] = 0
 
@@ -104,12 +110,13 @@ class Mirror:
 
 class KeptMirror(NamedTuple):
     """A mirror as it is remembered: ``plane`` float64 [3], ``reach`` float64 [2], right and left,
-    m, in the frame of a submap, by its number.
+    m, in the frame of a submap, by its number; ``seen_from`` as :class:`Mirror` has it.
     """
 
     submap: int
     plane: Floats
     reach: Floats
+    seen_from: float = 0.0
 
 
 def placed(plane: Plane, pose: Floats) -> Plane:

@@ -24,7 +24,8 @@ from roomba.perception.slam.mirrors.mirror import KeptMirror, Mirror, placed
 from roomba.perception.slam.mirrors.own_image import own_image_planes
 from roomba.perception.slam.mirrors.search import (
     Touch,
-    mirror_about,
+    seen_mirror,
+    still_shows_itself,
     touched_mirror,
     ways_that_surfaces_face,
 )
@@ -97,9 +98,10 @@ class Mirrors:
         before = self.ends
         known = next((mirror for mirror in self._mirrors if self._is_of(plane, mirror)), None)
         if known is not None:
+            known.seen_from = 0.0
             self._count_anew(known, beams, floor)
         if known is None or not self._reaches(known, plane):
-            self._add(plane, beams, floor)
+            self._add(self._framed(len(self._graph.poses) - 1, plane), beams, floor)
         return not np.array_equal(self.ends, before)
 
     def see(self, number: int, mount: Floats, occupancy: Callable[[], OccupancyMap]) -> bool:
@@ -111,22 +113,33 @@ class Mirrors:
         poses, before, scans = self._graph.poses, self.ends, self._scans_of(number)
         if not scans:
             return False
+        self._take_back(mount)
         first = sum(len(each.keyframes) for each in self._graph.submaps[:number])
         if self._mirrors:
             floor = MappedFloor.of(occupancy())
             for mirror in self._mirrors:
                 new = scans[max(mirror.counted - first, 0) :]
-                if new:
+                if not mirror.counted:
+                    self._count_anew(mirror, self._beams_about(mirror, mount), floor)
+                elif new:
                     mirror.count(_beams_of(new, mount), floor, poses[mirror.submap])
                     mirror.counted = first + len(scans)
         self._look_for_itself(self._newest_scans(), mount, occupancy)
         return not np.array_equal(self.ends, before)
 
     def see_all(self, mount: Floats, occupancy: Callable[[], OccupancyMap]) -> bool:
-        """Look for mirrors by all keyframes, once the drive is over; tell whether one is new."""
-        known, scans = len(self._mirrors), self._scans()
-        self._look_for_itself(_some(scans), mount, occupancy)
-        return len(self._mirrors) > known
+        """Look for mirrors by all keyframes, once the drive is over; tell whether one changed.
+
+        Those that are known are counted anew, as keyframes have moved since.
+        """
+        before = self.ends
+        self._take_back(mount)
+        if self._mirrors:
+            floor = MappedFloor.of(occupancy())
+            for mirror in self._mirrors:
+                self._count_anew(mirror, self._beams_about(mirror, mount), floor)
+        self._look_for_itself(_some(self._scans()), mount, occupancy)
+        return not np.array_equal(self.ends, before)
 
     def _look_for_itself(
         self, scans: list[PlacedPoints], mount: Floats, occupancy: Callable[[], OccupancyMap]
@@ -139,9 +152,21 @@ class Mirrors:
                     continue
                 around = _beams_of(self._scans_near(plane.x, plane.y), mount)
                 floor = MappedFloor.of(occupancy())
-                found = mirror_about(around, floor, plane, farthest)
+                found = seen_mirror(around, floor, plane, farthest)
                 if found is not None:
-                    self._add(found[1], around, floor)
+                    mirror = self._framed(self._nearest_before(found), found, farthest)
+                    self._add(mirror, around, floor)
+
+    def _take_back(self, mount: Floats) -> None:
+        """Take away mirrors that were not touched and do not show the robot as they did."""
+        self._mirrors = [
+            mirror
+            for mirror in self._mirrors
+            if not mirror.seen_from
+            or still_shows_itself(
+                self._beams_about(mirror, mount), self._placed(mirror), mirror.seen_from
+            )
+        ]
 
     def pass_through(self, start: Floats, end: Floats) -> bool:
         """Take away the mirrors between two places of the robot, [2], m, map frame: they are none.
@@ -178,25 +203,46 @@ class Mirrors:
     def _scans_near(self, x: float, y: float) -> list[PlacedPoints]:
         return _some([s for s in self._scans() if math.dist(s.pose[:2], (x, y)) < _NEAR])
 
-    def _add(self, plane: Plane, beams: Beams, floor: MappedFloor) -> None:
-        """Add a mirror, in the newest submap, unless the robot drove through it before."""
-        newest = len(self._graph.poses) - 1
-        mirror = Mirror.found(newest, placed(plane, inverse(self._graph.poses[newest])))
+    def _beams_about(self, mirror: Mirror, mount: Floats) -> Beams:
+        """Return the beams of scans from near a mirror."""
+        plane = self._placed(mirror)
+        return _beams_of(self._scans_near(plane.x, plane.y), mount)
+
+    def _placed(self, mirror: Mirror) -> Plane:
+        """Return a mirror's plane, map frame."""
+        return placed(mirror.plane, self._graph.poses[mirror.submap])
+
+    def _framed(self, submap: int, plane: Plane, seen_from: float = 0.0) -> Mirror:
+        """Return a mirror on a plane of the map's frame, with a submap by its number."""
+        return Mirror.found(submap, placed(plane, inverse(self._graph.poses[submap])), seen_from)
+
+    def _nearest_before(self, plane: Plane) -> int:
+        """Return the number of the submap with the keyframe that is nearest before a plane."""
+        nearest, away = len(self._graph.submaps) - 1, math.inf
+        for number in range(len(self._graph.submaps)):
+            for scan in self._scans_of(number):
+                off = scan.pose[:2] - plane.middle
+                if float(off @ plane.normal) < 0.0 and math.hypot(*off) < away:
+                    nearest, away = number, math.hypot(*off)
+        return nearest
+
+    def _add(self, mirror: Mirror, beams: Beams, floor: MappedFloor) -> None:
+        """Add a mirror, unless the robot drove through it before."""
         self._count_anew(mirror, beams, floor)
-        ends = mirror.ends(self._graph.poses[newest])
-        way = [pose[:2] for _, pose in self._graph.keyframes()]
-        if not any(_crosses(start, end, *ends) for start, end in pairwise(way)):
+        ends = mirror.ends(self._graph.poses[mirror.submap])
+        ways = self._graph.driven_ways()
+        if not any(_crosses(*step, *ends) for way in ways for step in pairwise(way)):
             self._mirrors.append(mirror)
 
     def _count_anew(self, mirror: Mirror, beams: Beams, floor: MappedFloor) -> None:
-        """Count what all keyframes about a touch show of a mirror."""
+        """Count what all keyframes from near a mirror show of it."""
         mirror.forget()
         mirror.count(beams, floor, self._graph.poses[mirror.submap])
         mirror.counted = sum(len(submap.keyframes) for submap in self._graph.submaps)
 
     def _is_of(self, plane: Plane, mirror: Mirror) -> bool:
-        """Whether a plane that was touched is that of a mirror, and near to it."""
-        other = placed(mirror.plane, self._graph.poses[mirror.submap])
+        """Whether a plane is that of a mirror, and its middle near to it."""
+        other = self._placed(mirror)
         turn = float(np.cos(plane.facing - other.facing))
         off = abs(float((plane.middle - other.middle) @ other.normal))
         is_alike = turn > np.cos(_SAME_TURN) and off < _SAME_PLACE
@@ -204,7 +250,7 @@ class Mirrors:
 
     def _reaches(self, mirror: Mirror, plane: Plane, spare: float = 0.0) -> bool:
         """Whether a mirror goes as far as to the middle of a plane, or to ``spare`` m before it."""
-        other, (right, left) = placed(mirror.plane, self._graph.poses[mirror.submap]), mirror.reach
+        other, (right, left) = self._placed(mirror), mirror.reach
         place = float((plane.middle - other.middle) @ other.along)
         return -right - spare <= place <= left + spare
 

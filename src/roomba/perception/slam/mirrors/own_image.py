@@ -3,7 +3,8 @@
 Its own image is as far behind a mirror as the robot is before it. Straight ahead of the mirror a
 beam is twice as long as the way to it, from wherever it is taken: half of it ends on one plane.
 What stands still is as far from one place as it is near to another, and half of the way to it ends
-on a plane from one distance alone.
+on a plane from one distance alone. What comes towards the robot as fast as it drives looks like its
+image for that once: such a plane is asked again as long as the map is made.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from roomba.angles import wrap_angles
 from roomba.arrays import Floats
-from roomba.perception.slam.mirrors.images import Beams, Plane
+from roomba.perception.slam.mirrors.images import Beams, Plane, count_of_places
 
 _AHEAD: Final = 0.03
 """rad; a beam that is turned by less from the normal of a plane looks straight at it."""
@@ -36,7 +37,7 @@ _MOST: Final = 3
 
 
 class OwnImage(NamedTuple):
-    """A ``plane`` in which the robot may have seen itself, from ``farthest`` m on."""
+    """A ``plane`` in which the robot may have seen itself, from ``farthest`` m away on."""
 
     plane: Plane
     farthest: float
@@ -58,7 +59,7 @@ def own_image_planes(beams: Beams, facing: float) -> list[OwnImage]:
     while len(found) < _MOST and left.any():
         together = _most_together(distance, place, left)
         left &= ~together
-        if len(np.unique(starts[together], axis=0)) < _LEAST:
+        if count_of_places(starts[together]) < _LEAST:
             break
         if np.ptp(away[together]) >= _LEAST_SPREAD:
             middle = (np.median(distance[together]) + _BODY) * toward.normal

@@ -14,6 +14,7 @@ from roomba.perception.slam.mirrors.images import (
     Flags,
     MappedFloor,
     Plane,
+    count_of_places,
     images,
     own_images,
 )
@@ -39,13 +40,22 @@ _BEFORE: Final = 1.0
 _BEFORE_ASIDE: Final = 0.3
 """m; so near before a mirror, and so near beside the touched point, a robot sees itself,"""
 _LEAST_STOOD: Final = 2
-"""from so many places,"""
+"""from so many places if it touched it,"""
+_LEAST_STOOD_AWAY: Final = 3
+"""and from so many if it did not;"""
 _LEAST_SHOWN: Final = 0.6
-"""which is this share of all: of true mirrors all of them, of glass one of ten at most."""
+"""in this share of the scans there: of true mirrors in all of them, of glass in a tenth at most."""
 _ALIKE: Final = 0.02
 """Share of the beams by which planes differ that fit alike."""
 _MOST: Final = 1500
 """Beams that are looked at."""
+
+
+class FoundMirror(NamedTuple):
+    """The ``plane`` of a mirror, of which ``net`` more images fit than contradict."""
+
+    net: int
+    plane: Plane
 
 
 class Touch(NamedTuple):
@@ -79,12 +89,29 @@ def touched_mirror(beams: Beams, floor: MappedFloor, touch: Touch) -> Plane | No
     walls would often be its own image.
     """
     found = [
-        mirror_about(beams, floor, touch.plane(facing))
+        _mirror_about(beams, floor, touch.plane(facing), _BEFORE, _LEAST_STOOD)
         for facing in ways_that_surfaces_face(beams)
         if touch.has_pressed(facing)
     ]
     good = [each for each in found if each is not None]
-    return max(good)[1] if good else None
+    return max(good).plane if good else None
+
+
+def seen_mirror(beams: Beams, floor: MappedFloor, about: Plane, farthest: float) -> Plane | None:
+    """Return the plane of a mirror in which the robot saw itself, from ``farthest`` m away on.
+
+    None if there seems to be none near that plane.
+    """
+    found = _mirror_about(beams, floor, about, farthest, _LEAST_STOOD_AWAY)
+    return None if found is None else found.plane
+
+
+def still_shows_itself(beams: Beams, plane: Plane, farthest: float) -> bool:
+    """Whether what was taken for a mirror from ``farthest`` m away on shows the robot by now, too.
+
+    Something that came towards the robot does not.
+    """
+    return _shows_itself(beams, plane, farthest, _LEAST_STOOD_AWAY)
 
 
 def ways_that_surfaces_face(beams: Beams) -> list[float]:
@@ -94,13 +121,12 @@ def ways_that_surfaces_face(beams: Beams) -> list[float]:
     return [turn + quarter * math.pi / 2.0 for quarter in range(4)]
 
 
-def mirror_about(
-    beams: Beams, floor: MappedFloor, about: Plane, before: float = _BEFORE
-) -> tuple[int, Plane] | None:
-    """Return how many images fit more than contradict, and the plane, of a mirror near a plane.
+def _mirror_about(
+    beams: Beams, floor: MappedFloor, about: Plane, before: float, stood: int
+) -> FoundMirror | None:
+    """Return the mirror near a plane; None if there seems to be none.
 
-    None if there seems to be none. The robot must have seen itself in it from less than ``before``
-    m away.
+    The robot must have seen itself in it from less than ``before`` m away, from so many places.
     """
     near = _that_passed(beams, about)
     count = len(near.starts)
@@ -112,8 +138,8 @@ def mirror_about(
     alike = net >= net.max() - _ALIKE * count
     turn, shift = np.array(tried)[alike].mean(axis=0).tolist()
     plane = about.moved(turn, shift)
-    is_mirror = _is_mirror(near, floor, plane) and _shows_itself(beams, plane, before)
-    return (int(net.max()), plane) if is_mirror else None
+    is_mirror = _is_mirror(near, floor, plane) and _shows_itself(beams, plane, before, stood)
+    return FoundMirror(int(net.max()), plane) if is_mirror else None
 
 
 def _net(beams: Beams, floor: MappedFloor, plane: Plane) -> int:
@@ -133,17 +159,18 @@ def _is_mirror(beams: Beams, floor: MappedFloor, plane: Plane) -> bool:
     )
 
 
-def _shows_itself(beams: Beams, plane: Plane, before: float) -> bool:
-    """Whether the robot saw itself in a plane wherever it stood near by before its middle.
+def _shows_itself(beams: Beams, plane: Plane, before: float, least: int) -> bool:
+    """Whether the robot saw itself in a plane when it stood before its middle.
 
-    Without that the middle of a room with two walls alike would be a mirror.
+    ``before`` is how far off at most, m; there must be ``least`` places or more. Without that the
+    middle of a room with two walls alike would be a mirror.
     """
     off = beams.starts - plane.middle
     away, aside = -off @ plane.normal, np.abs(off @ plane.along)
     near = beams.chosen((away > 0.0) & (away < before) & (aside < _BEFORE_ASIDE))
-    stood = len(np.unique(near.starts, axis=0))
+    scans = len(np.unique(near.starts, axis=0))
     shown = len(np.unique(near.starts[own_images(near, plane)], axis=0))
-    return stood >= _LEAST_STOOD and shown >= _LEAST_SHOWN * stood
+    return count_of_places(near.starts) >= least and shown >= _LEAST_SHOWN * scans
 
 
 def _that_passed(beams: Beams, plane: Plane) -> Beams:

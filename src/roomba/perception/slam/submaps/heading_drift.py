@@ -42,24 +42,19 @@ def heading_drift(poses: Floats, ways: Sequence[float], links: Sequence[Link]) -
 
     What hangs on the first submap by guesses alone does not count.
     """
-    steps = [link for link in links if _is_step(link)]
+    steps = [link for link in links if link.is_step]
     drift = max(_LEAST_DRIFT, _shown_drift(poses, ways, steps))
     breaks = np.ones(len(poses), np.int64)
     breaks[[0, *(step.child for step in steps)]] = 0
     pieces = np.cumsum(breaks)
     held = [link for link in links if _holds(link, ways, pieces)]
     variances = [
-        drift**2 * _way_of(link, ways) if _is_step(link) else 1.0 / link.information[2, 2]
+        drift**2 * _way_of(link, ways) if link.is_step else 1.0 / link.information[2, 2]
         for link in held
     ]
     unsure = _variances(len(poses), held, np.array(variances))
     worst = int(np.argmax(unsure))
     return HeadingDrift(math.sqrt(float(unsure[worst])), float(ways[worst]))
-
-
-def _is_step(link: Link) -> bool:
-    """Whether the robot was followed from one submap to the next."""
-    return link.child == link.parent + 1 and not (link.may_be_wrong or link.is_guessed)
 
 
 def _way_of(link: Link, ways: Sequence[float]) -> float:

@@ -51,6 +51,11 @@ class Link:
     may_be_wrong: bool = True
     is_guessed: bool = False
 
+    @property
+    def is_step(self) -> bool:
+        """Whether the robot was followed from one submap to the next."""
+        return self.child == self.parent + 1 and not (self.may_be_wrong or self.is_guessed)
+
 
 class Measurements(NamedTuple):
     """Links as arrays: ``parents``, ``children`` and ``doubted`` are [m], ``relative`` [m, 3],

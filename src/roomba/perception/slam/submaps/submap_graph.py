@@ -240,6 +240,19 @@ class SubmapGraph:
         for submap, pose in zip(self.submaps, self.poses, strict=True):
             yield from zip(submap.keyframes, submap.poses(pose), strict=True)
 
+    def driven_ways(self) -> list[list[Floats]]:
+        """Return where the robot was, [2], m, map frame, at the keyframes of each way it drove.
+
+        A way ends where it was carried, or its place was lost.
+        """
+        followed = {link.child for link in self.links if link.is_step}
+        ways = list[list[Floats]]()
+        for number, (submap, pose) in enumerate(zip(self.submaps, self.poses, strict=True)):
+            if number not in followed:
+                ways.append([])
+            ways[-1].extend(place[:2] for place in submap.poses(pose))
+        return ways
+
     def keyframes_beside(self, numbers: list[int]) -> Iterator[tuple[Keyframe, Floats]]:
         """Go through the keyframes of some submaps; their poses, [3], are in the newest one."""
         for number in numbers:

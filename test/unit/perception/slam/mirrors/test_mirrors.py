@@ -13,6 +13,7 @@ from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.grid import OccupancyMap
 from roomba.perception.slam.mirrors.mirrors import Mirrors, PlacedPoints
+from roomba.perception.slam.submaps.parts import Carried
 from roomba.perception.slam.submaps.submap import Keyframe
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
 
@@ -24,9 +25,14 @@ TO_THE_MIRROR = ((0.6, 0.6), (3.4, 0.5), (3.4, 2.0), (1.8, 2.2), (1.8, HEIGHT - 
 def graph_of(frames: Seen) -> SubmapGraph:
     """A graph of one submap, at (0, 0), with these keyframes."""
     graph = SubmapGraph(MappingConfig(), LocalizationConfig(), np.zeros(3))
+    add(graph, frames)
+    return graph
+
+
+def add(graph: SubmapGraph, frames: Seen) -> None:
+    """Add keyframes to the newest submap, which lies at (0, 0)."""
     for frame, pose in frames:
         graph.newest.keyframes.append(Keyframe(frame.points, pose))
-    return graph
 
 
 def newest(frames: Seen) -> PlacedPoints:
@@ -125,8 +131,7 @@ def test_a_submap_that_shows_more_of_it_makes_it_wider() -> None:
     assert mirrors.feel(room.touch(1.8), newest(frames), MOUNT, occupancy)
     narrow = np.ptp(mirrors.ends[0, :, 0])
     graph.begin(np.zeros(3), 1.0)
-    for frame, pose in around:
-        graph.newest.keyframes.append(Keyframe(frame.points, pose))
+    add(graph, around)
     mirrors.see(1, MOUNT, lambda: occupancy)
     assert np.ptp(mirrors.ends[0, :, 0]) >= narrow
     assert np.ptp(mirrors.ends[0, :, 0]) > 1.4
@@ -177,3 +182,60 @@ def test_where_the_robot_drove_through_no_mirror_begins() -> None:
     mirrors = Mirrors(graph_of(frames + through))
     assert not mirrors.see(0, MOUNT, lambda: drawn(frames))
     assert len(mirrors) == 0
+
+
+def test_a_robot_that_comes_towards_it_is_a_mirror_until_the_next_look() -> None:
+    room = MirrorRoom(kind=Kind.WALL, has_column=False)
+    met, alone = room.oncoming(), room.drive((1.6, HEIGHT / 2.0), (0.3, HEIGHT / 2.0))
+    graph = graph_of(met)
+    mirrors = Mirrors(graph)
+    assert mirrors.see(0, MOUNT, lambda: drawn(met)), "both halves of the room are alike"
+    graph.begin(np.zeros(3), 1.0)
+    add(graph, alone)
+    assert mirrors.see(1, MOUNT, lambda: drawn(met + alone))
+    assert len(mirrors) == 0
+    assert not mirrors.see_all(MOUNT, lambda: drawn(met + alone)), "and it is not found again"
+
+
+def test_a_mirror_that_it_saw_itself_in_from_afar_alone_is_known() -> None:
+    frames = MirrorRoom().drive((0.6, 0.6), (3.4, 0.5), (1.8, 0.3), (1.8, 1.6))
+    mirrors = Mirrors(graph_of(frames))
+    assert mirrors.see(0, MOUNT, lambda: drawn(frames))
+    assert len(mirrors) == 1
+
+
+def test_a_robot_that_was_carried_over_its_line_has_not_driven_through() -> None:
+    frames = MirrorRoom().drive((0.6, 0.6), (3.4, 0.5), (1.8, 0.4), (1.8, 2.4))
+    graph = graph_of(frames)
+    graph.begin_piece(np.zeros(3), 10.0, 0.1, 0.1, carried=Carried.TOLD)
+    graph.poses[-1] = 0.0
+    add(graph, [(frames[-1][0], np.array([1.8, HEIGHT + 0.3, 0.0]))])
+    mirrors = Mirrors(graph)
+    assert mirrors.see_all(MOUNT, lambda: drawn(frames))
+    assert len(mirrors) == 1
+
+
+def test_it_lies_in_the_submap_that_saw_it_and_not_in_the_newest() -> None:
+    frames = MirrorRoom().drive((0.6, 0.6), (3.4, 0.5), (1.8, 0.4), (1.8, 2.4))
+    later = MirrorRoom().drive((3.4, 0.5), (3.4, 1.0))
+    graph = graph_of(frames)
+    graph.begin(np.zeros(3), 1.0)
+    graph.poses[1] = 0.0
+    add(graph, later)
+    mirrors = Mirrors(graph)
+    assert mirrors.see(1, MOUNT, lambda: drawn(frames + later))
+    before = mirrors.ends
+    graph.poses[1] = (0.0, -0.15, 0.0)
+    assert (mirrors.ends == before).all()
+    graph.poses[0] = (0.0, -0.15, 0.0)
+    assert mirrors.ends[..., 1] == pytest.approx(before[..., 1] - 0.15)
+
+
+def test_one_that_was_kept_is_counted_anew_and_may_be_narrower() -> None:
+    mirrors, _ = touched(MirrorRoom())
+    frames = MirrorRoom(left=1.5, right=2.1).drive(*TO_THE_MIRROR)
+    taken_over = Mirrors(graph_of(frames))
+    taken_over.take_over(mirrors.kept)
+    assert np.ptp(taken_over.ends[0, :, 0]) > 1.2, "as it was"
+    taken_over.see(0, MOUNT, lambda: drawn(frames))
+    assert np.ptp(taken_over.ends[0, :, 0]) < 0.9

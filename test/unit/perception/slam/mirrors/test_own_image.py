@@ -49,3 +49,26 @@ def test_in_other_directions_a_mirror_shows_no_such_plane() -> None:
 
 def test_without_beams_there_is_none() -> None:
     assert own_image_planes(Beams(*np.zeros((3, 0, 2))), UP) == []
+
+
+def straight_ahead(*away: float) -> Beams:
+    """Beams that meet the robot's own image, from so far before a mirror at y = 0, m."""
+    starts = np.array([(0.001 * number, -each) for number, each in enumerate(away)])
+    ends = np.array([(x, -y - 0.08) for x, y in starts])
+    return Beams(starts, ends, np.tile((0.0, -1.0), (len(away), 1)))
+
+
+def test_it_takes_six_places_and_turning_on_the_spot_is_one() -> None:
+    six = np.arange(1.05, 2.6, 0.3).tolist()
+    (found,) = own_image_planes(straight_ahead(*six), UP)
+    assert found.plane.y == pytest.approx(0.0, abs=0.01)
+    assert own_image_planes(straight_ahead(*six[:5]), UP) == []
+    assert (
+        own_image_planes(straight_ahead(*(five for five in six[:5] for _ in range(18))), UP) == []
+    )
+
+
+def test_from_farther_than_four_metres_no_image_counts() -> None:
+    far = np.arange(4.45, 6.0, 0.3).tolist()
+    assert own_image_planes(straight_ahead(*far), UP) == []
+    assert len(own_image_planes(straight_ahead(*(each - 2.0 for each in far)), UP)) == 1

@@ -12,7 +12,12 @@ from hypothesis import strategies as st
 
 from roomba.geometry import wrap_angle
 from roomba.perception.slam.mirrors.images import MappedFloor, Plane
-from roomba.perception.slam.mirrors.search import Touch, touched_mirror
+from roomba.perception.slam.mirrors.search import (
+    Touch,
+    seen_mirror,
+    still_shows_itself,
+    touched_mirror,
+)
 
 TO_THE_MIRROR = ((0.6, 0.6), (3.4, 0.5), (3.4, 2.0), (1.8, 2.2), (1.8, HEIGHT - RADIUS))
 """About the room, and then straight to the middle of the upper wall."""
@@ -53,7 +58,7 @@ def test_a_wall_that_the_lidar_sees_is_none() -> None:
     assert found(room, room.touch(1.8)) is None
 
 
-def test_before_anything_was_seen_there_is_none() -> None:
+def test_from_one_place_alone_no_mirror_is_known() -> None:
     room = MirrorRoom()
     assert found(room, room.touch(1.8), (1.8, 2.5)) is None
 
@@ -63,3 +68,19 @@ def test_a_touch_of_the_other_half_of_the_bumper_is_of_no_such_plane() -> None:
     here = room.place(1.8, HEIGHT - RADIUS, math.radians(60.0))
     right = Touch(here.x, here.y, RADIUS, here.theta - math.pi / 2.0, here.theta)
     assert found(room, right) is None
+
+
+def test_a_robot_that_comes_towards_the_glass_makes_it_no_mirror() -> None:
+    room = MirrorRoom(kind=Kind.GLASS, behind=1.6)
+    pane = Plane(1.8, HEIGHT, math.pi / 2.0)
+    met = [room.keyframe(1.8, y, (1.8, 2.0 * HEIGHT - y)) for y in np.arange(1.6, 2.8, 0.12)]
+    frames = [*met, *room.drive((0.6, 2.0), (3.4, 2.0))]
+    assert still_shows_itself(beams_of(frames), pane, 1.5), "it looks like its own image"
+    assert seen_mirror(beams_of(frames), MappedFloor.of(drawn(frames)), pane, 1.5) is None
+
+
+def test_scans_of_a_robot_that_stands_are_from_one_place() -> None:
+    room, wall = MirrorRoom(), Plane(1.8, HEIGHT, math.pi / 2.0)
+    standing = beams_of([room.keyframe(1.8 + 0.001 * number, 1.61) for number in range(8)])
+    assert not still_shows_itself(standing, wall, 2.0)
+    assert still_shows_itself(beams_of(room.drive((1.8, 1.2), (1.8, 2.4))), wall, 2.0)
