@@ -23,9 +23,9 @@ from tf2_msgs.msg import TFMessage
 from roomba.configuration.frozen import load_config
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import CONFIGURATION
+from roomba_ros.body.frames import BodyFrames
 from roomba_ros.model.picture import SIZE
 from roomba_ros.model.screen import VirtualScreen
-from roomba_ros.simulation.frames import BodyFrames
 
 
 def needs(package: str, name: str) -> None:

@@ -15,8 +15,8 @@ from std_msgs.msg import String
 
 from roomba.errors import ConfigError
 from roomba.geometry import STANDSTILL, Twist
+from roomba_ros.body.drive_link import DriveLink
 from roomba_ros.convert.common import twist_message
-from roomba_ros.simulation.drive_link import DriveLink
 
 STEP = 0.01
 TIMEOUT = 0.15

@@ -266,6 +266,8 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/world/layers/": ("unit/world/layers/test_layer.py", WORLD),
     "roomba/world/observation": ("unit/world/test_simulator.py", VALUES),
     "roomba/world/random/": ("unit/world/random/test_home.py", WORLD),
+    "roomba_ros/body/drive_link": ("safety/test_drive_link.py", "a part of the safety layer"),
+    "roomba_ros/body/frames": ("ros/model/test_description.py", "beside the robot's model"),
     "roomba_ros/bags/": ("ros/bags/test_sim_command.py", COMMAND),
     "roomba_ros/camera/": ("ros/camera/test_turn_camera.py", NODE),
     "roomba_ros/client/": ("ros/client/test_ros_clean.py", NODE),

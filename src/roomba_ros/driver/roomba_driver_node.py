@@ -12,13 +12,13 @@ from tf2_msgs.msg import TFMessage
 from roomba.drivers.robots.table import ROBOTS, OwnedRobot
 from roomba.errors import ConfigError
 from roomba.robot.command import Command
+from roomba_ros.body.drive_link import DriveLink
+from roomba_ros.body.frames import BodyFrames
 from roomba_ros.convert.values import duty_of
 from roomba_ros.driver.told_topics import ToldTopics
 from roomba_ros.runtime.node import run_node
 from roomba_ros.runtime.parameters import read_robot_config, read_seed_parameters
 from roomba_ros.runtime.subscriptions import subscribe
-from roomba_ros.simulation.drive_link import DriveLink
-from roomba_ros.simulation.frames import BodyFrames
 
 _LINE_TICKS = 20
 """Ticks between two words of how the line is, if it is as before."""

@@ -27,6 +27,8 @@ from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
 from roomba.world.observation import Observation
 from roomba.world.simulator import Simulator
+from roomba_ros.body.drive_link import DriveLink
+from roomba_ros.body.frames import BodyFrames
 from roomba_ros.convert.common import (
     map_message,
     odometry_message,
@@ -56,8 +58,6 @@ from roomba_ros.runtime.timing import progress
 from roomba_ros.runtime.timing.pace import Pace
 from roomba_ros.runtime.timing.ticker import Ticker
 from roomba_ros.simulation.camera_topics import CameraTopics
-from roomba_ros.simulation.drive_link import DriveLink
-from roomba_ros.simulation.frames import BodyFrames
 from roomba_ros.simulation.sensor_topics import SensorTopics
 from roomba_ros.simulation.sim_services import SimServices
 from roomba_ros.simulation.station_link import StationLink

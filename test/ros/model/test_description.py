@@ -17,9 +17,9 @@ from roomba.configuration.robot import RobotConfig
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.errors import RoombaError
 from roomba.files.shipped import CONFIGURATION
+from roomba_ros.body.frames import BodyFrames
 from roomba_ros.convert.sensors import WHEEL_JOINTS
 from roomba_ros.model.description import description
-from roomba_ros.simulation.frames import BodyFrames
 
 SHIPPED = CONFIGURATION / "robot.yaml"
 
