@@ -36,7 +36,6 @@ FORM = (
 )
 
 TESTED_BY: dict[str, tuple[str, str]] = {
-    "roomba_ros/driver/told_topics": ("ros/driver/test_roomba_driver_node.py", NODE),
     "roomba_ros/plain/details": ("ros/rosbridge/test_programs.py", NODE),
     "roomba_ros/rosbridge/": ("ros/rosbridge/test_bridge.py", NODE),
     "roomba/client/events": ("unit/ui/web/streams/test_events.py", "kept and streamed there"),

@@ -33,7 +33,7 @@ from roomba_ros.convert.common import (
     stamp_of,
     transform_message,
 )
-from roomba_ros.convert.sensors import battery_message, scan_message
+from roomba_ros.convert.sensors import measured_battery_message, scan_message
 
 _BATTERY_PERIOD: Final = 1.0
 _COVERAGE_PERIOD: Final = 10.0
@@ -102,7 +102,8 @@ class SimBag:
             self._put("/scan", scan, now)
         if now - self._battery_at >= _BATTERY_PERIOD - 1e-6:
             self._battery_at = now
-            self._put("/battery_state", battery_message(now, seen.battery, config.battery), now)
+            battery = measured_battery_message(now, seen.battery, config.battery)
+            self._put("/battery_state", battery, now)
         driver = robot.mission.driver
         tracker = None if driver is None else driver.tracker
         if tracker is not None and tracker is not self._tracker:

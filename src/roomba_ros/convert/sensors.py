@@ -1,4 +1,4 @@
-"""The simulated sensors' measurements, and the truth of a simulated home, as ROS messages."""
+"""What a body tells, what a simulated one measures beside, and its home's truth, as messages."""
 
 from __future__ import annotations
 
@@ -37,14 +37,15 @@ from roomba.configuration.body import BatteryConfig
 from roomba.configuration.sensors import CameraConfig, LidarConfig
 from roomba.configuration.simulation import SimulatedGyro
 from roomba.grid import GridFrame, OccupancyMap
+from roomba.mission.docking.beams import NO_BEAMS
 from roomba.mission.inputs.senses import Battery
-from roomba.robot.readings import CliffReading, Readings
+from roomba.robot.readings import Readings
 from roomba.world.health import PartHealth
-from roomba.world.observation import Bumper, Cliff, Observation, Wheels
+from roomba.world.observation import Observation
 from roomba.world.power import BatteryState
 from roomba.world.truth import DoorNow, HomeNow
 from roomba_ros.convert.common import header, map_message
-from roomba_ros.convert.readings import Sides, code_of_beams
+from roomba_ros.convert.readings import code_of_beams
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")
 _JPEG_QUALITY = 85
@@ -131,9 +132,20 @@ def joints_message(now: float, seen: Observation, wheel_radius: float, track: fl
     )
 
 
-def battery_message(now: float, battery: BatteryState, config: BatteryConfig) -> BatteryMessage:
-    """Return the battery: charges in Ah at its nominal voltage, the percentage 0..1 as ROS says."""
-    message = _battery(now, battery.level, battery.capacity, battery.is_docked, config)
+def battery_message(now: float, told: Readings, config: BatteryConfig) -> BatteryMessage:
+    """Return the battery of a body that tells its level, and whether current comes in, alone.
+
+    Charges are in Ah at its nominal voltage, the percentage is 0..1 as ROS says; what is not
+    measured is NaN.
+    """
+    return _battery(now, told.battery, config)
+
+
+def measured_battery_message(
+    now: float, battery: BatteryState, config: BatteryConfig
+) -> BatteryMessage:
+    """Return the same of a battery that is measured: with voltage, current and temperature."""
+    message = _battery(now, battery, config)
     message.voltage = battery.voltage
     message.temperature = battery.temperature
     message.current = battery.current
@@ -141,75 +153,61 @@ def battery_message(now: float, battery: BatteryState, config: BatteryConfig) ->
     return message
 
 
-def told_battery_message(now: float, battery: Battery, config: BatteryConfig) -> BatteryMessage:
-    """Return a battery of which a robot tells its level, and whether current comes in, alone."""
-    return _battery(now, battery.level, config.capacity, battery.is_docked, config)
-
-
-def _battery(
-    now: float, level: float, capacity: float, is_docked: bool, config: BatteryConfig
-) -> BatteryMessage:
-    """Return a battery of a ``level``, 0..1, of a ``capacity``, Wh; what is measured is NaN."""
-    whole = capacity / config.nominal_voltage
+def _battery(now: float, battery: Battery | BatteryState, config: BatteryConfig) -> BatteryMessage:
+    whole = battery.capacity / config.nominal_voltage
     status = BatteryMessage.POWER_SUPPLY_STATUS_DISCHARGING
-    if is_docked:
+    if battery.is_docked:
         status = BatteryMessage.POWER_SUPPLY_STATUS_CHARGING
-        if level >= 1.0:
+        if battery.level >= 1.0:
             status = BatteryMessage.POWER_SUPPLY_STATUS_FULL
     return BatteryMessage(
         header=header(now, ""),
         voltage=math.nan,
         temperature=math.nan,
         current=math.nan,
-        charge=level * whole,
+        charge=battery.level * whole,
         capacity=whole,
         design_capacity=whole,
-        percentage=level,
+        percentage=battery.level,
         power_supply_status=status,
         power_supply_technology=BatteryMessage.POWER_SUPPLY_TECHNOLOGY_LION,
         present=True,
     )
 
 
-def bumper_message(now: float, bumper: Bumper | Sides, frame_id: str) -> BumperMessage:
+def bumper_message(now: float, told: Readings, frame_id: str) -> BumperMessage:
     """Return the state of the bumper's halves."""
-    return BumperMessage(header(now, frame_id), bumper.left, bumper.right)
+    return BumperMessage(header(now, frame_id), told.bumper_left, told.bumper_right)
 
 
-def cliff_message(now: float, cliff: Cliff | CliffReading, frame_id: str) -> CliffMessage:
+def cliff_message(now: float, told: Readings, frame_id: str) -> CliffMessage:
     """Return which cliff sensors see no floor."""
+    cliff = told.cliff
     return CliffMessage(
         header(now, frame_id), cliff.left, cliff.front_left, cliff.front_right, cliff.right
     )
 
 
-def wheel_drop_message(now: float, wheels: Wheels | Readings, frame_id: str) -> WheelDrop:
+def wheel_drop_message(now: float, told: Readings, frame_id: str) -> WheelDrop:
     """Return which wheels hang in the air."""
-    return WheelDrop(header(now, frame_id), wheels.dropped_left, wheels.dropped_right)
+    return WheelDrop(header(now, frame_id), told.dropped_left, told.dropped_right)
 
 
-def dock_message(now: float, frame_id: str, *, is_seen: bool, is_docked: bool) -> DockStatus:
+def dock_message(now: float, told: Readings, frame_id: str) -> DockStatus:
     """Return whether the station is seen, and whether the contacts touch."""
-    return DockStatus(header(now, frame_id), is_seen, is_docked)
+    return DockStatus(header(now, frame_id), told.beams != NO_BEAMS, told.battery.is_docked)
 
 
-def told_hazards_of(told: Readings) -> tuple[int, ...]:
-    """Return the types of HazardDetection that hold by what a robot tells."""
+def hazards_of(told: Readings, *, is_stalled: bool = False) -> tuple[int, ...]:
+    """Return the types of HazardDetection that hold.
+
+    ``is_stalled``: a wheel is held that should turn, which not every body tells.
+    """
     found = (
         (HazardDetection.BUMP, told.bumps),
         (HazardDetection.CLIFF, told.cliff.any),
+        (HazardDetection.STALL, is_stalled),
         (HazardDetection.WHEEL_DROP, told.dropped_left or told.dropped_right),
-    )
-    return tuple(kind for kind, holds in found if holds)
-
-
-def hazards_of(seen: Observation) -> tuple[int, ...]:
-    """Return the types of HazardDetection that hold now."""
-    found = (
-        (HazardDetection.BUMP, seen.bumper.pressed),
-        (HazardDetection.CLIFF, seen.cliff.any),
-        (HazardDetection.STALL, seen.wheels.stalled),
-        (HazardDetection.WHEEL_DROP, seen.wheels.dropped),
     )
     return tuple(kind for kind, holds in found if holds)
 

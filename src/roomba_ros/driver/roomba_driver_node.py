@@ -6,17 +6,21 @@ import threading
 from functools import partial
 
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Float32, String
 from tf2_msgs.msg import TFMessage
 
 from roomba.drivers.robots.table import ROBOTS, OwnedRobot
 from roomba.errors import ConfigError
 from roomba.robot.command import Command
+from roomba.robot.readings import Readings
 from roomba_ros.body.drive_link import DriveLink
 from roomba_ros.body.frames import BodyFrames
+from roomba_ros.body.told_topics import ToldTopics
+from roomba_ros.convert.common import transform_message
+from roomba_ros.convert.diagnostics import line_message
 from roomba_ros.convert.values import duty_of
-from roomba_ros.driver.told_topics import ToldTopics
-from roomba_ros.runtime.node import run_node
+from roomba_ros.runtime.node import frame_id, run_node
 from roomba_ros.runtime.parameters import read_robot_config, read_seed_parameters
 from roomba_ros.runtime.subscriptions import subscribe
 
@@ -27,7 +31,8 @@ _LINE_TICKS = 20
 class RoombaDriverNode:
     """Lets a robot on a line drive as it is told, and tells what its sensors say.
 
-    Publishes: what :class:`ToldTopics` tells, ``/tf_static`` (where the sensors are on the body),
+    Publishes: what :class:`ToldTopics` tells, ``/tf`` (odom -> base_link, 20 Hz while heard),
+    ``/tf_static`` (where the sensors are on the body), ``/diagnostics`` (how its line is), 1 Hz,
     and ``line_trouble`` (String, latched: why the robot cannot be reached, and what helps; empty
     again when it can). While it cannot, nothing else but ``/diagnostics`` is told.
     Subscribes: what :class:`DriveLink` hears (``cmd_vel_out``, ``emergency_stop``);
@@ -59,7 +64,11 @@ class RoombaDriverNode:
         self._body = kind.body_on(port, config, _lidar_port())
         self._body.start()
         rospy.loginfo("%s on %s is taken over", kind.title, port)
-        self._topics = ToldTopics(config, parameters.robot_name)
+        self._name, self._ticks = parameters.robot_name, 0
+        self._odom_frame, self._base_frame = frame_id("odom"), frame_id("base_link")
+        self._topics = ToldTopics(config)
+        self._transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        self._line = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=1)
         if rospy.get_param("~frames", True):
             self._mounts = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
             self._mounts.publish(BodyFrames(config).mounted())
@@ -76,11 +85,20 @@ class RoombaDriverNode:
         trouble = self._body.trouble
         self._tell_line(now, trouble)
         if not trouble:
-            self._topics.tell(now, self._body.read())
+            self._tell_body(now, self._body.read())
 
     def stop(self) -> None:
         """Give the robot back."""
         self._body.stop()
+
+    def _tell_body(self, now: float, told: Readings) -> None:
+        if self._transforms.get_num_connections() > 0:
+            place = told.odometry
+            self._transforms.publish(
+                [transform_message(now, place, self._odom_frame, self._base_frame)]
+            )
+        self._topics.tell(now, self._ticks, told)
+        self._ticks += 1
 
     def _tell_line(self, now: float, trouble: str) -> None:
         if trouble != self._trouble:
@@ -90,7 +108,7 @@ class RoombaDriverNode:
         self._silent_ticks += 1
         if self._silent_ticks >= _LINE_TICKS:
             self._silent_ticks = 0
-            self._topics.tell_line(now, trouble)
+            self._line.publish(line_message(now, trouble, self._name))
 
     def _on_power(self, motor: str, duty: float) -> None:
         with self._lock:

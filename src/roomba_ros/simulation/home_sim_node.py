@@ -10,7 +10,7 @@ from pathlib import Path
 
 import rospy
 from geometry_msgs.msg import PoseStamped
-from nav_msgs.msg import OccupancyGrid, Odometry
+from nav_msgs.msg import OccupancyGrid
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32, Time
 from tf2_msgs.msg import TFMessage
@@ -31,7 +31,6 @@ from roomba_ros.body.drive_link import DriveLink
 from roomba_ros.body.frames import BodyFrames
 from roomba_ros.convert.common import (
     map_message,
-    odometry_message,
     pose_message,
     transform_message,
 )
@@ -74,8 +73,8 @@ class HomeSimNode:
     """Steps the world and publishes what the robot's drive and sensors say.
 
     Publishes: ``/clock`` (20 Hz), ``map`` (latched), ``station_pose`` (PoseStamped, latched: where
-    the docked robot stands on that map, its nose to the station), ``odom`` (20 Hz while heard, by
-    the wheel encoders), ``/tf`` (while heard: odom -> base_link, and of that the wheels),
+    the docked robot stands on that map, its nose to the station),
+    ``/tf`` (while heard: odom -> base_link, and of that the wheels),
     ``/tf_static`` (where the sensors are on the body), and what :class:`SensorTopics`,
     :class:`StationLink`, :class:`CameraTopics` and :class:`TruthTopics` tell.
     Subscribes: what :class:`DriveLink` hears (``cmd_vel_out``, ``emergency_stop``), and
@@ -170,8 +169,6 @@ class HomeSimNode:
             self._simulator.advance(twist, step, len(list(steps)))
 
     def _publish(self, now: float, observation: Observation) -> None:
-        if self._odometry.get_num_connections() > 0:
-            self._tell_odometry(now, observation)
         if self._transforms.get_num_connections() > 0:
             self._tell_transforms(now, observation)
         self._sensors.tell(now, self._ticks, observation)
@@ -180,12 +177,6 @@ class HomeSimNode:
         if self._owns_clock:
             # Last: a node that ticks by it mostly has what was sensed. Topics have no order.
             self._clock_publisher.publish(rospy.Time(nsecs=self._clock))
-
-    def _tell_odometry(self, now: float, observation: Observation) -> None:
-        place, twist = observation.odometry, observation.odometry_twist
-        self._odometry.publish(
-            odometry_message(now, place, twist, self._odom_frame, self._base_frame)
-        )
 
     def _tell_transforms(self, now: float, observation: Observation) -> None:
         place = observation.odometry
@@ -229,7 +220,6 @@ class HomeSimNode:
     def _connect(self) -> None:
         if self._owns_clock:
             self._clock_publisher = rospy.Publisher("/clock", Clock, queue_size=1, tcp_nodelay=True)
-        self._odometry = rospy.Publisher("odom", Odometry, queue_size=1, tcp_nodelay=True)
         self._transforms = rospy.Publisher("/tf", TFMessage, queue_size=10)
         if self._frames is not None:
             self._mounts = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)

@@ -1,4 +1,4 @@
-"""What did not change is told again now and then, and a change at once, however fast the clock."""
+"""What any body tells is told of the simulated one, and beside it what it alone measures."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ import pytest
 from fixtures.homes.worlds import NOISY
 from fixtures.nodes.lockstep import Lockstep
 from fixtures.robots.missions import HOME
+from roomba_robot.msg import HazardDetection
+from sensor_msgs.msg import BatteryState
 
 from roomba.geometry import Twist
 from roomba.world.engine.state.arrays import Fault
@@ -40,3 +42,24 @@ def test_a_bumper_is_told_5_times_a_second_but_no_oftener_than_10_times_by_the_w
         topics.tell(10.05, 201, simulator.observe())
         lockstep.deliver()
     assert heard[-1].is_left_pressed or heard[-1].is_right_pressed
+
+
+def test_it_tells_the_battery_as_measured_and_a_wheel_that_is_held() -> None:
+    simulator = Simulator(HOME, NOISY, seed=1)
+    batteries: list[Any] = []
+    hazards: list[Any] = []
+    with Lockstep().installed() as lockstep:
+        lockstep.hear("battery_state", batteries.append)
+        lockstep.hear("hazard_detection", hazards.append)
+        topics = SensorTopics(NOISY, simulator, "robot")
+        first = simulator.observe()
+        topics.tell(10.0, 1, first)
+        simulator.inject(Fault.STALL_LEFT, 1.0)
+        for _ in range(20):
+            simulator.step(Twist(-0.2), 0.05)
+        topics.tell(11.0, 2, simulator.observe())
+        lockstep.deliver()
+    assert HazardDetection.STALL in [hazard.type for hazard in hazards[-1].detections]
+    assert HazardDetection.STALL not in [hazard.type for hazard in hazards[0].detections]
+    assert batteries[0].voltage == pytest.approx(first.battery.voltage)
+    assert batteries[0].power_supply_health == BatteryState.POWER_SUPPLY_HEALTH_GOOD
