@@ -6,7 +6,6 @@ import math
 import time
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import Final
 
 import rospy
 from roomba_robot.msg import BodyState
@@ -15,23 +14,6 @@ from roomba.robot.readings import Readings
 from roomba_ros.convert.readings import body_of
 from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender
 from roomba_ros.runtime.subscriptions import subscribe
-
-IN_BODY: Final = frozenset(
-    (
-        "odom",
-        "imu",
-        "bumper",
-        "cliff",
-        "wheel_drop",
-        "battery_state",
-        "dock_status",
-        "ir_omni",
-        "dirt_detect",
-        "bin_level",
-        "brush_current",
-    )
-)
-"""The single topics of which ``body`` tells all that is in them for a robot's brain."""
 
 
 class BodySource:

@@ -12,41 +12,29 @@ from typing import Any, Final
 
 import rospy
 from geometry_msgs.msg import Pose2D
-from nav_msgs.msg import Odometry
-from roomba_robot.msg import Bumper, Cliff, DockStatus, EmptyingStation, WheelDrop
-from sensor_msgs.msg import BatteryState, Imu, LaserScan
-from std_msgs.msg import Float32, UInt16
+from roomba_robot.msg import EmptyingStation
+from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
-from roomba.mission.docking.beams import StationBeams
 from roomba.mission.inputs.senses import Battery
 from roomba.perception.calibration.lidar import CorrectedLidar
 from roomba.robot.readings import Readings, ScanReading
 from roomba_ros.convert.calibration import correction_of
 from roomba_ros.convert.localization import SAME_TIME
-from roomba_ros.convert.mission import battery_of
 from roomba_ros.convert.mounts import Mounts, transforms_of
 from roomba_ros.convert.readings import (
     GyroReading,
     OdometryReading,
-    Sides,
-    beams_of,
-    bumper_of,
-    cliff_of,
     emptying_of,
-    is_docked_of,
-    odometry_of,
-    turning_of,
-    wheel_drop_of,
 )
 from roomba_ros.convert.scan import ScanDecoder
-from roomba_ros.convert.values import data_of, number_of
 from roomba_ros.runtime.node import frame_id
 from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender
 from roomba_ros.runtime.subscriptions import subscribe
-from roomba_ros.senses.body_source import IN_BODY, BodySource
+from roomba_ros.senses.body_source import BodySource
+from roomba_ros.senses.single_topics import SingleTopic, single_topics
 from roomba_ros.senses.waiting_scans import WaitingScans
 
 _KEPT: Final = 40
@@ -56,16 +44,8 @@ _LONGEST_WAIT: Final = 2.0
 _QUEUE: Final = 10
 _OF_ANY: Final = frozenset(("scan",))
 """Topics on which several nodes may tell: a robot may have two lidars, each with its frame."""
-_FIELDS: Final = {
-    "bumper": ("bumper_left", "bumper_right"),
-    "cliff": ("cliff",),
-    "wheel_drop": ("dropped_left", "dropped_right"),
-    "ir_omni": ("beams",),
-    "dirt_detect": ("grains",),
-    "bin_level": ("in_bin",),
-    "brush_current": ("brush_current",),
-}
-"""What of the readings single topics tell."""
+_BESIDE_BODY: Final = ("scan", "emptying_station", "lidar_correction")
+"""Topics that can be heard beside the single ones of the body."""
 
 
 class BodyTopics:
@@ -82,8 +62,20 @@ class BodyTopics:
     """
 
     def __init__(self, config: RobotConfig, *topics: str, always: Collection[str] = ()) -> None:
-        """Connect nothing yet; ``always`` single topics are subscribed to beside ``body``, too."""
+        """Connect nothing yet; ``always`` single topics are subscribed to beside ``body``, too.
+
+        Raises ValueError for a topic that there is not.
+        """
         self._config, self._topics, self._always = config, topics, always
+        self._singles = single_topics(config)
+        _require_known(topics, (*self._singles, *_BESIDE_BODY))
+        _require_known(always, self._singles)
+        self._takers: dict[str, Callable[[Any], object]] = {
+            "odom": self._on_odometry,
+            "imu": self._on_gyro,
+            "battery_state": self._on_battery,
+            "dock_status": self._on_dock,
+        }
         self._lock = threading.Lock()
         self._senders = OneSender(SELDOM_SILENT_AFTER)
         self._source = BodySource(
@@ -124,25 +116,17 @@ class BodyTopics:
 
     def _subscribe_singles(self) -> list[rospy.Subscriber]:
         """Subscribe to what ``body`` tells as well."""
-        return self._subscribe_to([name for name in self._topics if name not in self._always])
+        return self._subscribe_to(
+            [name for name in self._topics if name in self._singles and name not in self._always]
+        )
 
     def _subscribe_to(self, topics: Collection[str]) -> list[rospy.Subscriber]:
-        """Subscribe to single topics, out of those of ``body``."""
-        battery = partial(battery_of, voltage=self._config.battery.nominal_voltage)
-        known: dict[str, tuple[type, Callable[[Any], Any], Callable[[Any], object]]] = {
-            "odom": (Odometry, odometry_of, self._on_odometry),
-            "imu": (Imu, turning_of, self._on_gyro),
-            "bumper": (Bumper, bumper_of, self._on_bumper),
-            "cliff": (Cliff, cliff_of, lambda cliff: self._note(cliff=cliff)),
-            "wheel_drop": (WheelDrop, wheel_drop_of, self._on_wheel_drop),
-            "battery_state": (BatteryState, battery, self._on_battery),
-            "dock_status": (DockStatus, is_docked_of, self._on_dock),
-            "ir_omni": (UInt16, lambda told: beams_of(told.data), self._on_beams),
-            "dirt_detect": (UInt16, data_of, lambda count: self._note(grains=float(count))),
-            "bin_level": (Float32, number_of, self._on_bin),
-            "brush_current": (Float32, number_of, lambda told: self._note(brush_current=told)),
-        }
-        return [self._subscribe(name, *known[name]) for name in topics if name in known]
+        """Subscribe to single topics of the body."""
+        return [self._subscribe_single(name, self._singles[name]) for name in topics]
+
+    def _subscribe_single(self, name: str, single: SingleTopic) -> rospy.Subscriber:
+        take = self._takers.get(name, lambda value: self._note(**single.told(value)))
+        return self._subscribe(name, single.kind, single.convert, take)
 
     def _subscribe(
         self,
@@ -238,9 +222,10 @@ class BodyTopics:
         with self._lock:
             self._bodies.append(told if told.time else replace(told, time=rospy.get_time()))
             self._battery = told.battery
-            for topic in _FIELDS.keys() & self._topics:
-                self._others.update((name, getattr(told, name)) for name in _FIELDS[topic])
-        self._heard |= IN_BODY
+            for topic in self._singles.keys() & self._topics:
+                fields = self._singles[topic].fields
+                self._others.update((name, getattr(told, name)) for name in fields)
+        self._heard |= self._singles.keys()
 
     def _on_odometry(self, told: OdometryReading) -> None:
         with self._lock:
@@ -249,15 +234,6 @@ class BodyTopics:
     def _on_gyro(self, told: GyroReading) -> None:
         with self._lock:
             self._gyro.append(told)
-
-    def _on_bumper(self, pressed: Sides) -> None:
-        self._note(bumper_left=pressed.left, bumper_right=pressed.right)
-
-    def _on_wheel_drop(self, dropped: Sides) -> None:
-        self._note(dropped_left=dropped.left, dropped_right=dropped.right)
-
-    def _on_beams(self, beams: StationBeams) -> None:
-        self._note(beams=beams)
 
     def _on_correction(self, correction: Pose) -> None:
         self._lidars.correction = correction
@@ -270,8 +246,14 @@ class BodyTopics:
         with self._lock:
             self._battery = replace(self._battery, is_docked=is_docked)
 
-    def _on_bin(self, level: float) -> None:
-        self._note(in_bin=level * self._config.brush.bin_capacity)
+
+def _require_known(topics: Collection[str], known: Collection[str]) -> None:
+    """Raise ValueError for a topic that there is not."""
+    unknown = [name for name in topics if name not in known]
+    if unknown:
+        raise ValueError(
+            f"expected topics of the body out of {', '.join(known)}; got {', '.join(unknown)}"
+        )
 
 
 def _joined(

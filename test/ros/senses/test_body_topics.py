@@ -289,3 +289,10 @@ def test_a_robot_may_have_two_lidars(ros: Lockstep) -> None:
     ros.publish("/scan", scanned(1.2), "/front")
     ros.publish("/odom", moved(1.2))
     assert heard.take()[0].scan is not None
+
+
+def test_a_topic_that_there_is_not_is_refused_at_once(ros: Lockstep) -> None:
+    with pytest.raises(ValueError, match=r"out of odom, imu, .*scan.*; got bumpers, cliffs$"):
+        BodyTopics(CONFIG, "odom", "bumpers", "scan", "cliffs")
+    with pytest.raises(ValueError, match=r"out of odom, imu, .*; got scan$"):
+        BodyTopics(CONFIG, "odom", "scan", always=("scan",))
