@@ -10,6 +10,10 @@ class RoombaError(Exception):
     """Base of every error that the library raises on purpose."""
 
 
+class RequestRefusedError(RoombaError):
+    """The robot will not do what was asked; the message is its reason."""
+
+
 class ConfigError(RoombaError):
     """A configuration file or parameter that cannot be used."""
 

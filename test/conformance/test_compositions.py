@@ -15,11 +15,11 @@ from hypothesis import Phase as Stage
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.body import BodyConfig
 from roomba.geometry import Pose
 from roomba.headless.body import SimulatedBody
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.robot.readings import Readings
 from roomba.vocabulary import Phase
 from roomba.world.random.home import random_home

@@ -14,7 +14,7 @@ from roomba_robot.msg import (
     Zone,
 )
 
-from roomba.mission.cleaning.request import CleanOutcome, MissReason
+from roomba.mission.cleaning.result import CleanOutcome, MissReason
 from roomba.mission.phases.machine import VACUUM_STATES
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.zones import ZoneKind

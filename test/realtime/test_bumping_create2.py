@@ -11,7 +11,8 @@ import pytest
 from fixtures.processes.programs import Program
 from fixtures.waiting import wait_until
 
-from roomba.client.view import CleanOrder, LayerName
+from roomba.clean_request import CleanRequest
+from roomba.client.view import LayerName
 from roomba.commands.play.bumping import BumpingLife
 from roomba.drivers.robots.table import ROBOTS
 from roomba.headless.live.bumping.client import BumpingClient
@@ -35,7 +36,7 @@ def test_it_leaves_its_station_sweeps_and_comes_home_by_beams(client: BumpingCli
         return client.robot().vacuum.phase
 
     wait_until(lambda: phase() == "docked", 10.0, phase)
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_until(lambda: client.robot().vacuum.covered > 1.0, 90.0, lambda: str(client.robot()))
     assert phase() == "cleaning"
     swept = client.layer(LayerName.COVERAGE)

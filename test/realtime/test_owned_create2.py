@@ -12,7 +12,8 @@ import pytest
 from fixtures.processes.programs import Program
 from fixtures.waiting import wait_until
 
-from roomba.client.view import CleanOrder, LayerName
+from roomba.clean_request import CleanRequest
+from roomba.client.view import LayerName
 from roomba.commands.play.owned import OwnedLife
 from roomba.drivers.robots.table import ROBOTS
 from roomba.headless.live.client import LiveClient
@@ -40,7 +41,7 @@ def client(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[LiveClie
 
 def test_it_leaves_its_station_maps_cleans_and_stands(client: LiveClient) -> None:
     assert client.robot().vacuum.phase == "docked"
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_until(lambda: client.robot().vacuum.covered > 0.3, 90.0, lambda: str(client.robot()))
     map_ = client.layer(LayerName.MAP)
     assert map_ is not None

@@ -5,10 +5,11 @@ from __future__ import annotations
 import pytest
 from fixtures.robots.timed_neato import TimedNeato, brain_on
 
+from roomba.clean_request import CleanRequest
 from roomba.commands.trials.runs import mission_config
 from roomba.configuration.robot import load_robot_config
 from roomba.drivers.robots.table import ROBOTS
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.vocabulary import Phase
 
 LONGEST = 3000.0

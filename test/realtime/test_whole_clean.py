@@ -10,7 +10,8 @@ from fixtures.robots.faulty_end import FaultyEnd
 from fixtures.robots.neato_rig import NeatoEnd, neato_world
 from fixtures.waiting import wait_until
 
-from roomba.client.view import CleanOrder, LayerName
+from roomba.clean_request import CleanRequest
+from roomba.client.view import LayerName
 from roomba.commands.play.owned import OwnedLife
 from roomba.drivers.robots.table import ROBOTS
 from roomba.storage.map_store import MapStore
@@ -33,7 +34,7 @@ def test_it_cleans_a_home_that_it_does_not_know_and_docks(
     client = life.client
     client.start()
     try:
-        client.clean(CleanOrder())
+        client.clean(CleanRequest())
         wait_until(lambda: client.robot().last is not None, LONGEST, lambda: str(client.robot()))
         last = client.robot().last
         assert last is not None

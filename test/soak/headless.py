@@ -17,9 +17,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from fixtures.robots.missions import HOME
 
+from roomba.clean_request import CleanRequest
 from roomba.headless.live.robot import LiveRobot
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanRequest, CleanResult
+from roomba.mission.cleaning.result import CleanResult
 from roomba.vocabulary import Phase
 
 MOST_GROWTH: Final = 1.0

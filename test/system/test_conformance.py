@@ -11,8 +11,9 @@ from fixtures.probe import Probe
 from fixtures.waiting import wait_until
 from roomba_robot.msg import CleanAction, CleanGoal, CleanResult, Rectangle, VacuumState
 
+from roomba.clean_request import CleanRequest
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.vocabulary import CleanMode
 from roomba.world.layers.layer import load_home
 from roomba_ros.runtime.action_client import ActionClient

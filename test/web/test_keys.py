@@ -8,7 +8,8 @@ from playwright.sync_api import Page, Request
 from web.conftest import SIZES, Opened
 from web.test_page import DEADLINE
 
-from roomba.client.view import CleanOrder, ZoneView
+from roomba.clean_request import CleanRequest
+from roomba.client.view import ZoneView
 
 DESKTOP = pytest.mark.parametrize("size", [SIZES["desktop"]])
 LOOK_AT = """async ([x, y]) => {
@@ -42,7 +43,7 @@ def wishes_of(page: Page) -> list[str]:
 
 def clean_all(opened: Opened) -> None:
     """Let it clean, and no longer stand on its station."""
-    opened.robot.clean(CleanOrder())
+    opened.robot.clean(CleanRequest())
     opened.wait_for_phase("cleaning")
 
 

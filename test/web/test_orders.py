@@ -9,7 +9,7 @@ from fixtures.waiting import wait_until
 from web.conftest import EACH_SIZE, Opened
 from web.test_page import DEADLINE
 
-from roomba.client.view import CleanOrder
+from roomba.clean_request import CleanRequest
 from roomba.headless.embodied import Embodied
 from roomba.vocabulary import CleanMode
 
@@ -88,7 +88,7 @@ def test_it_goes_where_the_floor_was_tapped_and_back_to_be_charged(opened: Opene
 def test_a_clean_under_way_is_given_up_after_a_yes_alone(opened: Opened) -> None:
     page = opened.page
     name = opened.robot.home().rooms[0].name
-    opened.robot.clean(CleanOrder(mode="rooms", rooms=(name,)))
+    opened.robot.clean(CleanRequest(mode=CleanMode.ROOMS, rooms=(name,)))
     opened.wait_for_phase("cleaning")
     page.get_by_role("button", name="Clean all").click()
     page.locator("#ask").get_by_role("button", name="Cancel").click()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Protocol, runtime_checkable
 
+from roomba.clean_request import CleanRequest
 from roomba.client import view
 from roomba.vocabulary import RoomWay
 
@@ -35,7 +36,7 @@ class ObservedRobot(Protocol):
     def layer(self, name: view.LayerName) -> view.GridLayer | None:
         """Return a layer as it is now, or None while there is none."""
 
-    def clean(self, order: view.CleanOrder) -> None:
+    def clean(self, request: CleanRequest) -> None:
         """Begin a clean."""
 
     def change_rooms(self, rooms: tuple[str, ...], each: tuple[RoomWay, ...] = ()) -> None:

@@ -14,6 +14,8 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.clean_request import CleanRequest, Rectangle
+from roomba.errors import RequestRefusedError as RequestRefusedError
 from roomba.errors import RoombaError
 from roomba.time_spent import NOT_COUNTED, TimeSpent
 from roomba.vocabulary import (
@@ -29,10 +31,6 @@ from roomba.vocabulary import (
 
 class RobotUnavailableError(RoombaError):
     """The robot, or the part of it that was asked, does not answer."""
-
-
-class RequestRefusedError(RoombaError):
-    """The robot answered that it will not do what was asked; the message is its reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,7 +268,53 @@ class VacuumSnapshot:
     is_on_carpet: bool = False
 
 
-class RobotClient(Protocol):
+class CleaningClient(Protocol):
+    """What cleans, by a request or by its words as keywords, which become a request at once."""
+
+    def begin_clean(self, request: CleanRequest) -> CleanHandle:
+        """Start cleaning; another clean, or a way to the station, ends.
+
+        Raises RequestRefusedError for what this robot cannot be asked, RobotUnavailableError.
+        """
+
+    def clean(
+        self,
+        mode: CleanMode = CleanMode.WHOLE,
+        *,
+        rooms: Sequence[str] = (),
+        in_order: bool = False,
+        zones: Sequence[Rectangle] = (),
+        spot: tuple[float, float] | None = None,
+        passes: int = 1,
+        fan: FanLevel = FanLevel.STANDARD,
+        each: Sequence[RoomWay] = (),
+        carpets: CarpetWay = CarpetWay.BOOST,
+        edges: EdgeOrder = EdgeOrder.ANY,
+    ) -> CleanHandle:
+        """Start the clean of a :class:`roomba.clean_request.CleanRequest` of these words.
+
+        ``rooms`` are for ROOMS, ``in_order`` or else the shortest way; ``zones`` for ZONES, lowest
+        x and y, highest x and y, m; ``spot`` for SPOT, None for where the robot is; ``passes`` 1
+        to 5. ``each`` is how each of the rooms is cleaned, else ``passes`` and ``fan`` hold for
+        all. Raises RequestRefusedError for what cannot be asked at all, RobotUnavailableError.
+        """
+        return self.begin_clean(
+            CleanRequest(
+                mode,
+                rooms=tuple(rooms),
+                zones=tuple(zones),
+                spot=spot,
+                passes=passes,
+                fan=fan,
+                in_order=in_order,
+                each=tuple(each),
+                carpets=carpets,
+                edges=edges,
+            )
+        )
+
+
+class RobotClient(CleaningClient, Protocol):
     """A robot as its user interfaces see it.
 
     Every call has a deadline of wall time and raises RobotUnavailableError after it.
@@ -296,28 +340,6 @@ class RobotClient(Protocol):
 
     def walk_to(self, x: float, y: float) -> WalkHandle:
         """Start walking; raises RobotUnavailableError when no action server answers."""
-
-    def clean(
-        self,
-        mode: CleanMode = CleanMode.WHOLE,
-        *,
-        rooms: Sequence[str] = (),
-        in_order: bool = False,
-        zones: Sequence[tuple[float, float, float, float]] = (),
-        spot: tuple[float, float] | None = None,
-        passes: int = 1,
-        fan: FanLevel = FanLevel.STANDARD,
-        each: Sequence[RoomWay] = (),
-        carpets: CarpetWay = CarpetWay.BOOST,
-        edges: EdgeOrder = EdgeOrder.ANY,
-    ) -> CleanHandle:
-        """Start cleaning; another clean, or a way to the station, ends.
-
-        ``rooms`` are for ROOMS, ``in_order`` or else the shortest way; ``zones`` for ZONES, lowest
-        x and y, highest x and y, m; ``spot`` for SPOT, None for where the robot is; ``passes`` 1
-        to 5. ``each`` is how each of the rooms is cleaned, else ``passes`` and ``fan`` hold for
-        all. Raises RequestRefusedError for what cannot be asked at all, RobotUnavailableError.
-        """
 
     def change_rooms(self, rooms: Sequence[str], each: Sequence[RoomWay] = ()) -> None:
         """Let the clean of rooms under way go on with these, in this order, the first one at once.

@@ -28,7 +28,6 @@ from roomba.vocabulary import (
     CleanMode,
     EdgeOrder,
     FanLevel,
-    RoomWay,
 )
 
 Point = tuple[float, float]
@@ -255,22 +254,6 @@ class PageLimits:
             raise RequestRefusedError(
                 f"expected a speed from {self.min_speed:g} to {self.max_speed:g} m/s, got {speed:g}"
             )
-
-
-@dataclass(frozen=True, slots=True)
-class CleanOrder:
-    """What is to be cleaned, as in :meth:`roomba.client.protocol.RobotClient.clean`."""
-
-    mode: str = "whole"
-    rooms: tuple[str, ...] = ()
-    in_order: bool = True
-    zones: tuple[tuple[float, float, float, float], ...] = ()
-    spot: Point | None = None
-    passes: int = 1
-    fan: str = "standard"
-    each: tuple[RoomWay, ...] = ()
-    carpets: str = CarpetWay.BOOST.value
-    edges: str = EdgeOrder.ANY.value
 
 
 def known_cells(occupancy: OccupancyMap) -> NDArray[np.uint8]:

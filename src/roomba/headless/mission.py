@@ -11,6 +11,7 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig
@@ -30,7 +31,6 @@ from roomba.headless.records import (
     require_end,
 )
 from roomba.headless.tick_rows import BELIEVED, POSES, TIME
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.at_station import why_not_emptied
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from roomba.errors import RoombaError
 from roomba.grid import OccupancyMap
-from roomba.mission.cleaning.request import CleanResult
+from roomba.mission.cleaning.result import CleanResult
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.walking.walk import WalkState, WalkStep
 from roomba.perception.swept.coverage_map import CoverageMap

@@ -18,7 +18,7 @@ from roomba.client.protocol import (
     RequestRefusedError,
     RobotUnavailableError,
 )
-from roomba.client.view import CleanOrder, RobotView
+from roomba.client.view import RobotView
 from roomba.configuration.household import PlansConfig
 from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.folder import KeptValues
@@ -162,7 +162,7 @@ class PlanKeeper:
                 order = self._order_now(act.plan, act.order, now)
                 if order is None:
                     return scheduler.not_due(self._memory, act.plan, now)
-                self._robot.clean(clean_order_of(order))
+                self._robot.clean(order.request())
                 return scheduler.begun(self._memory, act.plan, now)
             deeds = {
                 Deed.PAUSE: self._robot.pause,
@@ -243,7 +243,7 @@ class PlanKeeper:
         """Begin a preset now; raises RequestRefusedError, RobotUnavailableError."""
         for each in self._household.presets:
             if each.name == preset:
-                self._robot.clean(clean_order_of(each.order))
+                self._robot.clean(each.order.request())
                 return
         names = listed([each.name for each in self._household.presets])
         raise RequestRefusedError(f"expected a preset, one of {names}; got {preset[:80]!r}")
@@ -290,17 +290,3 @@ class PlanKeeper:
             None if waits is None else waits.due,
             "" if waits is None else waits.reason,
         )
-
-
-def clean_order_of(order: PlannedOrder) -> CleanOrder:
-    """Return what is planned as an order to the robot."""
-    return CleanOrder(
-        order.mode.value,
-        order.rooms,
-        # What is due is cleaned by the shortest way.
-        in_order=not order.only_due,
-        passes=order.passes,
-        fan=order.fan.value,
-        carpets=order.carpets.value,
-        edges=order.edges.value,
-    )

@@ -6,11 +6,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.mission import ExploringConfig
 from roomba.errors import RoombaError
 from roomba.mission.cleaning.checkpoint import VERSION, CheckpointError, Values, request_of
 from roomba.mission.cleaning.cleaning import Cleaning
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from roomba.configuration.mission import MissionConfig
 from roomba.errors import RoombaError
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.clean_request import CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.retry_policy import RetryPolicy

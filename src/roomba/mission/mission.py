@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
@@ -21,7 +22,7 @@ from roomba.mission.changed_home import ChangedHome
 from roomba.mission.checkpoint import checkpoint_of, remembered, state_after, take_up
 from roomba.mission.cleaning.checkpoint import Values
 from roomba.mission.cleaning.cleaning import Cleaning
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult
+from roomba.mission.cleaning.result import CleanOutcome, CleanResult
 from roomba.mission.commands import Commands
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles

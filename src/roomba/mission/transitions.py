@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.retry_policy import RetryPolicy

@@ -18,6 +18,7 @@ from pydantic import (
     model_validator,
 )
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.frozen import Frozen
 from roomba.plans.days import require_days
 from roomba.vocabulary import (
@@ -88,6 +89,19 @@ class PlannedOrder(Frozen):
         if self.only_due and self.mode not in (CleanMode.WHOLE, CleanMode.ROOMS):
             raise ValueError("expected all floor or rooms, of which those that are due are cleaned")
         return self
+
+    def request(self) -> CleanRequest:
+        """Return what the robot is asked; raises CleanRefusedError for a name that is none."""
+        return CleanRequest(
+            self.mode,
+            self.rooms,
+            passes=self.passes,
+            fan=self.fan,
+            # What is due is cleaned by the shortest way.
+            in_order=not self.only_due,
+            carpets=self.carpets,
+            edges=self.edges,
+        )
 
     def with_room_names(self, names: Mapping[str, str]) -> PlannedOrder:
         """Return the order with other names of rooms, by the old ones; each room once."""

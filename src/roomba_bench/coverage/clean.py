@@ -14,7 +14,7 @@ from roomba.arrays import Floats
 from roomba.files.shipped import HOMES
 from roomba.headless.burst import LONGEST_BURST
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanOutcome, MissReason
+from roomba.mission.cleaning.result import CleanOutcome, MissReason
 from roomba.perception.localization.estimate import Knowledge
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home

@@ -11,11 +11,11 @@ from typing import Final
 import numpy as np
 
 from roomba.arrays import Mask
+from roomba.clean_request import CleanRequest
 from roomba.commands.trials.homes import rooms_of
 from roomba.configuration.household import DueConfig
 from roomba.files.shipped import HOMES
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.perception.rooms.rooms import Rooms
 from roomba.plans.due import DirtRecords, learned, needs_of
 from roomba.vocabulary import CleanMode, RoomDirt

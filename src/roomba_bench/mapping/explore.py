@@ -16,7 +16,7 @@ from roomba.configuration.sensors import EXACT_LIDAR
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanOutcome, CleanResult
+from roomba.mission.cleaning.result import CleanOutcome, CleanResult
 from roomba.mission.docking.docking import staging_pose
 from roomba.world.home.home import Home
 from roomba_bench.coverage.clean import home_named, true_floor

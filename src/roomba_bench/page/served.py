@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import sys
 
-from roomba.client.view import CleanOrder
+from roomba.clean_request import CleanRequest
 from roomba.commands.play.living import live_client
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
@@ -21,7 +21,7 @@ def main() -> None:
     server = PageServer(create_app(robot, Guard(new_token())), bound)
     robot.start()
     server.start()
-    robot.clean(CleanOrder())
+    robot.clean(CleanRequest())
     print(bound.getsockname()[1], flush=True)
     sys.stdin.read()
     server.stop()

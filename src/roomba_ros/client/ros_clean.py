@@ -9,15 +9,12 @@ from collections.abc import Callable, Sequence
 from typing import Final
 
 import rospy
-from geometry_msgs.msg import Point
 from roomba_robot.msg import (
     CleanAction,
-    CleanGoal,
     DockAction,
     DockGoal,
     ExploreAction,
     ExploreGoal,
-    Rectangle,
     RoomArray,
     UndockAction,
     UndockGoal,
@@ -26,26 +23,20 @@ from roomba_robot.msg import (
 from roomba_robot.srv import ChangeRooms
 from std_srvs.srv import Trigger
 
+from roomba.clean_request import CleanRequest
 from roomba.client.protocol import (
     CleanHandle,
+    CleaningClient,
     DockingHandle,
     ExploringHandle,
     RequestRefusedError,
     RobotUnavailableError,
     VacuumSnapshot,
 )
-from roomba.vocabulary import (
-    AT_REST,
-    HELD,
-    CarpetWay,
-    CleanMode,
-    EdgeOrder,
-    FanLevel,
-    Phase,
-    RoomWay,
-)
+from roomba.vocabulary import AT_REST, HELD, Phase, RoomWay
 from roomba_ros.client.ros_errands import RosClean, RosDocking, RosExploring, Server
 from roomba_ros.convert.client import room_names_of, vacuum_of
+from roomba_ros.convert.mission import goal_of, way_codes
 from roomba_ros.runtime.calls import call_service
 from roomba_ros.runtime.subscriptions import subscribe
 
@@ -63,7 +54,7 @@ _IS_OBEYED: Final[dict[str, Callable[[VacuumSnapshot], bool]]] = {
 """By an order whether a state may come after it; any other one is from before."""
 
 
-class RosVacuum:
+class RosVacuum(CleaningClient):
     """The robot in this node's namespace, as a vacuum cleaner.
 
     Subscribes: ``vacuum/state``, ``rooms``, ``clean/{feedback,result,status}``, ``dock/…``,
@@ -94,44 +85,13 @@ class RosVacuum:
         subscribe("vacuum/state", VacuumState, vacuum_of, self._on_vacuum_state)
         subscribe("rooms", RoomArray, room_names_of, self._on_rooms)
 
-    def clean(
-        self,
-        mode: CleanMode = CleanMode.WHOLE,
-        *,
-        rooms: Sequence[str] = (),
-        in_order: bool = False,
-        zones: Sequence[tuple[float, float, float, float]] = (),
-        spot: tuple[float, float] | None = None,
-        passes: int = 1,
-        fan: FanLevel = FanLevel.STANDARD,
-        each: Sequence[RoomWay] = (),
-        carpets: CarpetWay = CarpetWay.BOOST,
-        edges: EdgeOrder = EdgeOrder.ANY,
-    ) -> CleanHandle:
+    def begin_clean(self, request: CleanRequest) -> CleanHandle:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
-        for often in (passes, *(way.passes for way in each)):
-            _require_passes(often)
-        goal = CleanGoal(
-            mode=getattr(CleanGoal, mode.name),
-            rooms=list(rooms),
-            in_order=in_order,
-            zones=[Rectangle(*zone) for zone in zones],
-            spot=Point() if spot is None else Point(*spot, 0.0),
-            spot_is_here=spot is None,
-            passes=passes,
-            fan=getattr(CleanGoal, fan.name),
-            room_passes=[way.passes for way in each],
-            room_fans=[getattr(CleanGoal, way.fan.name) for way in each],
-            carpets=getattr(CleanGoal, f"CARPETS_{carpets.name}"),
-            edges=getattr(CleanGoal, f"EDGES_{edges.name}"),
-        )
-        return RosClean(self._cleans, goal)
+        return RosClean(self._cleans, goal_of(request))
 
     def change_rooms(self, rooms: Sequence[str], each: Sequence[RoomWay] = ()) -> None:
         """Let the clean of rooms under way go on with these."""
-        passes = [_require_passes(way.passes) for way in each]
-        fans = [getattr(CleanGoal, way.fan.name) for way in each]
-        answer = call_service(self._change_rooms, list(rooms), passes, fans)
+        answer = call_service(self._change_rooms, list(rooms), *way_codes(each))
         if not answer.success:
             raise RequestRefusedError(answer.message)
 
@@ -217,10 +177,3 @@ class RosVacuum:
         with self._told:
             self._rooms = names
             self._told.notify_all()
-
-
-def _require_passes(often: int) -> int:
-    """Return passes that fit into a message; raises RequestRefusedError for others."""
-    if not 1 <= often <= 255:
-        raise RequestRefusedError(f"expected 1 to 5 passes, got {often}")
-    return often

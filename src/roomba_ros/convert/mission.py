@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from enum import Enum
+from typing import TypeVar
 
 import numpy as np
 import shapely
@@ -36,15 +38,9 @@ from sensor_msgs.msg import BatteryState
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
+from roomba.clean_request import CleanRefusedError, CleanRequest, require_passes
 from roomba.grid import GridFrame, OccupancyMap
-from roomba.mission.cleaning.request import (
-    CleanOutcome,
-    CleanRefusedError,
-    CleanRequest,
-    CleanResult,
-    Missed,
-    MissReason,
-)
+from roomba.mission.cleaning.result import CleanOutcome, CleanResult, Missed, MissReason
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Battery
 from roomba.perception.rooms.felt_carpets import FeltCarpets
@@ -83,6 +79,8 @@ _BARRED, _CARPET = (0.9, 0.1, 0.1, 0.9), (0.5, 0.45, 0.4, 0.9)
 _OUTLINE = 0.03
 """m; width of lines around zones."""
 
+
+_Member = TypeVar("_Member", bound=Enum)
 
 RoomOutlines = tuple[tuple[str, shapely.Polygon], ...]
 """Names and outlines, m, of rooms."""
@@ -123,6 +121,37 @@ def request_of(goal: CleanGoal) -> CleanRequest:
     if not np.isfinite(zones).all():
         raise CleanGoalError(f"expected zones of finite numbers, m, got {zones}")
     return request
+
+
+def goal_of(request: CleanRequest) -> CleanGoal:
+    """Return the goal of a request."""
+    spot = request.spot
+    passes, fans = way_codes(request.each)
+    return CleanGoal(
+        mode=_code_of(MODES, request.mode),
+        rooms=list(request.rooms),
+        in_order=request.in_order,
+        zones=[Rectangle(*zone) for zone in request.zones],
+        spot=Point() if spot is None else Point(*spot, 0.0),
+        spot_is_here=spot is None,
+        passes=request.passes,
+        fan=_code_of(FANS, request.fan),
+        room_passes=passes,
+        room_fans=fans,
+        carpets=_code_of(CARPETS, request.carpets),
+        edges=_code_of(EDGES, request.edges),
+    )
+
+
+def way_codes(each: Sequence[RoomWay]) -> tuple[list[int], list[int]]:
+    """Return passes and fan levels of rooms, as messages have them; raises CleanRefusedError."""
+    for way in each:
+        require_passes(way.passes)
+    return [way.passes for way in each], [_code_of(FANS, way.fan) for way in each]
+
+
+def _code_of(codes: Mapping[int, _Member], member: _Member) -> int:
+    return next(code for code, each in codes.items() if each is member)
 
 
 def ways_of(asked: CleanGoal | ChangeRoomsRequest) -> tuple[RoomWay, ...]:
@@ -201,10 +230,12 @@ def open_edges_of(messages: Sequence[OpenEdgeMessage]) -> tuple[OpenEdge, ...]:
 
 
 def _edge_messages(edges: Sequence[OpenEdge]) -> list[OpenEdgeMessage]:
-    codes = {reason: code for code, reason in EDGE_REASONS.items()}
     return [
         OpenEdgeMessage(
-            edge.length, Point(edge.x, edge.y, 0.0), codes[edge.reason], edge.reason.value
+            edge.length,
+            Point(edge.x, edge.y, 0.0),
+            _code_of(EDGE_REASONS, edge.reason),
+            edge.reason.value,
         )
         for edge in edges
     ]
@@ -286,11 +317,14 @@ def zones_of(message: ZoneArray) -> Zones:
 
 def zones_message(now: float, zones: Zones, frame_id: str) -> ZoneArray:
     """Return all zones as a message."""
-    codes = {kind: code for code, kind in KINDS.items()}
     return ZoneArray(
         header(now, frame_id),
         [
-            ZoneMessage(zone.name, codes[zone.kind], [Point(x, y, 0.0) for x, y in zone.points])
+            ZoneMessage(
+                zone.name,
+                _code_of(KINDS, zone.kind),
+                [Point(x, y, 0.0) for x, y in zone.points],
+            )
             for zone in zones.all
         ],
     )

@@ -26,6 +26,7 @@ from roomba_robot.srv import (
 )
 from std_srvs.srv import Trigger
 
+from roomba.clean_request import CleanRequest
 from roomba.client import view
 from roomba.client.observed import HAND_SILENCE, SPILL, STATION_BOX
 from roomba.client.protocol import (
@@ -36,7 +37,7 @@ from roomba.client.protocol import (
 )
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Pose, Twist
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
+from roomba.vocabulary import RoomWay
 from roomba_ros.client.ros_client import RosCamera, RosRobot
 from roomba_ros.convert.common import twist_message
 from roomba_ros.convert.page import zone_message_of
@@ -177,21 +178,9 @@ class GraphRobot(GraphMaps):
         """Return the newest picture of the angle nearest to one, uint8 [height, width, 3] RGB."""
         return self._camera.picture(degrees)
 
-    def clean(self, order: view.CleanOrder) -> None:
+    def clean(self, request: CleanRequest) -> None:
         """Begin a clean."""
-        errand = self._vacuum.clean(
-            CleanMode(order.mode),
-            rooms=order.rooms,
-            in_order=order.in_order,
-            zones=order.zones,
-            spot=order.spot,
-            passes=order.passes,
-            fan=FanLevel(order.fan),
-            each=order.each,
-            carpets=CarpetWay(order.carpets),
-            edges=EdgeOrder(order.edges),
-        )
-        _require_taken(errand)
+        _require_taken(self._vacuum.begin_clean(request))
 
     def change_rooms(self, rooms: tuple[str, ...], each: tuple[RoomWay, ...] = ()) -> None:
         """Let the clean of rooms under way go on with these."""

@@ -25,8 +25,9 @@ from roomba_robot.msg import (
 from roomba_robot.msg import CleanResult as CleanResultMessage
 from roomba_robot.msg import ExploreResult as ExploreResultMessage
 
+from roomba.clean_request import CleanRequest
 from roomba.grid import OccupancyMap
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult
+from roomba.mission.cleaning.result import CleanOutcome, CleanResult
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Senses

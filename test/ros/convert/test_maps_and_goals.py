@@ -13,8 +13,8 @@ from roomba_robot.msg import CarpetArray, CleanGoal, LowThingArray, Rectangle, R
 from rospy import Time
 from sensor_msgs.msg import BatteryState
 
+from roomba.clean_request import CleanRefusedError
 from roomba.grid import MOST_CELLS
-from roomba.mission.cleaning.request import CleanRefusedError
 from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.perception.rooms.low_things import OfferedZone
 from roomba_ros.convert.common import map_of, told_map_of

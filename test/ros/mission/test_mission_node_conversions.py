@@ -13,18 +13,13 @@ from roomba_robot.msg import TimeSpent as TimeSpentMessage
 from roomba_robot.msg import Zone as ZoneMessage
 from sensor_msgs.msg import BatteryState
 
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.grid import FREE, GridFrame, OccupancyMap
-from roomba.mission.cleaning.request import (
-    CleanOutcome,
-    CleanRefusedError,
-    CleanResult,
-    Missed,
-    MissReason,
-)
+from roomba.mission.cleaning.result import CleanOutcome, CleanResult, Missed, MissReason
 from roomba.mission.docking.beams import StationBeams
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -48,12 +43,14 @@ from roomba_ros.convert.mission import (
     coverage_message,
     dirt_message,
     explored_message,
+    goal_of,
     open_edges_of,
     outlines_of,
     request_of,
     result_message,
     shown,
     times_of,
+    way_codes,
     zone_of,
     zones_markers,
     zones_message,
@@ -103,6 +100,38 @@ def test_each_room_of_a_goal_can_have_its_own_way() -> None:
         goal.room_passes, goal.room_fans = passes, fans
         with pytest.raises(CleanRefusedError, match=r"each of the 2 rooms|passes of rooms"):
             request_of(goal)
+
+
+@pytest.mark.parametrize(
+    "request_",
+    [
+        CleanRequest(),
+        CleanRequest(CleanMode.ROOMS, ("Küche", "Hall"), in_order=True, passes=5),
+        CleanRequest(
+            CleanMode.ROOMS,
+            ("Hall", "Den"),
+            each=(RoomWay(2, FanLevel.QUIET), RoomWay(1, FanLevel.STRONG)),
+            carpets=CarpetWay.AVOID,
+            edges=EdgeOrder.LAST,
+        ),
+        CleanRequest(CleanMode.ZONES, zones=((-1.0, 0.0, 2.0, 3.0), (0.0, 0.0, 1.0, 1.0))),
+        CleanRequest(CleanMode.SPOT, spot=(1.5, -2.5), fan=FanLevel.QUIET),
+        CleanRequest(CleanMode.SPOT),
+        CleanRequest(CleanMode.EDGES, carpets=CarpetWay.SAME, edges=EdgeOrder.FIRST),
+        CleanRequest(CleanMode.DIRTIEST),
+    ],
+)
+def test_a_request_comes_back_out_of_its_goal(request_: CleanRequest) -> None:
+    sent = io.BytesIO()
+    goal_of(request_).serialize(sent)
+    assert request_of(CleanGoal().deserialize(sent.getvalue())) == request_
+
+
+def test_rooms_are_sent_with_passes_that_can_be_asked_for() -> None:
+    ways = RoomWay(2, FanLevel.STRONG), RoomWay()
+    assert way_codes(ways) == ([2, 1], [CleanGoal.STRONG, CleanGoal.STANDARD])
+    with pytest.raises(CleanRefusedError, match="1 to 5 passes, got 6"):
+        way_codes((RoomWay(), RoomWay(6)))
 
 
 @pytest.mark.parametrize(

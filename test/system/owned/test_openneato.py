@@ -9,7 +9,7 @@ import pytest
 from fixtures.robots.neato_rig import neato_world
 from fixtures.waiting import wait_until
 
-from roomba.client.view import CleanOrder
+from roomba.clean_request import CleanRequest
 from roomba.commands.play.owned import OwnedLife
 from roomba.drivers.robots.table import ROBOTS
 from roomba.emulators.neato.bridge import NeatoBridge
@@ -25,7 +25,7 @@ def test_it_drives_maps_cleans_and_stands(tmp_path: Path, monkeypatch: pytest.Mo
         client = life.client
         client.start()
         try:
-            client.clean(CleanOrder())
+            client.clean(CleanRequest())
             wait_until(lambda: client.robot().vacuum.covered > 0.1, 120.0, "some clean floor")
             now, true = client.robot(), simulator.home.station.inverse().compose(simulator.pose)
             assert math.dist(now.pose[:2], (true.x, true.y)) < 0.15

@@ -16,8 +16,9 @@ from fixtures.robots.faulty_end import FaultyEnd
 from fixtures.robots.neato_rig import NeatoEnd, neato_world
 from fixtures.waiting import wait_until
 
+from roomba.clean_request import CleanRequest
 from roomba.client.protocol import RequestRefusedError
-from roomba.client.view import CleanOrder, LayerName
+from roomba.client.view import LayerName
 from roomba.commands.play.command import main
 from roomba.commands.play.owned import NOT_DOCKED, OwnedLife
 from roomba.commands.trials.homes import rooms_of
@@ -62,7 +63,7 @@ def covered(client: LiveClient) -> float:
 def test_it_drives_maps_cleans_and_stands(neato: NeatoEnd, client: LiveClient) -> None:
     assert client.robot().vacuum.phase == "docked"
     station = neato.simulator.home.station
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_until(lambda: covered(client) > 0.3, 60.0, "some clean floor")
     wait_until(lambda: "Brush_RPM,1200" in neato.robot.answer("GetMotors"), 10.0, "it brushes")
     now = client.robot()

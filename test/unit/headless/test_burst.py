@@ -14,13 +14,13 @@ import pytest
 from fixtures.homes.worlds import NOISY
 from fixtures.robots.missions import HOME, TWO_ROOMS, in_phase, until
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.mapping import MappingConfig
 from roomba.errors import HomeError
 from roomba.geometry import Pose, Twist
 from roomba.headless.burst import Burst
 from roomba.headless.mission import HeadlessMission
 from roomba.headless.tick_rows import BELIEVED, GYRO, ODOMETRY, PASSED, TIME, TRUE
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.readings import CliffReading

@@ -8,10 +8,10 @@ from fixtures.homes.worlds import NOISY
 from fixtures.robots.missions import TWO_ROOMS
 from numpy.typing import NDArray
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.mapping import MappingConfig
 from roomba.headless.mission import HeadlessMission
 from roomba.headless.odometry import odometry_error
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.calibration.state import DRIFT
 

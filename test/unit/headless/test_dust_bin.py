@@ -11,9 +11,10 @@ from fixtures.homes.worlds import NOISY
 from fixtures.robots.headless_cleans import assert_stands, command
 from fixtures.robots.missions import FLOOR_TOO_LITTLE, STATION, TABLE, floor_clean, in_phase, until
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Event
 from roomba.mission.transitions import BIN_FULL, RELEASED

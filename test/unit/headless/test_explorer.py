@@ -22,7 +22,7 @@ from roomba.geometry import Pose
 from roomba.grid import FREE
 from roomba.headless.mission import HeadlessMission
 from roomba.headless.records import ExploreRecord
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Event
 from roomba.perception.localization.estimate import Knowledge

@@ -31,15 +31,11 @@ from fixtures.robots.missions import (
     wait,
 )
 
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import (
-    CleanOutcome,
-    CleanRefusedError,
-    CleanRequest,
-    MissReason,
-)
+from roomba.mission.cleaning.result import CleanOutcome, MissReason
 from roomba.mission.phases.machine import Event
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.coverage.planner import CoveragePlanner

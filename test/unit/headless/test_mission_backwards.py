@@ -13,7 +13,7 @@ from roomba.files.shipped import CONFIGURATION, HOMES
 from roomba.geometry import Pose, wrap_angle
 from roomba.headless.body import lidar_model
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.world.home.home import Home
 from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Simulator

@@ -7,12 +7,10 @@ import pytest
 from fixtures.robots.headless_cleans import assert_all_clean, assert_stands, begun, command
 from fixtures.robots.missions import HOME, floor_clean, in_phase, until, wait
 
+from roomba.clean_request import CleanRequest
 from roomba.geometry import Pose
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import (
-    CleanOutcome,
-    CleanRequest,
-)
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Errand, Event
 from roomba.perception.localization.estimate import Knowledge

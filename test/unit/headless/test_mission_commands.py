@@ -16,13 +16,10 @@ from fixtures.robots.missions import (
     wait,
 )
 
+from roomba.clean_request import CleanRequest
 from roomba.geometry import Pose
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import (
-    CleanOutcome,
-    CleanRequest,
-    MissReason,
-)
+from roomba.mission.cleaning.result import CleanOutcome, MissReason
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Event
 from roomba.mission.transitions import RELEASED

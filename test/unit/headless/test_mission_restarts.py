@@ -22,14 +22,11 @@ from fixtures.robots.missions import (
 )
 from fixtures.thoroughness import core_first
 
+from roomba.clean_request import CleanRequest
 from roomba.geometry import Pose
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.checkpoint import CheckpointError
-from roomba.mission.cleaning.request import (
-    CleanOutcome,
-    CleanRequest,
-    MissReason,
-)
+from roomba.mission.cleaning.result import CleanOutcome, MissReason
 from roomba.mission.phases.machine import Event
 from roomba.vocabulary import CleanMode, Phase
 from roomba.world.engine.state.arrays import Fault

@@ -10,9 +10,7 @@ from fixtures.robots.missions import FLOOR_TOO_LITTLE, HOME, TWO_ROOMS, WALL_X, 
 from roomba.configuration.docking import DockingConfig
 from roomba.headless.mission import HeadlessMission
 from roomba.headless.records import CleanRecord
-from roomba.mission.cleaning.request import (
-    CleanOutcome,
-)
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 

@@ -9,12 +9,13 @@ from fixtures.robots.mapped import wrong_cells
 from fixtures.robots.missions import HOME, TWO_ROOMS
 from numpy.typing import NDArray
 
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanOutcome, CleanRefusedError, CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.vocabulary import CleanMode, Phase

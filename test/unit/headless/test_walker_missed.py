@@ -8,10 +8,11 @@ import pytest
 from fixtures.robots.missions import DEN, HALL, TWO_ROOMS, shut_door, two_rooms
 from fixtures.thoroughness import core_first
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult, MissReason
+from roomba.mission.cleaning.result import CleanOutcome, CleanResult, MissReason
 from roomba.vocabulary import CleanMode
 from roomba.world.layers.layer import load_home
 

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from fixtures.waiting import wait_until
 
+from roomba.clean_request import CleanRequest
 from roomba.client.observed import ObservedRobot, Timeline
 from roomba.client.protocol import ErrandOutcome, RequestRefusedError
-from roomba.client.view import CleanOrder, GridLayer, LayerName
+from roomba.client.view import GridLayer, LayerName
 from roomba.history.replay import RecordedRobot
 from roomba.history.run import TRACE, RunFigures, RunRecording
 from roomba.history.run_file import RunFileError
@@ -91,7 +92,7 @@ def test_commands_are_refused_with_the_reason(robot: RecordedRobot) -> None:
     observed: ObservedRobot = robot
     assert isinstance(observed, Timeline)
     with pytest.raises(RequestRefusedError, match="recorded run of 'box'"):
-        observed.clean(CleanOrder())
+        observed.clean(CleanRequest())
     with pytest.raises(RequestRefusedError, match="nothing is driven"):
         observed.drive(0.1, 0.0)
     with pytest.raises(RequestRefusedError):

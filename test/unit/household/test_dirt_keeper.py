@@ -10,9 +10,10 @@ import pytest
 from fixtures.households.living_plans import LivingPlans
 from fixtures.households.written_robot import HOME, VIEW, WrittenRobot
 
+from roomba.clean_request import CleanRequest
 from roomba.client.household import plans_of
 from roomba.client.protocol import CleanReport, ErrandOutcome
-from roomba.client.view import CleanOrder, HomeView, RobotView, RoomView
+from roomba.client.view import HomeView, RobotView, RoomView
 from roomba.configuration.frozen import Frozen
 from roomba.household.folder import KeptValues
 from roomba.household.plan_changes import replaced
@@ -45,7 +46,7 @@ class Living(LivingPlans):
         self.put(DUE)
         self.keeper.look(DOCKED)
 
-    def day(self, view: RobotView = DOCKED, **grains: float) -> list[CleanOrder]:
+    def day(self, view: RobotView = DOCKED, **grains: float) -> list[CleanRequest]:
         """Let a day pass, at nine of which the plan is due; return what is begun.
 
         What is begun ends an hour later, and finds such dirt.
@@ -69,12 +70,12 @@ class Living(LivingPlans):
 
 def test_a_plan_cleans_what_is_due_and_says_why(tmp_path: Path) -> None:
     living = Living(tmp_path)
-    both = CleanOrder("rooms", ("kitchen", "den"), in_order=False)
+    both = CleanRequest(CleanMode.ROOMS, ("kitchen", "den"))
     assert living.day(kitchen=5000.0, den=5000.0) == [both]
     assert living.day(kitchen=1000.0, den=450.0) == [both]
     living.again()
     living.keeper.look(DOCKED)
-    assert living.day(kitchen=1000.0) == [CleanOrder("rooms", ("kitchen",), in_order=False)]
+    assert living.day(kitchen=1000.0) == [CleanRequest(CleanMode.ROOMS, ("kitchen",))]
     needs = plans_of(living.keeper.view())["needs"]
     assert [need["every"] for need in needs] == [1, 2]
     assert needs[1]["reason"] == "it becomes 0.45 times as dirty as kitchen"
@@ -89,7 +90,7 @@ def test_what_is_learned_goes_on_by_the_name_of_a_room_now(tmp_path: Path) -> No
     living.keeper.look(DOCKED)
     living.again()
     living.keeper.look(DOCKED)
-    assert living.day(Küche=1000.0) == [CleanOrder("rooms", ("Küche",), in_order=False)]
+    assert living.day(Küche=1000.0) == [CleanRequest(CleanMode.ROOMS, ("Küche",))]
     needs = plans_of(living.keeper.view())["needs"]
     assert [(need["room"], need["every"]) for need in needs] == [("Küche", 1), ("den", 2)]
 
@@ -114,7 +115,7 @@ def test_where_nothing_is_due_nothing_begins_and_that_is_noted(tmp_path: Path) -
 def test_without_rooms_all_floor_is_cleaned(tmp_path: Path) -> None:
     living = Living(tmp_path)
     living.robot.home = lambda: HOME  # type: ignore[method-assign]
-    assert living.day() == [CleanOrder("whole", in_order=False)]
+    assert living.day() == [CleanRequest(CleanMode.WHOLE)]
 
 
 def test_only_floor_and_rooms_can_be_due() -> None:

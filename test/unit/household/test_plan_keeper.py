@@ -12,8 +12,9 @@ import pytest
 from fixtures.households.living_plans import LivingPlans
 from fixtures.households.written_robot import VIEW, WrittenRobot
 
+from roomba.clean_request import CleanRequest
 from roomba.client.protocol import CleanReport, ErrandOutcome, RequestRefusedError
-from roomba.client.view import CleanOrder, RobotView
+from roomba.client.view import RobotView
 from roomba.household.plan_changes import removed, replaced
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset
 from roomba.vocabulary import CleanMode, FanLevel
@@ -57,7 +58,7 @@ def test_a_plan_tells_the_robot_what_to_clean(living: Living) -> None:
     told = living.keeper.view()
     assert (told.next, told.next_at) == ("kitchen", living.now.replace(hour=9))
     living.look(DOCKED, 60)
-    order = CleanOrder("rooms", ("kitchen",), passes=2, fan="quiet")
+    order = CleanRequest(CleanMode.ROOMS, ("kitchen",), passes=2, fan=FanLevel.QUIET, in_order=True)
     assert living.robot.told == [("clean", (order,))]
     assert living.keeper.view().running == "kitchen"
     living.look(VIEW, 1)

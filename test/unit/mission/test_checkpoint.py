@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from fixtures.robots.missions import HOME
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
@@ -15,7 +16,7 @@ from roomba.geometry import Pose
 from roomba.mission.checkpoint import checkpoint_of, remembered, state_after, take_up
 from roomba.mission.cleaning.checkpoint import CheckpointError, Values
 from roomba.mission.cleaning.cleaning import Cleaning
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job

@@ -18,10 +18,10 @@ from fixtures.spoiled import NUMBERS, spoiled_values
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.checkpoint import CheckpointError
-from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event

@@ -10,12 +10,13 @@ import pytest
 from fixtures.missions.told_mission import TICK, ToldMission
 from fixtures.robots.missions import HOME, STATION
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import DrivingConfig, MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.errors import ConfigError
 from roomba.geometry import Pose, Twist
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Battery, Senses

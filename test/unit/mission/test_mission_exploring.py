@@ -21,9 +21,10 @@ from fixtures.missions.exploring import (
 from fixtures.missions.told_mission import TICK
 from fixtures.robots.missions import DOOR, TWO_ROOMS, WALL_X
 
+from roomba.clean_request import CleanRequest
 from roomba.geometry import STANDSTILL, Twist
 from roomba.grid import OCCUPIED, OccupancyMap
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.driving.path_driver import DriveState, DriveStep, PathDriver
 from roomba.mission.exploring.exploration import Exploration

@@ -21,14 +21,10 @@ from fixtures.missions.exploring import (
 from fixtures.missions.told_mission import TICK
 from fixtures.robots.missions import TWO_ROOMS, WALL_X
 
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.geometry import Pose, Twist
 from roomba.grid import OccupancyMap
-from roomba.mission.cleaning.request import (
-    CleanOutcome,
-    CleanRefusedError,
-    CleanRequest,
-    CleanResult,
-)
+from roomba.mission.cleaning.result import CleanOutcome, CleanResult
 from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.phases.machine import Event
 from roomba.mission.ticks import MissionStep

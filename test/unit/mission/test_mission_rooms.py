@@ -17,8 +17,9 @@ from fixtures.robots.missions import (
     wait,
 )
 
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanOutcome, CleanRefusedError, CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Event
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones

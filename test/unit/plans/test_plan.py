@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import datetime as dt
+from dataclasses import replace
 from typing import Any
 
 import pytest
 from pydantic import ValidationError
 
+from roomba.clean_request import CleanRequest
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset, QuietHours
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import CarpetWay, CleanMode, FanLevel
 
 
 def test_a_plan_comes_back_as_it_was_written() -> None:
@@ -22,6 +24,14 @@ def test_a_plan_comes_back_as_it_was_written() -> None:
         quiet=(QuietHours(),),
     )
     assert HouseholdPlans.model_validate(whole.model_dump(mode="json")) == whole
+
+
+def test_a_plan_asks_for_its_rooms_in_order_and_for_those_due_by_the_shortest_way() -> None:
+    order = PlannedOrder(mode=CleanMode.ROOMS, rooms=("den", "hall"), carpets=CarpetWay.AVOID)
+    asked = CleanRequest(CleanMode.ROOMS, ("den", "hall"), in_order=True, carpets=CarpetWay.AVOID)
+    assert order.request() == asked
+    due = order.model_copy(update={"only_due": True})
+    assert due.request() == replace(asked, in_order=False)
 
 
 def test_times_are_in_order_once_and_to_the_minute() -> None:

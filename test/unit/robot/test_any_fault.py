@@ -21,8 +21,9 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
+from roomba.clean_request import CleanRequest
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.phases.machine import Event
 from roomba.vocabulary import CleanMode
 from roomba.world.engine.state.arrays import Fault

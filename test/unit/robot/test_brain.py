@@ -10,6 +10,7 @@ import pytest
 from fixtures.homes.worlds import NOISY
 from fixtures.robots.missions import DEN, HALL, HOME, STATION, TWO_ROOMS, two_rooms
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.mission import DrivingConfig, MissionConfig
@@ -17,7 +18,6 @@ from roomba.errors import ConfigError, RoombaError
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.grid import OccupancyMap
 from roomba.headless.body import SimulatedBody
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.inputs.senses import Battery
 from roomba.mission.phases.machine import Errand, Event, MissionState

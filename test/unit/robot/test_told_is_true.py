@@ -18,9 +18,10 @@ from fixtures.robots.missions import floor_clean
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from roomba.clean_request import CleanRequest
 from roomba.geometry import Pose
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, MissReason
+from roomba.mission.cleaning.result import CleanOutcome, MissReason
 from roomba.perception.rooms.rooms import Rooms
 from roomba.vocabulary import CleanMode
 from roomba.world.home.home import DirtSource

@@ -11,6 +11,7 @@ import pytest
 from fixtures.typed_answers import TypedAnswers
 from rich.console import Console
 
+from roomba.clean_request import CleanRequest
 from roomba.client.fake.errands import ErrandScript
 from roomba.client.fake.robot import FakeRobot, SteppedClock
 from roomba.client.protocol import CleanProgress, ErrandOutcome, MissedFloor
@@ -82,7 +83,7 @@ def test_a_clean_is_told_during_and_after() -> None:
     robot = FakeRobot(room_names=("kitchen", "hall"), errands=[script])
     _, lines, answers = use(robot, "5", "")
     assert answers.prompts[:2] == ["Select: ", WHAT]
-    assert robot.asked == [(CleanMode.WHOLE, ())]
+    assert robot.asked == [CleanRequest()]
     begin = lines.index("Cleaned: 0.0 of 8.0 m² (0 %), cleaning, kitchen, battery 80 %, 16 s to go")
     assert lines[begin + 1 : begin + 14] == [
         "Cleaned: 4.0 of 8.0 m² (50 %), cleaning, hall, battery 80 %, 8 s to go",
@@ -106,13 +107,13 @@ def test_a_clean_is_told_during_and_after() -> None:
 def test_the_whole_home_has_a_number_too(choice: str) -> None:
     robot = FakeRobot()
     use(robot, "5", choice)
-    assert robot.asked == [(CleanMode.WHOLE, ())]
+    assert robot.asked == [CleanRequest()]
 
 
 def test_here_around_is_a_spot() -> None:
     robot = FakeRobot()
     _, lines, _ = use(robot, "5", "4", "3")
-    assert robot.asked == [(CleanMode.SPOT, ())]
+    assert robot.asked == [CleanRequest(CleanMode.SPOT)]
     assert lines.count("Please choose a valid number") == 1
 
 
@@ -131,7 +132,7 @@ def test_rooms_by_name_or_number(text: str, rooms: tuple[str, ...]) -> None:
     first = lines.index("  1. kitchen")
     assert lines[first + 1 : first + 3] == ["  2. hall", "  3. 1"]
     assert answers.prompts[2] == ROOMS
-    assert robot.asked == [(CleanMode.ROOMS, rooms)]
+    assert robot.asked == [CleanRequest(CleanMode.ROOMS, rooms)]
 
 
 @pytest.mark.parametrize("wrong", ["", ",", "attic", "4", "kitchen; hall", "kitchen, 0"])
@@ -141,7 +142,7 @@ def test_rooms_that_are_none_are_asked_again(wrong: str) -> None:
     complaint = f"Expected rooms of this list, got {wrong!a}. Please try again."
     assert lines.count(complaint) == 1
     assert answers.prompts[2:4] == [ROOMS, ROOMS]
-    assert robot.asked == [(CleanMode.ROOMS, ("kitchen",))]
+    assert robot.asked == [CleanRequest(CleanMode.ROOMS, ("kitchen",))]
 
 
 @pytest.mark.parametrize("lines", [("5",), ("5", "2")])

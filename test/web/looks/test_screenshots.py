@@ -20,8 +20,9 @@ from web.conftest import SIZES, Opened, in_each_scheme, serving
 from web.test_explored import EDGES, explore
 from web.test_replay import replaying
 
+from roomba.clean_request import CleanRequest
 from roomba.client.household import TotalsView
-from roomba.client.view import CleanOrder, ZoneView
+from roomba.client.view import ZoneView
 from roomba.commands.play.living import live_client
 from roomba.configuration.household import HouseholdConfig, UpkeepConfig
 from roomba.headless.live.client import LiveClient
@@ -33,6 +34,7 @@ from roomba.mission.exploring.exploration import Exploration
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
 from roomba.ui.web.server import PageServer
+from roomba.vocabulary import CleanMode
 
 pytestmark = pytest.mark.thorough
 FOLDER = Path(__file__).resolve().parents[3] / ".cache" / "screenshots"
@@ -90,7 +92,9 @@ def press(key: str) -> Step:
 
 def clean(opened: Opened) -> None:
     """Let it clean two rooms until some of the floor is green."""
-    opened.robot.clean(CleanOrder(mode="rooms", rooms=("kitchen", "bathroom")))
+    opened.robot.clean(
+        CleanRequest(mode=CleanMode.ROOMS, rooms=("kitchen", "bathroom"), in_order=True)
+    )
     wait_until(lambda: opened.robot.robot().vacuum.covered > 3.0, DEADLINE, "clean floor")
 
 
@@ -108,7 +112,7 @@ def stop(opened: Opened) -> None:
 
 def shut_in(opened: Opened) -> None:
     """Let it wait in a room whose door was shut behind it."""
-    opened.robot.clean(CleanOrder(mode="rooms", rooms=("bathroom",)))
+    opened.robot.clean(CleanRequest(mode=CleanMode.ROOMS, rooms=("bathroom",)))
     wait_until(lambda: opened.robot.robot().vacuum.covered > 1.5, DEADLINE, "clean floor")
     opened.robot.set_door("bathroom door", is_shut=True)
     opened.page.click("#dock")

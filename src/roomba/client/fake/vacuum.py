@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, TypeVar
 
+from roomba.clean_request import CleanRequest
 from roomba.client.fake.errands import (
     EXPLORING_TIME,
     HOMING_TIME,
@@ -16,12 +17,13 @@ from roomba.client.fake.errands import (
     FakeExploring,
 )
 from roomba.client.protocol import (
+    CleaningClient,
     ErrandOutcome,
     RequestRefusedError,
     RobotUnavailableError,
     VacuumSnapshot,
 )
-from roomba.vocabulary import OVERTAKEN, CarpetWay, CleanMode, EdgeOrder, FanLevel, Phase, RoomWay
+from roomba.vocabulary import OVERTAKEN, CleanMode, Phase, RoomWay
 
 if TYPE_CHECKING:
     from roomba.client.clock import Clock
@@ -35,7 +37,7 @@ UNDOCKING_TIME = 2.0
 _Errand = TypeVar("_Errand", FakeClean, FakeDocking, FakeExploring)
 
 
-class FakeVacuum:
+class FakeVacuum(CleaningClient):
     """The vacuum cleaner's half of a :class:`roomba.client.protocol.RobotClient`; it starts docked.
 
     ``errands`` are used up one per clean, way to the station or out of it; later ones complete.
@@ -51,8 +53,7 @@ class FakeVacuum:
         self.clock: Clock = clock
         self.answers = True
         self.cleans: list[FakeClean] = []
-        self.asked: list[tuple[CleanMode, tuple[str, ...]]] = []
-        """What was to be cleaned, and the rooms of it."""
+        self.asked: list[CleanRequest] = []
         self.beeps = 0
         self.is_bin_full = False
         """May be set: then :meth:`vacuum` says so until the bin is emptied."""
@@ -62,32 +63,20 @@ class FakeVacuum:
         self._errand: FakeClean | FakeDocking | FakeExploring | None = None
         self._is_docked = True
 
-    def clean(
-        self,
-        mode: CleanMode = CleanMode.WHOLE,
-        *,
-        rooms: Sequence[str] = (),
-        in_order: bool = False,
-        zones: Sequence[tuple[float, float, float, float]] = (),
-        spot: tuple[float, float] | None = None,
-        passes: int = 1,
-        fan: FanLevel = FanLevel.STANDARD,
-        each: Sequence[RoomWay] = (),
-        carpets: CarpetWay = CarpetWay.BOOST,
-        edges: EdgeOrder = EdgeOrder.ANY,
-    ) -> FakeClean:
+    def begin_clean(self, request: CleanRequest) -> FakeClean:
         """Start the next scripted clean; what was under way ends."""
         script = self._next_script()
-        names = tuple(rooms) if mode is CleanMode.ROOMS else self._room_names
+        names = request.rooms if request.mode is CleanMode.ROOMS else self._room_names
         unknown = [name for name in names if name not in self._room_names]
-        if mode is CleanMode.ROOMS and (unknown or not names):
+        if unknown:
             message = f"expected rooms among {', '.join(self._room_names)}, got {unknown}"
             script = ErrandScript(ErrandOutcome.REFUSED, message=message)
-        is_small = mode in (CleanMode.SPOT, CleanMode.ZONES)
+        is_small = request.mode in (CleanMode.SPOT, CleanMode.ZONES)
         wanted = SPOT_AREA if is_small else ROOM_AREA * max(1, len(names))
-        often = sum(way.passes for way in each) / len(each) if each else passes
+        each = request.each
+        often = sum(way.passes for way in each) / len(each) if each else request.passes
         clean = FakeClean(script, self.clock, often * wanted, names, self._battery)
-        self.asked.append((mode, tuple(rooms)))
+        self.asked.append(request)
         self.cleans.append(clean)
         return self._begin(clean, script)
 
@@ -95,7 +84,7 @@ class FakeVacuum:
         """Let the clean of rooms under way go on with these."""
         unknown = [name for name in rooms if name not in self._room_names]
         clean = self.cleans[-1] if self.cleans else None
-        if clean is None or clean.is_over or self.asked[-1][0] is not CleanMode.ROOMS:
+        if clean is None or clean.is_over or self.asked[-1].mode is not CleanMode.ROOMS:
             raise RequestRefusedError("expected a clean of rooms under way, got none: begin one")
         if unknown or not rooms:
             raise RequestRefusedError(
@@ -168,7 +157,7 @@ class FakeVacuum:
         )
 
     def _queue(self, errand: FakeErrand | None) -> tuple[str, ...]:
-        is_of_rooms = bool(self.asked) and self.asked[-1][0] is CleanMode.ROOMS
+        is_of_rooms = bool(self.asked) and self.asked[-1].mode is CleanMode.ROOMS
         return errand.queue if isinstance(errand, FakeClean) and is_of_rooms else ()
 
     def rooms(self, timeout: float = 5.0) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from roomba.commands.campaign.running.specification import Campaign
 from roomba.commands.campaign.running.store import Row
 from roomba.history.database import History
 from roomba.history.run import RunFigures, RunSource
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 
 PROGRAM: Final = "campaign"
 _KEY: Final = "key"

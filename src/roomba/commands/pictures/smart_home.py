@@ -10,8 +10,9 @@ from typing import Final
 import numpy as np
 from PIL import Image
 
+from roomba.clean_request import CleanRequest
 from roomba.client.floor_map import FloorMap
-from roomba.client.view import CleanOrder, LayerName, Point
+from roomba.client.view import LayerName, Point
 from roomba.commands.play.living import live_client
 from roomba.errors import RoombaError
 from roomba.plots.canvas import Picture
@@ -29,7 +30,7 @@ def picture_of_smart_home(home: Home, covered: float = 14.0) -> Picture:
     way: deque[Point] = deque()
     until = time.monotonic() + _DEADLINE
     try:
-        robot.clean(CleanOrder())
+        robot.clean(CleanRequest())
         while (view := robot.robot()).vacuum.covered < covered:
             if time.monotonic() > until:
                 raise RoombaError(f"expected {covered:g} m2 to be clean within {_DEADLINE:g} s")

@@ -27,7 +27,7 @@ from roomba.history.run import (
     Word,
 )
 from roomba.mission.cleaning.checkpoint import request_values
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.perception.swept.visits import Visits
 
 _COLUMNS: Final = TRACE[4:]

@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.commands.options import (
     Parser,
     UsageError,
@@ -30,7 +31,6 @@ from roomba.commands.trials.options import (
     station_of,
 )
 from roomba.commands.trials.trial import MOST_THINGS, RANDOM, Trial
-from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.vocabulary import MOST_PASSES, CarpetWay, CleanMode, EdgeOrder, FanLevel
 
 PROGRAM: Final = spelled("sim")

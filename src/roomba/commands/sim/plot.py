@@ -21,7 +21,7 @@ from roomba.commands.sim.passes import passes_over
 from roomba.commands.trials.figures import Figures
 from roomba.commands.trials.runs import Run
 from roomba.grid import FREE
-from roomba.mission.cleaning.request import MissReason
+from roomba.mission.cleaning.result import MissReason
 from roomba.plots.png import write_png
 from roomba.plots.style import INK, RED, drawn, empty_figure, show_floor_plan
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from roomba.clean_request import CleanRequest, Rectangle
 from roomba.geometry import Pose
-from roomba.mission.cleaning.request import CleanRequest, Rectangle
 
 if TYPE_CHECKING:
     from roomba.configuration.simulation import Sensors, Wheels

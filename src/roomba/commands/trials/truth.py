@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from roomba.arrays import Mask
+from roomba.clean_request import CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import RoundObstacle
 from roomba.grid import FREE, OCCUPIED, OccupancyMap
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.cleaning.stages import stages_of
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap

@@ -9,6 +9,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.clean_request import CleanRequest
 from roomba.client import view
 from roomba.client.observed import SPILL, TickTimes
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
@@ -18,18 +19,17 @@ from roomba.geometry import STANDSTILL, Pose
 from roomba.headless.embodied import Embodied
 from roomba.headless.live import playing
 from roomba.headless.live.errands import begin_exploring
-from roomba.headless.live.floor_plan import FloorPlan, made
+from roomba.headless.live.floor_plan import FloorPlan
 from roomba.headless.live.held_stop import HeldStop
 from roomba.headless.live.kept_floor_plan import KeptFloorPlan
 from roomba.headless.live.live_home import LiveHome
 from roomba.headless.live.robot import LiveRobot
 from roomba.headless.live.snapshots import ErrandsEnded, Snapshots
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event
 from roomba.perception.floors.recognition import FloorRecord
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, Phase, RoomWay
+from roomba.vocabulary import Phase, RoomWay
 from roomba.world.simulator import Simulator
 
 _Answer = TypeVar("_Answer")
@@ -174,9 +174,8 @@ class LiveClient:
             raise RequestRefusedError("this robot has no camera")
         return camera.picture(self._live.carry_out, degrees)
 
-    def clean(self, order: view.CleanOrder) -> None:
+    def clean(self, request: CleanRequest) -> None:
         """Begin a clean."""
-        request = _request_of(order)
 
         def begin(robot: Embodied) -> None:
             robot.mission.clean(request, robot.senses())
@@ -373,21 +372,3 @@ def _hold(robot: Embodied, reason: str) -> None:
 
 def _release(robot: Embodied) -> None:
     robot.mission.command(Event.RELEASE, robot.senses())
-
-
-def _request_of(order: view.CleanOrder) -> CleanRequest:
-    """Return a request; raises RequestRefusedError."""
-    return made(
-        lambda: CleanRequest(
-            CleanMode(order.mode),
-            rooms=order.rooms,
-            zones=order.zones,
-            spot=order.spot,
-            passes=order.passes,
-            fan=FanLevel(order.fan),
-            in_order=order.in_order,
-            each=order.each,
-            carpets=CarpetWay(order.carpets),
-            edges=EdgeOrder(order.edges),
-        )
-    )

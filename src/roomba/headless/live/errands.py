@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from roomba.clean_request import CleanRequest
 from roomba.client.protocol import (
     CleanProgress,
     CleanReport,
@@ -19,7 +20,7 @@ from roomba.headless.embodied import Embodied
 from roomba.headless.live.errand import LiveErrand, Obey
 from roomba.headless.live.snapshots import ErrandsEnded
 from roomba.headless.live.views import vacuum_snapshot
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Errand, Event
 from roomba.mission.walking.walk import WalkState, expected_duration, feedback_period

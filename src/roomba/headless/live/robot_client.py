@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
+from roomba.clean_request import CleanRequest
 from roomba.client.protocol import (
     CleanHandle,
+    CleaningClient,
     DockingHandle,
     ExploringHandle,
     Limits,
@@ -20,19 +22,17 @@ from roomba.headless.embodied import Embodied
 from roomba.headless.live.client import LiveClient
 from roomba.headless.live.errand import LiveErrand
 from roomba.headless.live.errands import LiveClean, LiveDocking, LiveExploring, LiveWalk
-from roomba.headless.live.floor_plan import made
 from roomba.headless.live.snapshots import ErrandsEnded
 from roomba.headless.live.views import vacuum_snapshot
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.phases.machine import Event
 from roomba.perception.localization.estimate import Knowledge
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
+from roomba.vocabulary import RoomWay
 
 _AnyErrand = LiveErrand[Any, Any]
 _Begun = TypeVar("_Begun", bound=_AnyErrand)
 
 
-class LiveRobotClient:
+class LiveRobotClient(CleaningClient):
     """A :class:`roomba.client.protocol.RobotClient` of a robot that lives in this process.
 
     One walk and one errand can be under way: a walk lets the errand pause.
@@ -68,35 +68,8 @@ class LiveRobotClient:
         """Start walking; an errand under way pauses."""
         return self._begin(LiveWalk(*self._parts, (x, y)))
 
-    def clean(
-        self,
-        mode: CleanMode = CleanMode.WHOLE,
-        *,
-        rooms: Sequence[str] = (),
-        in_order: bool = False,
-        zones: Sequence[tuple[float, float, float, float]] = (),
-        spot: tuple[float, float] | None = None,
-        passes: int = 1,
-        fan: FanLevel = FanLevel.STANDARD,
-        each: Sequence[RoomWay] = (),
-        carpets: CarpetWay = CarpetWay.BOOST,
-        edges: EdgeOrder = EdgeOrder.ANY,
-    ) -> CleanHandle:
+    def begin_clean(self, request: CleanRequest) -> CleanHandle:
         """Start cleaning."""
-        request = made(
-            lambda: CleanRequest(
-                mode,
-                rooms=tuple(rooms),
-                zones=tuple(zones),
-                spot=spot,
-                passes=passes,
-                fan=fan,
-                in_order=in_order,
-                each=tuple(each),
-                carpets=carpets,
-                edges=edges,
-            )
-        )
         return self._begin(LiveClean(*self._parts, request))
 
     def change_rooms(self, rooms: Sequence[str], each: Sequence[RoomWay] = ()) -> None:

@@ -35,7 +35,7 @@ from roomba.client.view import (
 from roomba.grid import OccupancyMap
 from roomba.headless.embodied import Embodied
 from roomba.headless.live.live_home import LiveHome
-from roomba.mission.cleaning.request import CleanResult
+from roomba.mission.cleaning.result import CleanResult
 from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import VACUUM_STATES

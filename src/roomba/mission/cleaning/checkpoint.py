@@ -14,8 +14,8 @@ from typing import Any, Final
 import numpy as np
 
 from roomba.arrays import Mask
+from roomba.clean_request import CleanRequest
 from roomba.errors import RoombaError
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, FanLevel, RoomWay
 
 VERSION: Final = 4

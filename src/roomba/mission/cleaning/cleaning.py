@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from roomba.arrays import Floats, Mask
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.configuration.mission import CleaningConfig
 from roomba.geometry import Pose, RoundObstacle
 from roomba.mission.cleaning.another_round import (
@@ -24,7 +25,7 @@ from roomba.mission.cleaning.checkpoint import Values
 from roomba.mission.cleaning.dirty.dirty_floor import DirtyFloor
 from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.missed import missed_floor
-from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, Missed
+from roomba.mission.cleaning.result import Missed
 from roomba.mission.cleaning.rounds import Rounds
 from roomba.mission.cleaning.second_pass import SecondPass
 from roomba.mission.cleaning.stages import Stage, edges_of

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from roomba.arrays import Mask
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.geometry import Pose
 from roomba.grid import GridFrame
 from roomba.mission.cleaning.checkpoint import (
@@ -17,7 +18,6 @@ from roomba.mission.cleaning.checkpoint import (
     request_values,
     unpacked,
 )
-from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.cleaning.room_queue import (
     changed_request,
     changed_stages,

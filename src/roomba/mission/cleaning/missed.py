@@ -10,7 +10,7 @@ import numpy as np
 from roomba.arrays import Mask
 from roomba.geometry import RoundObstacle
 from roomba.grid import GridFrame
-from roomba.mission.cleaning.request import Missed, MissReason
+from roomba.mission.cleaning.result import Missed, MissReason
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import Patch, patches_of
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from roomba.arrays import Mask
-from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.mission.cleaning.stages import Stage
 from roomba.perception.rooms.rooms import Rooms
 from roomba.vocabulary import CleanMode, RoomWay

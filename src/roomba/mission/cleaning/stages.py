@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from roomba.arrays import Mask
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.geometry import Pose
-from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.planning.path.planner import NoPathError

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from roomba.configuration.mission import ExploringConfig
 from roomba.geometry import Pose, RoundObstacle
 from roomba.grid import FREE, OccupancyMap
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.exploring.open_edges import GivenUp, open_edges
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.frontiers.frontiers import Frontier, FrontierChoice, frontiers, is_frontier

@@ -9,7 +9,7 @@ from roomba.clock import RobotTime
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.docking.docking import Docking, DockSenses, DockState
 from roomba.mission.docking.undocking import Undocking, UndockState
 from roomba.mission.inputs.senses import EmptyingTold, Senses

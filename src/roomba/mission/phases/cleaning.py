@@ -9,7 +9,7 @@ from typing import Final
 from roomba.clock import RobotTime
 from roomba.configuration.mission import ExploringConfig
 from roomba.mission.cleaning.cleaning import Cleaning
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.path_driver import DriveState
 from roomba.mission.driving.retry_policy import RetryPolicy

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from roomba.clean_request import CleanRequest
 from roomba.clock import LONGEST_TICK
 from roomba.configuration.mission import MissionConfig
 from roomba.grid import OccupancyMap
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.missed import what_is_not_clean
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest, CleanResult
+from roomba.mission.cleaning.result import CleanOutcome, CleanResult
 from roomba.mission.cleaning.room_dirt import dirt_of_rooms
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.exploring.exploration import Exploration, ExploreResult

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from roomba.clock import RobotTime
 from roomba.configuration.loops import WalkConfig
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.energy import EnergyLedger

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from roomba.geometry import STANDSTILL, Twist
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.phases.machine import Event
 
 

@@ -8,13 +8,13 @@ from typing import Any, Final, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from roomba.clean_request import CleanRequest
 from roomba.client.observed import ObservedRobot
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
-from roomba.client.view import CleanOrder
 from roomba.files.plain_json import load_json
 from roomba.ui.smart_home.told_state import shortened
-from roomba.ui.web.routes.wishes import CleanWish, PlaceWish, order_of
-from roomba.vocabulary import HELD, FanLevel, Phase
+from roomba.ui.web.routes.wishes import CleanWish, PlaceWish, request_of
+from roomba.vocabulary import HELD, CleanMode, FanLevel, Phase
 
 _UNDER_WAY: Final = (Phase.UNDOCKING, Phase.CLEANING)
 _Model = TypeVar("_Model", bound=BaseModel)
@@ -27,13 +27,13 @@ class SmartCommands:
     def __init__(self, robot: ObservedRobot) -> None:
         """Command this robot."""
         self._robot = robot
-        self.fan = FanLevel.STANDARD.value
+        self.fan = FanLevel.STANDARD
         self._plain: dict[str, Callable[[], None]] = {
             "start": self._start,
             "pause": robot.pause,
             "stop": robot.stop,
             "return_to_base": robot.dock,
-            "clean_spot": lambda: robot.clean(CleanOrder("spot", fan=self.fan)),
+            "clean_spot": lambda: robot.clean(CleanRequest(CleanMode.SPOT, fan=self.fan)),
             "locate": robot.locate,
             "resume": robot.resume,
             "explore": robot.explore,
@@ -60,7 +60,7 @@ class SmartCommands:
         def change() -> None:
             if payload not in _FANS:
                 raise RequestRefusedError(f"expected one of {', '.join(_FANS)}, got {payload!a}")
-            self.fan = payload
+            self.fan = FanLevel(payload)
 
         return self._answered("fan_speed", change)
 
@@ -99,11 +99,11 @@ class SmartCommands:
         if phase in HELD:
             self._robot.resume()
         elif phase not in _UNDER_WAY:
-            self._robot.clean(CleanOrder(fan=self.fan))
+            self._robot.clean(CleanRequest(fan=self.fan))
 
     def _clean(self, values: Any) -> None:
-        wish = _valid(CleanWish, {"fan": self.fan, **values})
-        self._robot.clean(order_of(wish))
+        wish = _valid(CleanWish, {"fan": self.fan.value, **values})
+        self._robot.clean(request_of(wish))
 
     def _go_to(self, values: Any) -> None:
         place = _valid(PlaceWish, values)

@@ -167,7 +167,7 @@ class MqttBridge:
         if home.version != self._home_version:
             self._home_version = home.version
             self.broker.hold(self.topics.attributes, json.dumps(attributes_of(home)))
-        state = self._teller.state_of(view, self._commands.fan)
+        state = self._teller.state_of(view, self._commands.fan.value)
         if now - self._state_told >= self._config.state_period:
             self._state_told = now
             self.broker.hold(self.topics.state, json.dumps(state))

@@ -9,17 +9,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roomba.clean_request import CleanRequest
 from roomba.client.fake.errands import (
     CLEANING_RATE,
     HOMING_TIME,
     LOST_NOTICE,
     ErrandScript,
-    FakeClean,
 )
 from roomba.client.fake.robot import CAMERA_ANGLES, FakeRobot, SteppedClock, Turn, WalkScript
 from roomba.client.fake.vacuum import ROOM_AREA, UNDOCKING_TIME
 from roomba.client.protocol import (
     CameraClient,
+    CleanHandle,
     CleanReport,
     ErrandOutcome,
     RequestRefusedError,
@@ -28,8 +29,16 @@ from roomba.client.protocol import (
     WalkHandle,
     WalkOutcome,
 )
-from roomba.mission.cleaning import request as clean_request
-from roomba.vocabulary import CleanMode, EdgeReason, OpenEdge
+from roomba.mission.cleaning.result import CleanOutcome
+from roomba.vocabulary import (
+    CarpetWay,
+    CleanMode,
+    EdgeOrder,
+    EdgeReason,
+    FanLevel,
+    OpenEdge,
+    RoomWay,
+)
 
 COORDINATE = st.floats(min_value=-100.0, max_value=100.0)
 
@@ -234,7 +243,7 @@ def test_a_missing_camera_is_unavailable() -> None:
         robot.picture(0.0)
 
 
-def ended(clean: FakeClean) -> CleanReport:
+def ended(clean: CleanHandle) -> CleanReport:
     while clean.next_feedback(100.0) is not None:
         pass
     report = clean.report()
@@ -245,7 +254,7 @@ def ended(clean: FakeClean) -> CleanReport:
 def test_the_outcomes_of_errands_are_those_of_the_mission() -> None:
     outcomes = {outcome.name for outcome in ErrandOutcome}
     assert outcomes - {"REFUSED", "DISCONNECTED", "INTERRUPTED"} == {
-        each.name for each in clean_request.CleanOutcome
+        each.name for each in CleanOutcome
     }
 
 
@@ -265,6 +274,43 @@ def test_a_clean_tells_every_second_and_ends_on_the_station() -> None:
     assert report.outcome is ErrandOutcome.COMPLETED
     assert report.duration == pytest.approx(cleaning + HOMING_TIME)
     assert robot.vacuum().state == "docked"
+
+
+def test_the_words_of_a_clean_become_one_request() -> None:
+    robot = FakeRobot(room_names=("kitchen", "hall"))
+    ways, zone = (RoomWay(2, FanLevel.QUIET), RoomWay()), (0.0, 0.0, 1.0, 2.0)
+    robot.clean(
+        CleanMode.ROOMS,
+        rooms=["hall", "kitchen"],
+        in_order=True,
+        zones=[zone],
+        spot=(1.0, 2.0),
+        passes=3,
+        fan=FanLevel.STRONG,
+        each=list(ways),
+        carpets=CarpetWay.AVOID,
+        edges=EdgeOrder.LAST,
+    )
+    robot.clean()
+    assert robot.asked == [
+        CleanRequest(
+            CleanMode.ROOMS,
+            rooms=("hall", "kitchen"),
+            zones=(zone,),
+            spot=(1.0, 2.0),
+            passes=3,
+            fan=FanLevel.STRONG,
+            in_order=True,
+            each=ways,
+            carpets=CarpetWay.AVOID,
+            edges=EdgeOrder.LAST,
+        ),
+        CleanRequest(),
+    ]
+    for passes in (0, 6):
+        with pytest.raises(RequestRefusedError, match=f"1 to 5 passes, got {passes}"):
+            robot.clean(passes=passes)
+    assert len(robot.asked) == 2
 
 
 def test_a_pause_takes_no_part_in_the_work() -> None:

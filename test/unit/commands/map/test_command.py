@@ -21,7 +21,7 @@ from roomba.commands.map.runs import MapRun, MapScene, ObservedExplorer
 from roomba.commands.trials.trial import Trial
 from roomba.commands.trials.warm import closet
 from roomba.configuration.robot import RobotConfig
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.world.layers.layer import load_home
 
 CLOSET = Trial(home="closet", seed=3)

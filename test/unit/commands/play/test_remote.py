@@ -9,8 +9,8 @@ from fixtures.bridges.openneato_mock import openneato_mock
 from fixtures.robots.neato_rig import neato_world
 from fixtures.waiting import wait_until
 
+from roomba.clean_request import CleanRequest
 from roomba.client.protocol import RobotUnavailableError
-from roomba.client.view import CleanOrder
 from roomba.commands.play.remote import NOT_DRIVEN, remote_client
 from roomba.drivers.line import LineError
 from roomba.emulators.neato.bridge import NeatoBridge
@@ -40,7 +40,7 @@ def test_a_robot_behind_the_mock_of_openneato_cleans_and_goes_home() -> None:
         assert told == [NOT_DRIVEN]
         client.start()
         wait_until(lambda: phase(client) == "idle", DEADLINE, lambda: phase(client))
-        client.clean(CleanOrder())
+        client.clean(CleanRequest())
         wait_until(lambda: phase(client) == "cleaning", DEADLINE, lambda: phase(client))
         assert client.robot().vacuum.battery == pytest.approx(0.85)
         wait_until(lambda: len(client.robot().scan) == 2, DEADLINE, "its scan")

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from roomba.clean_request import CleanRequest
 from roomba.commands.options import UsageError
 from roomba.commands.sim.options import options_of
 from roomba.commands.trials.trial import MOST_THINGS, RANDOM, Trial
 from roomba.geometry import Pose
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba.world.engine.state.arrays import MOST_DISCS
 

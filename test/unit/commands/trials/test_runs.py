@@ -14,6 +14,7 @@ import shapely
 from fixtures.thoroughness import core_first
 from numpy.typing import NDArray
 
+from roomba.clean_request import CleanRequest
 from roomba.commands.options import UsageError
 from roomba.commands.sim.command import main
 from roomba.commands.sim.json_file import TIMES, run_as_json
@@ -27,7 +28,6 @@ from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.coverage_map import GRANTED
 from roomba.storage.low_things import load_low_things, save_low_things

@@ -13,9 +13,10 @@ import pytest
 from fixtures.waiting import wait_until
 from unit.headless.live.living import living
 
+from roomba.clean_request import CleanRequest
 from roomba.client.plain import home_from, home_of
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
-from roomba.client.view import CleanOrder, LayerName, ZoneView
+from roomba.client.view import LayerName, ZoneView
 from roomba.commands.play.living import live_client
 from roomba.configuration.frozen import load_config
 from roomba.configuration.household import HouseholdConfig
@@ -25,6 +26,7 @@ from roomba.household.household import LiveHousehold
 from roomba.perception.rooms.low_things import LowThing, LowThings
 from roomba.plans.plan import Plan
 from roomba.storage.kept_stop import KeptStop
+from roomba.vocabulary import CleanMode
 
 DEADLINE = 20.0
 """s of wall time."""
@@ -45,7 +47,7 @@ def phase(client: LiveClient) -> str:
 
 def test_it_cleans_pauses_goes_on_stops_and_docks(client: LiveClient) -> None:
     assert phase(client) == "docked"
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_until(lambda: client.robot().vacuum.covered > 0.5, DEADLINE, "some clean floor")
     client.pause()
     assert phase(client) == "paused"
@@ -64,7 +66,7 @@ def test_it_cleans_pauses_goes_on_stops_and_docks(client: LiveClient) -> None:
 
 
 def test_a_whole_clean_is_shown_and_told(client: LiveClient) -> None:
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_until(lambda: client.robot().last is not None, DEADLINE, "the end of the clean")
     last, layer = client.robot().last, client.layer(LayerName.COVERAGE)
     assert last is not None
@@ -75,7 +77,7 @@ def test_a_whole_clean_is_shown_and_told(client: LiveClient) -> None:
 
 
 def test_the_emergency_stop_holds_until_it_is_released(client: LiveClient) -> None:
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     client.emergency_stop("a test")
     assert client.robot().held == "a test"
     with pytest.raises(RequestRefusedError, match="emergency"):
@@ -110,7 +112,7 @@ def test_the_emergency_stop_holds_the_robot_that_is_started_anew(tmp_path: Path)
         assert client.robot().held == "child in the way"
         assert phase(client) == "emergency stop"
         with pytest.raises(RequestRefusedError, match="child in the way"):
-            client.clean(CleanOrder())
+            client.clean(CleanRequest())
         client.release()
         assert client.robot().held == ""
     with lives(tmp_path) as client:
@@ -157,7 +159,7 @@ def test_a_disk_that_does_not_keep_the_stop_holds_it_nevertheless_and_is_told(
     file = tmp_path / "file"
     file.write_bytes(b"")
     with lives(file) as client:
-        client.clean(CleanOrder())
+        client.clean(CleanRequest())
         client.emergency_stop("child in the way")
         held = client.robot().held
         assert held.startswith("child in the way; but it is forgotten if the robot is killed, ")
@@ -175,7 +177,7 @@ def test_a_kept_stop_that_cannot_be_removed_is_told_and_the_drive_is_free(tmp_pa
 
 
 def test_driving_by_hand_ends_with_silence(client: LiveClient) -> None:
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_until(lambda: phase(client) == "cleaning", DEADLINE, "the clean")
     with pytest.raises(RequestRefusedError, match="pause it"):
         client.drive(0.1, 0.0)
@@ -225,7 +227,7 @@ def test_a_full_bin_is_said_and_emptied() -> None:
     client.start()
     try:
         wait_until(lambda: phase(client) == "docked", DEADLINE, "the robot on its station")
-        client.clean(CleanOrder())
+        client.clean(CleanRequest())
         wait_until(lambda: phase(client) == "bin full", DEADLINE, "a full bin")
         assert "empty" in client.robot().vacuum.message
         client.empty_bin()
@@ -270,7 +272,7 @@ def test_zones_are_offered_of_low_things_taken_or_ignored(client: LiveClient) ->
 
 def test_carpets_that_it_felt_are_told_with_the_home(client: LiveClient) -> None:
     assert client.home().felt_carpets == ()
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_until(lambda: client.home().felt_carpets, 60.0, "a carpet")
     first = client.home()
     assert home_of(first)["felt_carpets"] == first.felt_carpets
@@ -295,9 +297,7 @@ def test_the_newest_edit_of_the_rooms_is_taken_back(client: LiveClient) -> None:
 @pytest.mark.parametrize(
     "ask",
     [
-        lambda client: client.clean(CleanOrder("rooms", ("no such room",))),
-        lambda client: client.clean(CleanOrder("nothing")),
-        lambda client: client.clean(CleanOrder(fan="hurricane")),
+        lambda client: client.clean(CleanRequest(CleanMode.ROOMS, ("no such room",))),
         lambda client: client.resume(),
         lambda client: client.explore(),
         lambda client: client.remove_zone("none"),
@@ -328,7 +328,7 @@ def test_what_was_swept_stays_shown_while_the_map_grows() -> None:
     client = live_client("flat", seed=1, speed=200.0, knows_map=False)
     client.start()
     try:
-        client.clean(CleanOrder())
+        client.clean(CleanRequest())
         shapes: list[tuple[int, ...]] = []
 
         def has_grown() -> bool:

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from fixtures.waiting import wait_until
 
+from roomba.clean_request import CleanRequest
 from roomba.client.observed import SPILL
 from roomba.client.protocol import RequestRefusedError
-from roomba.client.view import CleanOrder, LayerName, PlayAct, TruthView
+from roomba.client.view import LayerName, PlayAct, TruthView
 from roomba.commands.play.living import live_client
 from roomba.headless.live.client import LiveClient
 from roomba.headless.live.robot_client import LiveRobotClient
-from roomba.vocabulary import FanLevel, RoomWay
+from roomba.vocabulary import CleanMode, FanLevel, RoomWay
 
 DEADLINE = 20.0
 """s of wall time."""
@@ -93,7 +94,7 @@ def test_a_door_is_shut_and_opened(client: LiveClient) -> None:
 
 
 def test_a_lifted_robot_stands_and_finds_itself_where_it_was_put(client: LiveClient) -> None:
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_until(lambda: client.robot().vacuum.covered > 0.3, DEADLINE, "some clean floor")
     client.lift()
     assert truth_of(client).is_lifted
@@ -134,18 +135,18 @@ def test_it_drives_no_faster_than_it_may(client: LiveClient) -> None:
 
 def test_each_room_is_cleaned_its_own_way(client: LiveClient) -> None:
     rooms = ("bathroom", "hallway")
-    once = CleanOrder(mode="rooms", rooms=rooms)
+    once = CleanRequest(mode=CleanMode.ROOMS, rooms=rooms, in_order=True)
     client.clean(once)
     wanted = client.robot().vacuum.wanted
     ways = (RoomWay(2, FanLevel.QUIET), RoomWay(1, FanLevel.STRONG))
-    client.clean(CleanOrder(mode="rooms", rooms=rooms, each=ways))
+    client.clean(CleanRequest(mode=CleanMode.ROOMS, rooms=rooms, each=ways, in_order=True))
     assert client.robot().vacuum.wanted == wanted
     with pytest.raises(RequestRefusedError, match="each of the 2 rooms"):
-        client.clean(CleanOrder(mode="rooms", rooms=rooms, each=ways[:1]))
+        client.clean(CleanRequest(mode=CleanMode.ROOMS, rooms=rooms, each=ways[:1], in_order=True))
 
 
 def test_the_rooms_of_a_clean_are_changed_while_it_is_under_way(client: LiveClient) -> None:
-    client.clean(CleanOrder(mode="rooms", rooms=("bathroom", "hallway")))
+    client.clean(CleanRequest(mode=CleanMode.ROOMS, rooms=("bathroom", "hallway"), in_order=True))
     assert client.robot().vacuum.queue == ("bathroom", "hallway")
     client.change_rooms(("hallway", "bathroom"))
     assert client.robot().vacuum.queue == ("hallway", "bathroom")

@@ -7,8 +7,9 @@ from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import NOISY
 from fixtures.robots.missions import STATION, until
 
+from roomba.clean_request import CleanRequest
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanOutcome, CleanRequest
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.cleaning.stages import edges_of
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.vocabulary import CarpetWay, EdgeOrder, FanLevel, Phase

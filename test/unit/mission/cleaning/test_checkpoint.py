@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from roomba.arrays import Mask
+from roomba.clean_request import CleanRequest
 from roomba.errors import RoombaError
 from roomba.mission.cleaning.checkpoint import (
     CheckpointError,
@@ -22,7 +23,6 @@ from roomba.mission.cleaning.checkpoint import (
     request_values,
     unpacked,
 )
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.vocabulary import MOST_PASSES, CleanMode, FanLevel, RoomWay, fault_of_name
 
 sizes = st.tuples(st.integers(1, 40), st.integers(1, 40))

@@ -9,8 +9,9 @@ import pytest
 from fixtures.robots.driven_cleans import HERE, ahead, cleaning, context, drive, finish
 from fixtures.robots.missions import DEN, HALL, HOME, TWO_ROOMS
 
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.configuration.mission import MissionConfig
-from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest, MissReason
+from roomba.mission.cleaning.result import MissReason
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.vocabulary import CleanMode

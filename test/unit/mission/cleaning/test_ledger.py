@@ -9,11 +9,11 @@ import pytest
 from fixtures.missions.exploring import HALL, HERE, WHOLE, context_of, known_to
 from fixtures.robots.missions import WALL_X
 
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.mission.cleaning.checkpoint import CheckpointError
 from roomba.mission.cleaning.ledger import CoverageLedger
-from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.cleaning.stages import Stage
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_bits import SWEPT

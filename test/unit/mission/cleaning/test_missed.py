@@ -12,7 +12,7 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import RoundObstacle
 from roomba.mission.cleaning.missed import is_hidden, missed_floor, what_is_not_clean
-from roomba.mission.cleaning.request import Missed, MissReason
+from roomba.mission.cleaning.result import Missed, MissReason
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import patches_of
 

@@ -8,7 +8,7 @@ from fixtures.robots.driven_cleans import FENCE, HERE, ahead, cleaning, context,
 from fixtures.robots.missions import DEN, TWO_ROOMS, WALL_X
 
 from roomba.geometry import Pose, RoundObstacle
-from roomba.mission.cleaning.request import MissReason
+from roomba.mission.cleaning.result import MissReason
 from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.planning.path.planner import NoPathError
 from roomba.planning.path.polyline import Path

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from fixtures.robots.missions import DEN, HALL, TWO_ROOMS, WALL_X, two_rooms
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.cleaning.room_dirt import dirt_of_rooms
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap

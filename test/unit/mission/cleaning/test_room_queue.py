@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.grid import GridFrame
-from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.cleaning.room_queue import (
     changed_request,
     changed_stages,

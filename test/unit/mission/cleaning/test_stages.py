@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from fixtures.robots.missions import DEN, HALL, HOME, TWO_ROOMS, WALL_X, two_rooms
 
+from roomba.clean_request import CleanRefusedError, CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
-from roomba.mission.cleaning.request import CleanRefusedError, CleanRequest
 from roomba.mission.cleaning.stages import Stage, stages_of
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.dirt_map import DirtMap

@@ -12,7 +12,7 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Pose, Twist
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.docking.docking import Docking, DockState
 from roomba.mission.docking.step import DockStep
 from roomba.mission.docking.undocking import Undocking, UndockState, UndockStep

@@ -8,12 +8,12 @@ import numpy as np
 from fixtures.homes.obstacles import Standing
 from fixtures.robots.missions import TWO_ROOMS, WALL_X
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, RoundObstacle
 from roomba.mission.cleaning.cleaning import Cleaning
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.retry_policy import RetryPolicy
 from roomba.mission.inputs.planning_context import PlanningContext

@@ -13,7 +13,7 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Pose, RoundObstacle
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.retry_policy import RetryPolicy
 from roomba.mission.inputs.planning_context import PlanningContext

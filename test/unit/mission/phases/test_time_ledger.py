@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from fixtures.robots.missions import HOME
 
+from roomba.clean_request import CleanRequest
 from roomba.headless.mission import HeadlessMission
-from roomba.mission.cleaning.request import CleanRequest, CleanResult
+from roomba.mission.cleaning.result import CleanResult
 from roomba.mission.phases.time_ledger import TimeLedger
 from roomba.time_spent import TimeSpent
 from roomba.vocabulary import Phase

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from roomba.grid import GridFrame
-from roomba.mission.cleaning.request import CleanOutcome, MissReason
+from roomba.mission.cleaning.result import CleanOutcome, MissReason
 from roomba_bench.bench import Bench
 from roomba_bench.coverage.aims import aims_of
 from roomba_bench.coverage.clean import Clean, Task

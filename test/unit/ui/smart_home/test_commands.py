@@ -11,8 +11,9 @@ from fixtures.households.written_robot import VIEW, WrittenRobot
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.client.view import CleanOrder
+from roomba.clean_request import CleanRequest
 from roomba.ui.smart_home.commands import SmartCommands
+from roomba.vocabulary import CleanMode, FanLevel
 
 
 def in_phase(phase: str) -> WrittenRobot:
@@ -24,9 +25,9 @@ def in_phase(phase: str) -> WrittenRobot:
 @pytest.mark.parametrize(
     ("phase", "told"),
     [
-        ("docked", [("clean", (CleanOrder(),))]),
-        ("idle", [("clean", (CleanOrder(),))]),
-        ("returning", [("clean", (CleanOrder(),))]),
+        ("docked", [("clean", (CleanRequest(),))]),
+        ("idle", [("clean", (CleanRequest(),))]),
+        ("returning", [("clean", (CleanRequest(),))]),
         ("paused", [("resume", ())]),
         ("error", [("resume", ())]),
         ("cleaning", []),
@@ -46,7 +47,7 @@ def test_a_start_goes_on_or_cleans_all(phase: str, told: list[Any]) -> None:
         ("stop", ("stop", ())),
         ("return_to_base", ("dock", ())),
         ("locate", ("locate", ())),
-        ("clean_spot", ("clean", (CleanOrder("spot"),))),
+        ("clean_spot", ("clean", (CleanRequest(CleanMode.SPOT),))),
     ],
 )
 def test_the_commands_of_the_vacuum(payload: str, told: tuple[str, tuple[Any, ...]]) -> None:
@@ -65,14 +66,17 @@ def test_rooms_and_zones_by_send_command() -> None:
     assert commands.set_fan("quiet")["ok"]
     wish = {"command": "clean", "mode": "rooms", "rooms": ["hall"], "passes": 2}
     assert commands.send(json.dumps(wish))["ok"]
-    zones = {"command": "clean", "mode": "zones", "zones": [[0, 0, 1, 2.5]], "fan": "strong"}
-    assert commands.send(json.dumps(zones))["ok"]
+    wish = {"command": "clean", "mode": "zones", "zones": [[0, 0, 1, 2.5]], "fan": "strong"}
+    assert commands.send(json.dumps(wish))["ok"]
     assert commands.send('{"command": "go_to", "x": 1, "y": -2}')["ok"]
     assert commands.send("empty_bin")["ok"]
     assert commands.send('{"command": "explore"}')["ok"]
+    rooms = CleanRequest(CleanMode.ROOMS, ("hall",), passes=2, fan=FanLevel.QUIET, in_order=True)
+    zone = (0.0, 0.0, 1.0, 2.5)
+    zones = CleanRequest(CleanMode.ZONES, zones=(zone,), fan=FanLevel.STRONG, in_order=True)
     assert robot.told == [
-        ("clean", (CleanOrder("rooms", ("hall",), passes=2, fan="quiet"),)),
-        ("clean", (CleanOrder("zones", zones=((0.0, 0.0, 1.0, 2.5),), fan="strong"),)),
+        ("clean", (rooms,)),
+        ("clean", (zones,)),
         ("go_to", (1.0, -2.0)),
         ("empty_bin", ()),
         ("explore", ()),
@@ -105,7 +109,7 @@ def test_what_cannot_be_done_is_refused_with_a_sentence(payload: str, expected: 
         assert len(answer["message"]) <= 255
         assert robot.told == []
     else:
-        assert robot.told == [("clean", (CleanOrder(),))]
+        assert robot.told == [("clean", (CleanRequest(in_order=True),))]
 
 
 def test_a_refusal_of_the_robot_is_the_answer() -> None:
@@ -120,7 +124,7 @@ def test_a_refusal_of_the_robot_is_the_answer() -> None:
 def test_a_fan_level_that_there_is_not_changes_nothing() -> None:
     commands = SmartCommands(WrittenRobot())
     assert "expected one of quiet, standard, strong" in commands.set_fan("turbo")["message"]
-    assert commands.fan == "standard"
+    assert commands.fan is FanLevel.STANDARD
 
 
 @given(st.text() | st.recursive(st.none() | st.text() | st.floats(), st.lists).map(json.dumps))

@@ -16,8 +16,10 @@ from fastapi.testclient import TestClient
 from fixtures.households.written_robot import VIEW, WrittenRobot
 from fixtures.routes import all_routes
 
+from roomba.clean_request import CleanRequest
 from roomba.ui.web.app import STATIC, create_app
 from roomba.ui.web.guard import Guard
+from roomba.vocabulary import CleanMode, FanLevel
 
 TOKEN = "the-token"
 HOST = {"Host": "127.0.0.1:8400"}
@@ -85,13 +87,10 @@ def test_commands_reach_the_robot(page: TestClient, robot: WrittenRobot) -> None
     body = {"mode": "rooms", "rooms": ["hall", "den"], "passes": 2, "fan": "quiet"}
     assert page.post("/api/v1/clean", json=body, headers=AUTHORISED).json() == {"ok": True}
     assert page.post("/api/v1/pause", json={}, headers=AUTHORISED).status_code == 200
-    (name, (order,)), paused = robot.told
+    (name, (request,)), paused = robot.told
     assert name == "clean"
-    assert (order.mode, order.rooms, order.passes, order.fan) == (
-        "rooms",
-        ("hall", "den"),
-        2,
-        "quiet",
+    assert request == CleanRequest(
+        CleanMode.ROOMS, ("hall", "den"), passes=2, fan=FanLevel.QUIET, in_order=True
     )
     assert paused == ("pause", ())
 

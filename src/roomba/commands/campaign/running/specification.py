@@ -8,6 +8,7 @@ from typing import Annotated, Final, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from roomba.clean_request import CleanRequest
 from roomba.commands.campaign.running.measures import DEFAULT_MEASURES, MEASURES
 from roomba.commands.options import MOST_SEED, UsageError
 from roomba.commands.trials.numbers import check_numbers
@@ -25,7 +26,6 @@ from roomba.configuration.frozen import (
 from roomba.configuration.sensors import lidar_models
 from roomba.files.home_layer import DAY, MAP_NAME
 from roomba.files.shipped import HOMES
-from roomba.mission.cleaning.request import CleanRequest
 from roomba.vocabulary import MOST_PASSES, CleanMode, FanLevel
 
 MOST_RUNS: Final = 100_000

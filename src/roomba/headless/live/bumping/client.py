@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from roomba.bumping.brain import BumpingState
+from roomba.clean_request import CleanRequest
 from roomba.client import view
 from roomba.client.protocol import (
     CleanReport,
@@ -103,9 +104,9 @@ class BumpingClient(WithoutMap):
         with self._lock:
             return self._layers.layer(self._robot.brain.floor, name)
 
-    def clean(self, order: view.CleanOrder) -> None:
+    def clean(self, request: CleanRequest) -> None:
         """Begin to sweep; it ends when the battery is low, or when it is told to go home."""
-        if order.mode != CleanMode.WHOLE.value:
+        if request.mode is not CleanMode.WHOLE:
             raise RequestRefusedError(_NO_MAP)
 
         def begin(robot: BumpingRobot) -> None:

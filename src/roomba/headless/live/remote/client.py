@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
+from roomba.clean_request import CleanRequest
 from roomba.client import view
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.configuration.robot import RobotConfig
@@ -20,8 +21,8 @@ from roomba.robot.remote import RemoteRobot, RemoteWish
 from roomba.vocabulary import CleanMode
 
 _KINDS: Final = {
-    CleanMode.WHOLE.value: RemoteWish.CLEAN_HOUSE,
-    CleanMode.SPOT.value: RemoteWish.CLEAN_SPOT,
+    CleanMode.WHOLE: RemoteWish.CLEAN_HOUSE,
+    CleanMode.SPOT: RemoteWish.CLEAN_SPOT,
 }
 
 
@@ -52,7 +53,7 @@ class RemoteClient(WithoutMap):
             most_passes=1,
             most_zones=0,
             each_room=False,
-            modes=tuple(_KINDS),
+            modes=tuple(mode.value for mode in _KINDS),
         )
         self._held, self._not_stopped = "", ""
         self._has_to_stop = False
@@ -113,10 +114,10 @@ class RemoteClient(WithoutMap):
     def layer(self, name: view.LayerName) -> view.GridLayer | None:
         """Return None: it tells no map."""
 
-    def clean(self, order: view.CleanOrder) -> None:
+    def clean(self, request: CleanRequest) -> None:
         """Let it clean all, or where it stands."""
-        wish = _KINDS.get(order.mode)
-        if wish is None or order.spot is not None:
+        wish = _KINDS.get(request.mode)
+        if wish is None or request.spot is not None:
             raise RequestRefusedError(BY_ITSELF)
         self._ask(wish)
 

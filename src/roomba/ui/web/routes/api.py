@@ -30,7 +30,7 @@ from roomba.ui.web.routes.wishes import (
     SpeedWish,
     StopWish,
     ZoneWish,
-    order_of,
+    request_of,
     ways_of,
 )
 
@@ -89,7 +89,7 @@ def _add_errands(api: APIRouter, robot: ObservedRobot, note: Note) -> None:
         # Before it: the run may have begun when the robot has answered.
         note(wish.model_dump(mode="json"))
         try:
-            return obeyed(lambda: robot.clean(order_of(wish)))
+            return obeyed(lambda: robot.clean(request_of(wish)))
         except HTTPException:
             note(None)
             raise

@@ -7,11 +7,14 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from roomba.client.view import CleanOrder
+from roomba.clean_request import CleanRequest
 from roomba.vocabulary import (
     LONGEST_NAME,
     MOST_CORNERS,
     MOST_PASSES,
+    CarpetWay,
+    CleanMode,
+    EdgeOrder,
     FanLevel,
     RoomWay,
     checked_name,
@@ -59,19 +62,19 @@ class CleanWish(Wish):
     edges: Literal["any", "first", "last"] = "any"
 
 
-def order_of(wish: CleanWish) -> CleanOrder:
-    """Return what the robot is told to clean."""
-    return CleanOrder(
-        wish.mode,
+def request_of(wish: CleanWish) -> CleanRequest:
+    """Return what the robot is asked to clean; raises CleanRefusedError."""
+    return CleanRequest(
+        CleanMode(wish.mode),
         rooms=tuple(wish.rooms),
         in_order=wish.in_order,
         zones=tuple(wish.zones),
         spot=wish.spot,
         passes=wish.passes,
-        fan=wish.fan,
+        fan=FanLevel(wish.fan),
         each=ways_of(wish.each),
-        carpets=wish.carpets,
-        edges=wish.edges,
+        carpets=CarpetWay(wish.carpets),
+        edges=EdgeOrder(wish.edges),
     )
 
 

@@ -13,14 +13,16 @@ from fixtures.bumping import BumpingHome
 from fixtures.waiting import wait_until
 from unit.headless.live.living import living
 
+from roomba.clean_request import CleanRequest
 from roomba.client.plain import state_of
 from roomba.client.protocol import ErrandOutcome, RequestRefusedError
-from roomba.client.view import CleanOrder, LayerName
+from roomba.client.view import LayerName
 from roomba.geometry import Pose
 from roomba.headless.live.bumping.client import BumpingClient
 from roomba.headless.live.bumping.robot import BumpingRobot
 from roomba.headless.live.bumping.view import view_of
 from roomba.ui.web.streams.told import Told
+from roomba.vocabulary import CleanMode
 
 
 @pytest.fixture
@@ -45,7 +47,7 @@ def test_it_sweeps_is_paused_goes_on_and_comes_home(client: BumpingClient) -> No
     wait_until(lambda: phase(client) == "docked", 20.0, lambda: phase(client))
     assert client.robot().vacuum.battery == 1.0
     assert not client.robot().charges
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_until(lambda: client.robot().vacuum.covered > 1.0, 60.0, lambda: phase(client))
     assert phase(client) == "cleaning"
     coverage, floor = client.layer(LayerName.COVERAGE), client.layer(LayerName.MAP)
@@ -75,7 +77,7 @@ def test_it_is_shown_where_walls_and_its_station_say_that_it_is() -> None:
 
 
 def test_told_to_stop_it_stays_and_its_clean_is_told_as_stopped(client: BumpingClient) -> None:
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_until(lambda: phase(client) == "cleaning", 20.0, lambda: phase(client))
     client.stop()
     assert phase(client) == "idle"
@@ -107,7 +109,7 @@ def test_the_emergency_stop_holds_the_robot_that_is_started_anew(tmp_path: Path)
         assert client.robot().held == "child in the way"
         assert phase(client) == "emergency stop"
         before = client.robot()
-        for drives_off in (client.dock, lambda: client.clean(CleanOrder())):
+        for drives_off in (client.dock, lambda: client.clean(CleanRequest())):
             with pytest.raises(RequestRefusedError, match=r"child in the way.*release it first"):
                 drives_off()
         wait_until(lambda: client.robot().time > before.time + 3.0, 20.0, "its time passes")
@@ -126,7 +128,7 @@ def test_the_emergency_stop_holds_the_robot_that_is_started_anew(tmp_path: Path)
 
 
 def test_what_wants_a_map_is_refused_with_the_reason(client: BumpingClient) -> None:
-    rooms = CleanOrder(mode="rooms", rooms=("bath",))
+    rooms = CleanRequest(mode=CleanMode.ROOMS, rooms=("bath",))
     asked: tuple[Callable[[], None], ...] = (
         lambda: client.clean(rooms),
         client.explore,

@@ -14,16 +14,17 @@ from fixtures.robots.neato_rig import NEATO
 from fixtures.waiting import wait_until
 from numpy.typing import NDArray
 
+from roomba.clean_request import CleanRequest
 from roomba.client.plain import state_of
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
-from roomba.client.view import CleanOrder, LayerName
+from roomba.client.view import LayerName
 from roomba.configuration.robot import load_robot_config
 from roomba.drivers.line import LineError
 from roomba.headless.live.remote.client import RemoteClient
 from roomba.headless.live.remote.view import BY_ITSELF
 from roomba.robot.remote import RemoteState, RemoteWish, WishRefusedError
 from roomba.ui.web.streams.told import Told
-from roomba.vocabulary import Phase
+from roomba.vocabulary import CleanMode, Phase
 
 DEADLINE = 20.0
 """s of wall time."""
@@ -101,7 +102,7 @@ def test_it_cleans_is_paused_goes_on_and_comes_home(client: RemoteClient, robot:
     now = client.robot()
     assert (now.vacuum.state, now.vacuum.battery, now.charges) == ("docked", 0.5, True)
     assert now.doubt == BY_ITSELF
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_for(client, Phase.CLEANING)
     client.pause()
     wait_for(client, Phase.PAUSED)
@@ -111,14 +112,14 @@ def test_it_cleans_is_paused_goes_on_and_comes_home(client: RemoteClient, robot:
     wait_for(client, Phase.RETURNING)
     robot.phase = Phase.DOCKED
     wait_for(client, Phase.DOCKED)
-    client.clean(CleanOrder(mode="spot"))
+    client.clean(CleanRequest(mode=CleanMode.SPOT))
     client.stop()
     client.locate()
     assert robot.wishes[-3:] == [RemoteWish.CLEAN_SPOT, RemoteWish.STOP, RemoteWish.BEEP]
 
 
 def test_its_scan_is_shown_while_it_moves(client: RemoteClient, robot: Heard) -> None:
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_until(lambda: len(client.robot().scan) == 1, DEADLINE, "a scan")
     client.stop()
     wait_until(lambda: len(client.robot().scan) == 0, DEADLINE, "no scan")
@@ -132,8 +133,8 @@ def test_its_scan_is_shown_while_it_moves(client: RemoteClient, robot: Heard) ->
         lambda client: client.explore(),
         lambda client: client.go_to(1.0, 1.0),
         lambda client: client.set_top_speed(0.2),
-        lambda client: client.clean(CleanOrder(mode="rooms", rooms=("Kitchen",))),
-        lambda client: client.clean(CleanOrder(mode="spot", spot=(1.0, 1.0))),
+        lambda client: client.clean(CleanRequest(mode=CleanMode.ROOMS, rooms=("Kitchen",))),
+        lambda client: client.clean(CleanRequest(mode=CleanMode.SPOT, spot=(1.0, 1.0))),
         lambda client: client.change_rooms(()),
         lambda client: client.remove_zone("a"),
         lambda client: client.empty_at_station(),
@@ -152,7 +153,7 @@ def test_what_it_cannot_is_refused(
 def test_the_emergency_stop_tells_it_again_until_it_is_released(
     client: RemoteClient, robot: Heard
 ) -> None:
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_for(client, Phase.CLEANING)
     client.emergency_stop("the cat")
     wait_until(lambda: robot.phase is Phase.IDLE, DEADLINE, "it stops")
@@ -160,16 +161,16 @@ def test_the_emergency_stop_tells_it_again_until_it_is_released(
     assert client.robot().held == "the cat"
     robot.phase = Phase.CLEANING  # its own button was pressed
     wait_until(lambda: robot.phase is Phase.IDLE, DEADLINE, "it stops again")
-    for ask in (client.dock, client.resume, lambda: client.clean(CleanOrder())):
+    for ask in (client.dock, client.resume, lambda: client.clean(CleanRequest())):
         with pytest.raises(RequestRefusedError, match="release it first"):
             ask()
     client.release()
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_for(client, Phase.CLEANING)
 
 
 def test_a_stop_that_is_not_heard_is_told_again(client: RemoteClient, robot: Heard) -> None:
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_for(client, Phase.CLEANING)
     robot.is_reached = False
     client.emergency_stop("the cat")
@@ -216,7 +217,7 @@ def test_while_another_program_drives_it_only_stop_and_beep_are_told(
     robot.is_taken = True
     wait_until(lambda: "another program" in client.robot().vacuum.message, DEADLINE, "it is seen")
     with pytest.raises(RequestRefusedError, match="another program"):
-        client.clean(CleanOrder())
+        client.clean(CleanRequest())
     client.stop()
     client.locate()
     assert robot.wishes == [RemoteWish.STOP, RemoteWish.BEEP]
@@ -287,7 +288,7 @@ def test_a_wish_that_waited_too_long_is_never_told(
 
 def test_a_clean_that_waits_while_the_emergency_stop_comes_is_refused(slow: Slow) -> None:
     client = RemoteClient("openneato", slow, CONFIG)
-    cleaning = lambda: client.clean(CleanOrder())  # noqa: E731
+    cleaning = lambda: client.clean(CleanRequest())  # noqa: E731
     with in_thread(client.pause), in_thread(cleaning) as raised:
         assert slow.is_told.wait(DEADLINE)
         wait_until(lambda: len(client._teller._waiting) == 2, DEADLINE, "it waits")
@@ -321,7 +322,7 @@ def test_a_scan_that_fails_is_no_error_of_the_robot(
         raise LineError("no points")
 
     monkeypatch.setattr(robot, "scan", fail)
-    client.clean(CleanOrder())
+    client.clean(CleanRequest())
     wait_until(lambda: "no points" in client.robot().doubt, DEADLINE, "it is told")
     assert phase(client) == "cleaning"
     client.stop()

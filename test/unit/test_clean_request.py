@@ -1,4 +1,4 @@
-"""Requests that make no sense are refused; what a result says of itself."""
+"""Requests that make no sense are refused, before a robot hears of them."""
 
 from __future__ import annotations
 
@@ -6,14 +6,8 @@ import math
 
 import pytest
 
-from roomba.errors import RoombaError
-from roomba.mission.cleaning.request import (
-    CleanOutcome,
-    CleanRefusedError,
-    CleanRequest,
-    CleanResult,
-    Rectangle,
-)
+from roomba.clean_request import CleanRefusedError, CleanRequest, Rectangle
+from roomba.errors import RequestRefusedError
 from roomba.vocabulary import LONGEST_NAME, MOST_PASSES, MOST_ZONES, CleanMode, FanLevel, RoomWay
 
 
@@ -78,21 +72,13 @@ def test_rooms_and_zones_must_be_told() -> None:
 def test_zones_that_are_none_are_refused(zone: Rectangle) -> None:
     with pytest.raises(CleanRefusedError, match="lowest x") as refused:
         CleanRequest(CleanMode.ZONES, zones=((0.0, 0.0, 1.0, 1.0), zone))
-    assert isinstance(refused.value, RoombaError)
+    assert isinstance(refused.value, RequestRefusedError)
 
 
 @pytest.mark.parametrize("spot", [(math.nan, 0.0), (0.0, math.inf), (-math.inf, 1.0)])
 def test_a_spot_that_is_nowhere_is_refused(spot: tuple[float, float]) -> None:
     with pytest.raises(CleanRefusedError, match="a spot of finite numbers"):
         CleanRequest(CleanMode.SPOT, spot=spot)
-
-
-def test_a_result_tells_its_share() -> None:
-    def result(wanted: float, covered: float) -> CleanResult:
-        return CleanResult(CleanOutcome.COMPLETED, "", wanted, covered, 0.0, 0.0, 0.0, 0.0)
-
-    assert result(8.0, 6.0).fraction == 0.75
-    assert result(0.0, 0.0).fraction == 1.0
 
 
 def test_more_than_a_home_has_is_refused_before_it_is_looked_at() -> None:
