@@ -19,10 +19,14 @@ from roomba.client.protocol import (
     DockReport,
     ErrandOutcome,
     ExploreReport,
-    MissedFloor,
     RobotUnavailableError,
 )
-from roomba_ros.convert.mission import open_edges_of, room_dirt_of, times_of
+from roomba_ros.convert.client import (
+    clean_end_of,
+    exploration_end_of,
+    outcome_of,
+    progress_of,
+)
 from roomba_ros.convert.values import unchanged
 from roomba_ros.runtime.action_client import GoalClient, is_heard
 from roomba_ros.runtime.calls import SERVER_DEADLINE
@@ -38,16 +42,6 @@ _ENDINGS: Final = {
     GoalStatus.ABORTED: ErrandOutcome.FAULT,
     GoalStatus.LOST: ErrandOutcome.DISCONNECTED,
 }
-OUTCOMES: Final = {
-    CleanResult.COMPLETED: ErrandOutcome.COMPLETED,
-    CleanResult.STOPPED: ErrandOutcome.STOPPED,
-    CleanResult.BATTERY: ErrandOutcome.BATTERY,
-    CleanResult.STUCK: ErrandOutcome.STUCK,
-    CleanResult.LOST: ErrandOutcome.LOST,
-    CleanResult.NOT_DOCKED: ErrandOutcome.NOT_DOCKED,
-    CleanResult.FAULT: ErrandOutcome.FAULT,
-}
-"""What the codes of a clean's result mean to a client."""
 _GOES_ON = "a clean goes on by itself once that is back, and vacuum/state tells how far it is"
 
 _Told = TypeVar("_Told")
@@ -171,15 +165,7 @@ class RosClean(_Errand[CleanProgress, CleanReport]):
     """A clean under way."""
 
     def _told(self, feedback: CleanFeedback) -> CleanProgress:
-        return CleanProgress(
-            state=feedback.state,
-            room=feedback.room,
-            covered=feedback.covered,
-            wanted=feedback.wanted,
-            fraction=feedback.fraction,
-            seconds_to_go=feedback.seconds_to_go,
-            battery=feedback.battery,
-        )
+        return progress_of(feedback)
 
     def _ended(self, outcome: ErrandOutcome, result: Any, message: str) -> CleanReport:
         is_given_up = outcome is ErrandOutcome.FAULT and result is not None
@@ -199,25 +185,9 @@ class RosClean(_Errand[CleanProgress, CleanReport]):
                 energy=math.nan,
             )
         if outcome is not ErrandOutcome.REFUSED:
-            outcome = OUTCOMES.get(result.outcome, ErrandOutcome.FAULT)
-        return CleanReport(
-            outcome=outcome,
-            # Only the goal's status says which program ended a clean.
-            message=result.message or (message if outcome is ErrandOutcome.STOPPED else ""),
-            covered=result.covered,
-            wanted=result.wanted,
-            dirt=result.dirt,
-            distance=result.distance,
-            duration=result.duration,
-            energy=result.energy,
-            missed=tuple(
-                MissedFloor(area.area, area.at.x, area.at.y, area.room, area.message)
-                for area in result.missed
-            ),
-            times=times_of(result.times),
-            rooms=room_dirt_of(result.rooms),
-            open_edges=open_edges_of(result.open_edges),
-        )
+            outcome = outcome_of(result.outcome)
+        # Only the goal's status says which program ended a clean.
+        return clean_end_of(result, outcome, message if outcome is ErrandOutcome.STOPPED else "")
 
 
 class RosExploring(_Errand[float, ExploreReport]):
@@ -232,11 +202,9 @@ class RosExploring(_Errand[float, ExploreReport]):
             lasted = rospy.get_time() - self._started
             return ExploreReport(outcome, message, known, math.nan, lasted)
         if outcome is ErrandOutcome.FAULT:
-            outcome = OUTCOMES.get(result.outcome, ErrandOutcome.FAULT)
+            outcome = outcome_of(result.outcome)
         done = outcome is ErrandOutcome.COMPLETED
-        text = result.message or ("" if done else message)
-        edges = open_edges_of(result.open_edges)
-        return ExploreReport(outcome, text, result.known, result.distance, result.duration, edges)
+        return exploration_end_of(result, outcome, "" if done else message)
 
 
 class RosDocking(_Errand[str, DockReport]):

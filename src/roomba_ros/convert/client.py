@@ -3,15 +3,36 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, Final
 
 import genpy
-from roomba_robot.msg import Localization, RoomArray, VacuumState
+from roomba_robot.msg import (
+    CleanFeedback,
+    CleanResult,
+    ExploreResult,
+    Localization,
+    RoomArray,
+    VacuumState,
+)
+from roomba_robot.msg import OpenEdge as OpenEdgeMessage
+from roomba_robot.msg import RoomDirt as RoomDirtMessage
+from roomba_robot.msg import TimeSpent as TimeSpentMessage
 from std_msgs.msg import String
 
-from roomba.client.protocol import VacuumSnapshot
+from roomba.client.protocol import (
+    CleanProgress,
+    CleanReport,
+    ErrandOutcome,
+    ExploreReport,
+    MissedFloor,
+    VacuumSnapshot,
+)
+from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
+from roomba.vocabulary import OpenEdge, RoomDirt
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.localization import knowledge_of
+from roomba_ros.convert.mission import EDGE_REASONS, OUTCOMES
 
 BATTERY_NOT_HEARD: Final = -1.0
 """The charge in a state before the first message of the battery; a snapshot has NaN for it."""
@@ -41,6 +62,90 @@ def vacuum_of(message: VacuumState) -> VacuumSnapshot:
         battery=math.nan if message.battery == BATTERY_NOT_HEARD else message.battery,
         queue=tuple(message.queue),
         is_on_carpet=message.on_carpet,
+    )
+
+
+def progress_of(message: CleanFeedback) -> CleanProgress:
+    """Return how far a clean is."""
+    return CleanProgress(
+        state=message.state,
+        room=message.room,
+        covered=message.covered,
+        wanted=message.wanted,
+        fraction=message.fraction,
+        seconds_to_go=message.seconds_to_go,
+        battery=message.battery,
+    )
+
+
+def outcome_of(code: int) -> ErrandOutcome:
+    """Return what the code of a result means to a client; FAULT if it is none."""
+    named = (outcome for outcome, its_code in OUTCOMES.items() if its_code == code)
+    found = next(named, None)
+    return ErrandOutcome.FAULT if found is None else ErrandOutcome(found.value)
+
+
+def clean_end_of(message: CleanResult, outcome: ErrandOutcome, reason: str) -> CleanReport:
+    """Return the end of a clean; ``reason`` is why, where the result itself does not say it."""
+    return CleanReport(
+        outcome=outcome,
+        message=message.message or reason,
+        covered=message.covered,
+        wanted=message.wanted,
+        dirt=message.dirt,
+        distance=message.distance,
+        duration=message.duration,
+        energy=message.energy,
+        missed=tuple(
+            MissedFloor(area.area, area.at.x, area.at.y, area.room, area.message)
+            for area in message.missed
+        ),
+        times=times_of(message.times),
+        rooms=room_dirt_of(message.rooms),
+        open_edges=open_edges_of(message.open_edges),
+    )
+
+
+def exploration_end_of(
+    message: ExploreResult, outcome: ErrandOutcome, reason: str
+) -> ExploreReport:
+    """Return the end of an exploration; ``reason`` as for :func:`clean_end_of`."""
+    return ExploreReport(
+        outcome,
+        message.message or reason,
+        message.known,
+        message.distance,
+        message.duration,
+        open_edges_of(message.open_edges),
+    )
+
+
+def times_of(message: TimeSpentMessage) -> TimeSpent:
+    """Return where the time of a clean went; all 0 if the message has what is no time."""
+    times = {name: float(getattr(message, name)) for name in NAMES}
+    if not all(0.0 <= value < math.inf for value in times.values()):
+        return NOT_COUNTED
+    return TimeSpent(**times)
+
+
+def room_dirt_of(messages: Sequence[RoomDirtMessage]) -> tuple[RoomDirt, ...]:
+    """Return how dirty rooms were; without those of which the message makes no sense."""
+    return tuple(
+        RoomDirt(each.room, each.share, each.grains)
+        for each in messages
+        if 0.0 <= each.share <= 1.0 and 0.0 <= each.grains < math.inf
+    )
+
+
+def open_edges_of(messages: Sequence[OpenEdgeMessage]) -> tuple[OpenEdge, ...]:
+    """Return where a map still ends; without those edges of which the message makes no sense."""
+    return tuple(
+        OpenEdge(each.length, each.at.x, each.at.y, EDGE_REASONS[each.reason])
+        for each in messages
+        if each.reason in EDGE_REASONS
+        and 0.0 <= each.length < math.inf
+        and math.isfinite(each.at.x)
+        and math.isfinite(each.at.y)
     )
 
 

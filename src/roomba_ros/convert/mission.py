@@ -47,7 +47,6 @@ from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.perception.rooms.low_things import OfferedZone
 from roomba.perception.rooms.zones import WALL_WIDTH, Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
-from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
 from roomba.vocabulary import (
     CarpetWay,
     CleanMode,
@@ -55,7 +54,6 @@ from roomba.vocabulary import (
     EdgeReason,
     FanLevel,
     OpenEdge,
-    RoomDirt,
     RoomWay,
 )
 from roomba_ros.convert.common import header, map_message, quaternion_of
@@ -187,23 +185,6 @@ def result_message(result: CleanResult) -> CleanResultMessage:
     )
 
 
-def times_of(message: TimeSpentMessage) -> TimeSpent:
-    """Return where the time of a clean went; all 0 if the message has what is no time."""
-    times = {name: float(getattr(message, name)) for name in NAMES}
-    if not all(0.0 <= value < math.inf for value in times.values()):
-        return NOT_COUNTED
-    return TimeSpent(**times)
-
-
-def room_dirt_of(messages: Sequence[RoomDirtMessage]) -> tuple[RoomDirt, ...]:
-    """Return how dirty rooms were; without those of which the message makes no sense."""
-    return tuple(
-        RoomDirt(each.room, each.share, each.grains)
-        for each in messages
-        if 0.0 <= each.share <= 1.0 and 0.0 <= each.grains < math.inf
-    )
-
-
 def explored_message(result: ExploreResult) -> ExploreResultMessage:
     """Return what an exploration achieved as a message."""
     return ExploreResultMessage(
@@ -214,18 +195,6 @@ def explored_message(result: ExploreResult) -> ExploreResultMessage:
         duration=result.duration,
         unseen=[Point(x, y, 0.0) for x, y in result.unseen],
         open_edges=_edge_messages(result.open_edges),
-    )
-
-
-def open_edges_of(messages: Sequence[OpenEdgeMessage]) -> tuple[OpenEdge, ...]:
-    """Return where a map still ends; without those edges of which the message makes no sense."""
-    return tuple(
-        OpenEdge(each.length, each.at.x, each.at.y, EDGE_REASONS[each.reason])
-        for each in messages
-        if each.reason in EDGE_REASONS
-        and 0.0 <= each.length < math.inf
-        and math.isfinite(each.at.x)
-        and math.isfinite(each.at.y)
     )
 
 

@@ -27,7 +27,7 @@ from roomba_robot.msg import (
 from roomba_robot.msg import Zone as ZoneMessage
 from sensor_msgs.msg import BatteryState
 
-from roomba.client.protocol import CleanReport, ErrandOutcome, ExploreReport, MissedFloor
+from roomba.client.protocol import CleanReport
 from roomba.client.view import (
     MOST_PATH,
     ChangeView,
@@ -41,16 +41,10 @@ from roomba.client.view import (
     known_cells,
 )
 from roomba.grid import GridFrame, OccupancyMap
+from roomba_ros.convert.client import clean_end_of, exploration_end_of, outcome_of
 from roomba_ros.convert.common import map_of, path_of
 from roomba_ros.convert.errors import MessageError, require_finite
-from roomba_ros.convert.mission import (
-    KINDS,
-    OUTCOMES,
-    open_edges_of,
-    room_dirt_of,
-    times_of,
-    zones_of,
-)
+from roomba_ros.convert.mission import KINDS, zones_of
 
 _LEAST_CORNERS = 3
 """Of an outline that encloses something."""
@@ -128,24 +122,8 @@ def clean_report_of(message: CleanActionResult) -> CleanReport | None:
     result = message.result
     if message.status.status == GoalStatus.REJECTED:
         return None
-    return CleanReport(
-        _outcome_of(result.outcome),
-        # Only the goal's status says which program ended a clean.
-        result.message or _reason_of(message),
-        result.covered,
-        result.wanted,
-        result.dirt,
-        result.distance,
-        result.duration,
-        result.energy,
-        tuple(
-            MissedFloor(area.area, area.at.x, area.at.y, area.room, area.message)
-            for area in result.missed
-        ),
-        times_of(result.times),
-        room_dirt_of(result.rooms),
-        open_edges_of(result.open_edges),
-    )
+    # Only the goal's status says which program ended a clean.
+    return clean_end_of(result, outcome_of(result.outcome), _reason_of(message))
 
 
 def exploration_report_of(message: ExploreActionResult) -> CleanReport | None:
@@ -153,21 +131,8 @@ def exploration_report_of(message: ExploreActionResult) -> CleanReport | None:
     result = message.result
     if message.status.status == GoalStatus.REJECTED:
         return None
-    report = ExploreReport(
-        _outcome_of(result.outcome),
-        result.message or _reason_of(message),
-        result.known,
-        result.distance,
-        result.duration,
-        open_edges_of(result.open_edges),
-    )
+    report = exploration_end_of(result, outcome_of(result.outcome), _reason_of(message))
     return exploration_as_clean(report)
-
-
-def _outcome_of(code: int) -> ErrandOutcome:
-    named = (outcome for outcome, its_code in OUTCOMES.items() if its_code == code)
-    found = next(named, None)
-    return ErrandOutcome.FAULT if found is None else ErrandOutcome(found.value)
 
 
 def _reason_of(message: CleanActionResult | ExploreActionResult) -> str:

@@ -14,6 +14,7 @@ from roomba_robot.msg import Zone as ZoneMessage
 from sensor_msgs.msg import BatteryState
 
 from roomba.clean_request import CleanRefusedError, CleanRequest
+from roomba.client.protocol import ErrandOutcome, MissedFloor
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
@@ -38,18 +39,18 @@ from roomba.vocabulary import (
     OpenEdge,
     RoomWay,
 )
+from roomba_ros.convert.client import clean_end_of, open_edges_of, outcome_of, times_of
 from roomba_ros.convert.mission import (
+    OUTCOMES,
     battery_of,
     coverage_message,
     dirt_message,
     explored_message,
     goal_of,
-    open_edges_of,
     outlines_of,
     request_of,
     result_message,
     shown,
-    times_of,
     way_codes,
     zone_of,
     zones_markers,
@@ -173,6 +174,20 @@ def test_a_result_says_what_was_missed_and_why() -> None:
     (area,) = message.missed
     assert (area.room, area.reason, area.at.y) == ("Hall", area.SHUT, 2.0)
     assert area.message == MissReason.SHUT.value
+    report = clean_end_of(message, outcome_of(message.outcome), "told elsewhere")
+    assert (report.outcome, report.message) == (ErrandOutcome.NOT_DOCKED, "no beams")
+    assert (report.wanted, report.covered, report.dirt) == (20.0, 19.5, 3.0)
+    assert (report.distance, report.duration, report.energy) == (99.0, 600.0, 4.5)
+    assert report.missed == (MissedFloor(0.5, 1.0, 2.0, "Hall", MissReason.SHUT.value),)
+    assert report.times == TIMES
+    message.message = ""
+    assert clean_end_of(message, ErrandOutcome.STOPPED, "a newer goal").message == "a newer goal"
+
+
+def test_outcomes_mean_the_same_to_a_client() -> None:
+    for outcome, code in OUTCOMES.items():
+        assert outcome_of(code) is ErrandOutcome[outcome.name]
+    assert outcome_of(200) is ErrandOutcome.FAULT
 
 
 EDGES = (
