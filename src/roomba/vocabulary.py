@@ -12,7 +12,7 @@ from typing import Final
 MOST_PASSES: Final = 5
 """Over the same floor; more are a slip of the finger."""
 MOST_ZONES: Final = 1000
-"""Zones of a map, and zones or rooms of one clean."""
+"""Zones of a map, rooms of it that are remembered, and zones or rooms of one clean, or plan."""
 MOST_CORNERS: Final = 200
 """Of a zone."""
 LONGEST_NAME: Final = 80

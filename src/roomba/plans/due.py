@@ -15,11 +15,10 @@ from pydantic import Field
 from roomba.configuration.frozen import Frozen, NotNegative
 from roomba.configuration.household import DueConfig
 from roomba.plans.moment import Moment
-from roomba.vocabulary import RoomDirt
+from roomba.vocabulary import MOST_ZONES, RoomDirt
 
 DAY: Final = 86400.0
 """s."""
-_MOST_ROOMS: Final = 1000
 
 
 class RoomRecord(Frozen):
@@ -33,7 +32,7 @@ class RoomRecord(Frozen):
 class DirtRecords(Frozen):
     """All that is learned, by the rooms' names."""
 
-    rooms: dict[str, RoomRecord] = Field(default={}, max_length=_MOST_ROOMS)
+    rooms: dict[str, RoomRecord] = Field(default={}, max_length=MOST_ZONES)
 
     def with_room_names(self, names: Mapping[str, str], rooms: Collection[str]) -> DirtRecords:
         """Return the records by other names of ``rooms``, which there were until now.

@@ -24,6 +24,7 @@ from roomba.plans.days import require_days
 from roomba.vocabulary import (
     LONGEST_NAME,
     MOST_PASSES,
+    MOST_ZONES,
     CarpetWay,
     CleanMode,
     EdgeOrder,
@@ -37,7 +38,6 @@ MOST_TIMES: Final = 12
 """Of a plan on one day."""
 MOST_QUIET: Final = 14
 """Quiet hours."""
-_MOST_ROOMS: Final = 100
 _LONGEST_RULE: Final = 200
 """Characters."""
 PLANNED_MODES: Final = (CleanMode.WHOLE, CleanMode.ROOMS, CleanMode.EDGES, CleanMode.DIRTIEST)
@@ -68,7 +68,7 @@ class PlannedOrder(Frozen):
     """What is cleaned, and how."""
 
     mode: CleanMode = CleanMode.WHOLE
-    rooms: tuple[Name, ...] = Field(default=(), max_length=_MOST_ROOMS)
+    rooms: tuple[Name, ...] = Field(default=(), max_length=MOST_ZONES)
     """In this order; for ROOMS alone."""
     passes: int = Field(default=1, ge=1, le=MOST_PASSES)
     fan: FanLevel = FanLevel.STANDARD

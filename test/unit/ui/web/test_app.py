@@ -19,7 +19,7 @@ from fixtures.routes import all_routes
 from roomba.clean_request import CleanRequest
 from roomba.ui.web.app import STATIC, create_app
 from roomba.ui.web.guard import Guard
-from roomba.vocabulary import CleanMode, FanLevel
+from roomba.vocabulary import MOST_ZONES, CleanMode, FanLevel
 
 TOKEN = "the-token"
 HOST = {"Host": "127.0.0.1:8400"}
@@ -93,6 +93,16 @@ def test_commands_reach_the_robot(page: TestClient, robot: WrittenRobot) -> None
         CleanMode.ROOMS, ("hall", "den"), passes=2, fan=FanLevel.QUIET, in_order=True
     )
     assert paused == ("pause", ())
+
+
+def test_a_clean_has_as_many_rooms_as_a_request_takes(
+    page: TestClient, robot: WrittenRobot
+) -> None:
+    for count, status in ((MOST_ZONES, 200), (MOST_ZONES + 1, 422)):
+        body = {"mode": "rooms", "rooms": count * ["hall"]}
+        answer = page.post("/api/v1/clean", json=body, headers=AUTHORISED)
+        assert answer.status_code == status
+    assert len(robot.told) == 1
 
 
 @pytest.mark.parametrize(

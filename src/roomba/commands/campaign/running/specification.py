@@ -78,7 +78,7 @@ class Variant(Frozen):
     """Degrees, counter-clockwise."""
     mode: Literal["whole", "edges"] = "whole"
     passes: Annotated[AtLeastOne, Field(le=MOST_PASSES)] = 1
-    fan: Literal["quiet", "standard", "strong"] = "standard"
+    fan: FanLevel = FanLevel.STANDARD
     numbers: dict[str, float | str] = Field(default_factory=dict)
     """Of the configuration, by names like ``mission.coverage.turning``."""
     stages: dict[str, str] = Field(default_factory=dict)
@@ -89,7 +89,7 @@ class Variant(Frozen):
         return Trial(
             home=home,
             seed=seed,
-            request=CleanRequest(CleanMode(self.mode), passes=self.passes, fan=FanLevel(self.fan)),
+            request=CleanRequest(CleanMode(self.mode), passes=self.passes, fan=self.fan),
             sensors=self.sensors,
             lidar=self.lidar,
             wheels=self.wheels,

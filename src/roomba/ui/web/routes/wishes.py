@@ -12,6 +12,7 @@ from roomba.vocabulary import (
     LONGEST_NAME,
     MOST_CORNERS,
     MOST_PASSES,
+    MOST_ZONES,
     CarpetWay,
     CleanMode,
     EdgeOrder,
@@ -38,7 +39,7 @@ class RoomWish(Wish):
     """How one room is cleaned."""
 
     passes: int = Field(default=1, ge=1, le=MOST_PASSES)
-    fan: Literal["quiet", "standard", "strong"] = "standard"
+    fan: FanLevel = FanLevel.STANDARD
 
 
 class CleanWish(Wish):
@@ -48,39 +49,39 @@ class CleanWish(Wish):
     hold for all.
     """
 
-    mode: Literal["whole", "rooms", "zones", "spot", "edges", "dirtiest"] = "whole"
-    rooms: list[Name] = Field(default=[], max_length=100, examples=[["Kitchen", "Hall"]])
+    mode: CleanMode = CleanMode.WHOLE
+    rooms: list[Name] = Field(default=[], max_length=MOST_ZONES, examples=[["Kitchen", "Hall"]])
     in_order: bool = True
     zones: list[tuple[Coordinate, Coordinate, Coordinate, Coordinate]] = Field(
-        default=[], max_length=100
+        default=[], max_length=MOST_ZONES
     )
     spot: tuple[Coordinate, Coordinate] | None = None
     passes: int = Field(default=1, ge=1, le=MOST_PASSES)
-    fan: Literal["quiet", "standard", "strong"] = "standard"
-    each: list[RoomWish] = Field(default=[], max_length=100)
-    carpets: Literal["boost", "as elsewhere", "avoid"] = "boost"
-    edges: Literal["any", "first", "last"] = "any"
+    fan: FanLevel = FanLevel.STANDARD
+    each: list[RoomWish] = Field(default=[], max_length=MOST_ZONES)
+    carpets: CarpetWay = CarpetWay.BOOST
+    edges: EdgeOrder = EdgeOrder.ANY
 
 
 def request_of(wish: CleanWish) -> CleanRequest:
     """Return what the robot is asked to clean; raises CleanRefusedError."""
     return CleanRequest(
-        CleanMode(wish.mode),
+        wish.mode,
         rooms=tuple(wish.rooms),
         in_order=wish.in_order,
         zones=tuple(wish.zones),
         spot=wish.spot,
         passes=wish.passes,
-        fan=FanLevel(wish.fan),
+        fan=wish.fan,
         each=ways_of(wish.each),
-        carpets=CarpetWay(wish.carpets),
-        edges=EdgeOrder(wish.edges),
+        carpets=wish.carpets,
+        edges=wish.edges,
     )
 
 
 def ways_of(wishes: list[RoomWish]) -> tuple[RoomWay, ...]:
     """Return how each of the rooms is cleaned, in their order."""
-    return tuple(RoomWay(way.passes, FanLevel(way.fan)) for way in wishes)
+    return tuple(RoomWay(way.passes, way.fan) for way in wishes)
 
 
 class QueueWish(Wish):
@@ -90,8 +91,8 @@ class QueueWish(Wish):
     ones are cleaned as all are.
     """
 
-    rooms: list[Name] = Field(min_length=1, max_length=100, examples=[["Hall", "Kitchen"]])
-    each: list[RoomWish] = Field(default=[], max_length=100)
+    rooms: list[Name] = Field(min_length=1, max_length=MOST_ZONES, examples=[["Hall", "Kitchen"]])
+    each: list[RoomWish] = Field(default=[], max_length=MOST_ZONES)
 
 
 class DriveWish(Wish):
