@@ -151,7 +151,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     ),
     "roomba/headless/tick_rows": ("unit/headless/test_burst.py", VALUES),
     "roomba/mission/changed_home": ("unit/mission/test_mission_growing.py", MISSION),
-    "roomba/mission/cleaning/request": ("unit/mission/test_mission.py", MISSION),
     "roomba/mission/commands": ("unit/mission/test_mission.py", MISSION),
     "roomba/history/report/chart": ("unit/history/report/test_document.py", VALUES),
     "roomba/history/report/picture": ("unit/history/report/test_document.py", VALUES),

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.mission import MissionConfig
 from roomba.errors import RoombaError
-from roomba.clean_request import CleanRequest
 from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.obstacles import Obstacles

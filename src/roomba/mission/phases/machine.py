@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Final
 
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.vocabulary import HELD, Phase
 
 

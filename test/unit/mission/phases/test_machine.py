@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.mission.cleaning.request import CleanOutcome
+from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.phases.machine import (
     VACUUM_STATES,
     Errand,
