@@ -56,6 +56,7 @@ class CarpetWay(Enum):
     BOOST = "boost"
     """The fan at its strongest, unless it was asked to be quiet."""
     SAME = "as elsewhere"
+    """The fan as it was asked for."""
     AVOID = "avoid"
     """Those that are drawn on the map are not cleaned."""
 

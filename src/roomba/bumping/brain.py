@@ -67,7 +67,12 @@ class BumpingBrain:
         rng: np.random.Generator,
     ) -> None:
         """Stand, until it is told to clean; ``max_speed``, m/s, is the fastest that it drives."""
-        self.robot, self._config, self._docking_config, self._rng = robot, config, docking, rng
+        self.robot_config, self._config, self._docking_config, self._rng = (
+            robot,
+            config,
+            docking,
+            rng,
+        )
         self.state = BumpingState.STANDING
         self.floor = FeltFloor(config, robot.brush.width)
         self.compass = WallCompass(config)
@@ -218,7 +223,7 @@ class BumpingBrain:
     def _bump_and_go(
         self, goal: tuple[float, float] | None, *, stays_at_walls: bool = False
     ) -> BumpAndGo:
-        parts = self._config, self.robot.body.radius, self.floor, self._rng, goal
+        parts = self._config, self.robot_config.body.radius, self.floor, self._rng, goal
         return BumpAndGo(*parts, stays_at_walls=stays_at_walls)
 
     def _leave(self, readings: Readings) -> Twist:

@@ -9,6 +9,7 @@ import importlib
 import os
 import re
 import sys
+import textwrap
 from pathlib import Path
 from types import ModuleType
 from typing import Final
@@ -47,10 +48,6 @@ _NEED_ROS: Final = ("run", "control", "camera", "exec", "record", "service")
 _NEED_CHECKOUT: Final = ("test", "soak", "fuzz", "sbom", "exercise", "docs")
 _USAGE: Final = Path(__file__).with_name("usage.txt")
 """What ``./roomba help`` prints, of which this program has a part."""
-_ELSEWHERE: Final = """\
-The commands run, camera, exec, record, service, and control without --demo, need ROS; test, soak,
-fuzz, sbom, exercise and docs need the checkout: there it is ./roomba COMMAND.
-"""
 
 
 def program() -> int:
@@ -103,7 +100,18 @@ def _usage() -> str:
     entries = re.split(r"\n(?=  \w)", listed)
     here = {*_COMMANDS, *_DEMOS, "version", "help"}
     kept = "\n".join(entry for entry in entries if entry.split()[0] in here)
-    return f"usage: roomba COMMAND ...\n\n{kept.replace('./roomba', 'roomba')}\n\n{_ELSEWHERE}"
+    return f"usage: roomba COMMAND ...\n\n{kept.replace('./roomba', 'roomba')}\n\n{_elsewhere()}"
+
+
+def _elsewhere() -> str:
+    """Return which commands are not here, and where they are."""
+    with_demo = " and ".join(_DEMOS)
+    need_ros = ", ".join(name for name in _NEED_ROS if name not in _DEMOS)
+    told = (
+        f"The commands {need_ros}, and {with_demo} without --demo, need ROS; "
+        f"{', '.join(_NEED_CHECKOUT)} need the checkout: there it is ./roomba COMMAND."
+    )
+    return textwrap.fill(told, 100, break_on_hyphens=False) + "\n"
 
 
 def _refused(reason: str) -> int:

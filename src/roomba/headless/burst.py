@@ -46,16 +46,16 @@ class Burst:
         self._world = World(*body.simulator.compiled, 0, 1)
         self._rows = np.empty((longest, PASSED))
         self._burst = np.zeros(1, BURST)
-        timing, row = brain.robot.timing, self._burst[0]
+        timing, row = brain.robot_config.timing, self._burst[0]
         row["step"], row["steps"] = timing.world_step, timing.steps_per_tick
         row["apart"] = brain.keeper.scans.apart
-        row["stride"] = brain.robot.scan_stride
+        row["stride"] = brain.robot_config.scan_stride
         row["is_late"] = body.has_late_scans
         home = body.simulator.home
         axes, row["is_turned"] = home.axes, home.turned is not None
         row["axes"] = axes.x, axes.y, math.cos(axes.theta), math.sin(axes.theta)
         row["turn"] = axes.theta
-        row["bin_capacity"] = brain.robot.brush.bin_capacity * MICROGRAMS_PER_GRAM
+        row["bin_capacity"] = brain.robot_config.brush.bin_capacity * MICROGRAMS_PER_GRAM
         self._has_ended = False
         self._nowhere = _nowhere(brain)
         count = body.lidar.beams
@@ -115,7 +115,7 @@ class Burst:
         brain, row = self._brain, self._burst[0]
         mission, last = brain.mission, brain.mission.last
         until = min(steady.until, self._next_look)
-        capacity = brain.robot.battery.capacity
+        capacity = brain.robot_config.battery.capacity
         row["drives"], row["limit"] = steady.driver is not None, steady.limit
         row["until"] = until - _EARLY
         row["least_charge"] = steady.least_level * capacity / _HARDLY_LESS
@@ -259,7 +259,7 @@ def _watched(cleaning: Cleaning | None) -> tuple[NDArray[np.void], NDArray[np.bo
 
 def _nowhere(brain: Brain) -> Drive:
     """Return the drive of a robot that stands."""
-    robot = brain.robot
+    robot = brain.robot_config
     points = np.array([[0.0, 0.0], [1.0, 0.0]])
     tracker = PathTracker(points, robot.tracking, robot.body, robot.timing.tick)
     before, progress, ahead = np.zeros(1, TRACK), np.zeros(1, PROGRESS), np.zeros(1, AHEAD)

@@ -28,19 +28,19 @@ _UNKNOWN: Final = (math.nan, math.nan, math.nan)
 
 
 class Embodied:
-    """One robot, whose time passes only while it is ticked; ``robot`` is its configuration.
+    """One robot, whose time passes only while it is ticked.
 
     ``rows`` are the ticks that passed, as of :mod:`roomba.headless.tick_rows`, in pieces.
     """
 
     body: Body
 
-    def __init__(self, body: Body, brain: Brain, robot: RobotConfig) -> None:
+    def __init__(self, body: Body, brain: Brain, robot_config: RobotConfig) -> None:
         """Put a brain in a body, and stand until the first scan came: there is no map before.
 
         Raises RoombaError when there is none after a minute of ticks.
         """
-        self.body, self.brain, self.robot = body, brain, robot
+        self.body, self.brain, self.robot_config = body, brain, robot_config
         self.rows: list[NDArray[np.float64]] = []
         self._way, self._last = 0.0, Pose()
         self._sense()

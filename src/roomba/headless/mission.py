@@ -205,7 +205,7 @@ class HeadlessMission(Embodied):
         self._empty_bin_in_time()
         super().tick()
         pose = self.seen.pose
-        if self.seen.in_bin < self.robot.brush.bin_capacity:
+        if self.seen.in_bin < self.robot_config.brush.bin_capacity:
             self.truth.sweep(pose.x, pose.y)
         else:
             self.truth.lift()

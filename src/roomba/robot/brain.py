@@ -79,7 +79,7 @@ class Brain:
         for each plan of coverage. Raises ConfigError for speeds that the robot cannot do.
         """
         mission.require_possible(robot.body)
-        self.robot, self.config, self._docking = robot, mission, docking
+        self.robot_config, self.config, self._docking = robot, mission, docking
         self._known, self._station, self._rooms, self._zones = known, station, rooms, zones
         self._stages, self._plan_watch = stages, plan_watch
         self._max_speed = robot.body.max_speed if max_speed is None else max_speed
@@ -95,7 +95,7 @@ class Brain:
 
     def _place(self, start: Pose) -> Place:
         """Return what knows the robot's place, which begins at ``start``."""
-        robot, belief = self.robot, (self.robot.localization, self.robot.gyro)
+        robot, belief = self.robot_config, (self.robot_config.localization, self.robot_config.gyro)
         if isinstance(self._known, MappingConfig):
             self.mapper = Mapper(self._known, *belief, start)
             self.growing = GrowingMap(self.mapper, robot.timing)
@@ -136,7 +136,7 @@ class Brain:
         if looks_around:
             wanted = self.keeper.look_around(senses.now, touches=any(senses.touches)) or wanted
         level = fan_of(mission)
-        fan = None if level is None else self.robot.fan.duty_at(level)
+        fan = None if level is None else self.robot_config.fan.duty_at(level)
         return Command(self._safely(wanted, cruise), fan, empties=step.empties)
 
     def steer(self, twist: Twist) -> Command:
@@ -211,13 +211,13 @@ class Brain:
         growing.is_whole = True
         occupancy = mapper.finish()
         # To be whole the map was turned a little; it began docked.
-        self._station = self.robot.body.docked_at(mapper.start)
+        self._station = self.robot_config.body.docked_at(mapper.start)
         self._localize_on(occupancy, mapper.pose)
         self._use(occupancy)
 
     def _localize_on(self, occupancy: OccupancyMap, here: Pose) -> None:
         """Let a localizer know the place from now on, which is ``here`` on its map."""
-        robot, readings = self.robot, self.readings
+        robot, readings = self.robot_config, self.readings
         belief = robot.localization, robot.gyro, robot.body.radius, here
         localizer = Localizer(None, *belief, stride=robot.scan_stride)
         Calibration.of(self.keeper.place.belief).take_up(localizer.belief)
@@ -309,7 +309,7 @@ class Brain:
 
     def _context(self, occupancy: OccupancyMap) -> PlanningContext:
         is_growing = self.growing is not None and not self.growing.is_whole
-        parts = self._station, self.robot, self.config, self._docking
+        parts = self._station, self.robot_config, self.config, self._docking
         return PlanningContext(
             occupancy,
             *parts,

@@ -116,8 +116,6 @@ def request_of(goal: CleanGoal) -> CleanRequest:
         )
     except CleanRefusedError as error:
         raise CleanGoalError(str(error)) from error
-    if not np.isfinite(zones).all():
-        raise CleanGoalError(f"expected zones of finite numbers, m, got {zones}")
     return request
 
 

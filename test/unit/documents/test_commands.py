@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 import pytest
 from running.suites import SUITES
 
+from roomba.commands import program
 from roomba.errors import RoombaError
 
 ROOT = Path(__file__).parents[3]
@@ -68,6 +69,15 @@ def test_of_the_documents_are_all_commands() -> None:
     assert len(lines) > 80
     told = {line.split()[0] for line in lines}
     assert told == commands_of_help()
+
+
+def test_each_command_of_the_help_is_known_to_both_programs() -> None:
+    of_library = {*program._COMMANDS, *program._NEED_ROS, *program._NEED_CHECKOUT}
+    assert of_library | {"version", "help"} == commands_of_help()
+    cases = (ROOT / "roomba").read_text().split("case $command in")[1]
+    labels = re.findall(r"^    ([a-z][-a-z |]*)\)", cases, re.MULTILINE)
+    of_checkout = {word for label in labels for word in label.split(" | ") if word[0] != "-"}
+    assert of_checkout == commands_of_help()
 
 
 def documented_lines() -> list[str]:

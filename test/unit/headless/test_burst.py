@@ -145,7 +145,7 @@ def test_it_ends_where_something_comes_into_the_way(is_mapped: bool) -> None:
     robot.simulator.place_obstacle(x, y, 0.05)
     until(robot, lambda: driver.tracker.course is not course or robot.mission.driver is not driver)
     # It left the path before it was there.
-    away = robot.seen.pose.distance_to(x, y) - 0.05 - robot.robot.body.radius
+    away = robot.seen.pose.distance_to(x, y) - 0.05 - robot.robot_config.body.radius
     assert away > 0.5 * robot.config.driving.look_ahead
     assert not robot.seen.bumper.pressed
 

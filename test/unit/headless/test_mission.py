@@ -207,13 +207,13 @@ def test_the_fan_runs_as_asked_for() -> None:
     request = CleanRequest(CleanMode.SPOT, spot=(1.0, 0.6), fan=FanLevel.QUIET)
     robot.mission.clean(request, robot.senses())
     until(robot, in_phase(robot, Phase.CLEANING))
-    assert robot.simulator.duty[1] == pytest.approx(robot.robot.fan.quiet)
+    assert robot.simulator.duty[1] == pytest.approx(robot.robot_config.fan.quiet)
     until(robot, in_phase(robot, Phase.RETURNING))
-    assert robot.simulator.duty[1] == pytest.approx(robot.robot.fan.quiet)
+    assert robot.simulator.duty[1] == pytest.approx(robot.robot_config.fan.quiet)
     robot.run()
     robot.tick()
     # As on ROS the next one who drives finds it as it was.
-    assert robot.simulator.duty[1] == pytest.approx(robot.robot.fan.duty)
+    assert robot.simulator.duty[1] == pytest.approx(robot.robot_config.fan.duty)
 
 
 def test_a_thing_that_the_map_does_not_show_is_gone_around_and_told() -> None:

@@ -20,7 +20,7 @@ def zoned(robot: HeadlessMission, *zones: Zone) -> PlanningContext:
     return PlanningContext(
         home.map,
         home.station,
-        robot.robot,
+        robot.robot_config,
         robot.config,
         DockingConfig(),
         robot.context.rooms,

@@ -79,7 +79,7 @@ def test_told_to_clean_it_drives_off_with_the_fan_that_is_asked_for(fan: FanLeve
     robot.mission.clean(CleanRequest(fan=fan), robot.senses())
     commands = [robot.tick(replace(DOCKED, time=0.05 * tick)) for tick in range(1, 4)]
     assert commands[-1].twist != STANDSTILL
-    assert commands[-1].fan == robot.robot.fan.duty_at(fan)
+    assert commands[-1].fan == robot.robot_config.fan.duty_at(fan)
 
 
 def test_each_room_is_cleaned_with_the_fan_that_it_is_given() -> None:
@@ -96,7 +96,7 @@ def test_each_room_is_cleaned_with_the_fan_that_it_is_given() -> None:
     order = CleanRequest(CleanMode.ROOMS, (HALL, DEN), in_order=True, each=ways)
     robot.mission.clean(order, robot.senses())
     commands = [robot.tick(replace(DOCKED, time=0.05 * tick)) for tick in range(1, 4)]
-    assert commands[-1].fan == robot.robot.fan.duty_at(FanLevel.STRONG)
+    assert commands[-1].fan == robot.robot_config.fan.duty_at(FanLevel.STRONG)
 
 
 def test_no_command_is_faster_than_the_robot() -> None:

@@ -98,7 +98,7 @@ def test_what_is_told_is_so(
         assert result.missed[0].reason is MissReason.SHUT
     else:
         assert truly > 1.0 - WORTH_TELLING
-    if crumbs > robot.robot.brush.bin_capacity:
+    if crumbs > robot.robot_config.brush.bin_capacity:
         assert robot.emptied, "the bin was never full"
     picked_up = robot.seen.in_bin + sum(robot.emptied)
     assert result.dirt == pytest.approx(picked_up, rel=0.1, abs=0.1)

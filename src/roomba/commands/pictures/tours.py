@@ -43,7 +43,7 @@ def tour_of(home: Home, seconds: float, seed: int) -> Tour:
 
 def _reckoned(robot: HeadlessMission, rows: Floats) -> Floats:
     """Return where the robot was by wheels and gyro, float64 [n, 3], odometry's frame."""
-    reckoning, poses = DeadReckoning(robot.robot.localization, robot.robot.gyro), []
+    reckoning, poses = DeadReckoning(robot.robot_config.localization, robot.robot_config.gyro), []
     for row in rows.tolist():
         reckoning.move(row[TIME], Pose(*row[ODOMETRY]), row[GYRO])
         poses.append((reckoning.pose.x, reckoning.pose.y, reckoning.pose.theta))

@@ -56,13 +56,15 @@ class LiveClient:
         self._watchers: list[Watcher] = []
         self._stop = HeldStop(self.obey, _hold, _release)
         self._kept_plan: KeptFloorPlan | None = None
-        body = robot.robot.body
+        body = robot.robot_config.body
         has_camera = live_home.camera is not None
-        self._bin_capacity = robot.robot.brush.bin_capacity
+        self._bin_capacity = robot.robot_config.brush.bin_capacity
         self._limits = view.PageLimits(
             body.max_speed,
             body.max_angular_speed,
-            camera_angles=view.camera_angles(robot.robot.camera.max_pan) if has_camera else (),
+            camera_angles=view.camera_angles(robot.robot_config.camera.max_pan)
+            if has_camera
+            else (),
             play=live_home.acts,
         )
 

@@ -41,7 +41,7 @@ class LiveWalk(LiveErrand[float, WalkReport]):
 
     def _begin(self, robot: Embodied) -> None:
         walk = robot.brain.walk(*self._goal)
-        duration = expected_duration(walk.path, robot.robot.body.max_speed)
+        duration = expected_duration(walk.path, robot.robot_config.body.max_speed)
         self._period = feedback_period(duration) * self._slowness
         self._way_before = robot.distance
         if self._is_due(robot):

@@ -29,7 +29,7 @@ class Playing:
         self._home, self._robot = home, robot
         self._truth = HomeTruth(home)
         self.name = home.name
-        self.camera = LiveCamera(home, robot.robot.camera, robot.simulator)
+        self.camera = LiveCamera(home, robot.robot_config.camera, robot.simulator)
 
     @property
     def acts(self) -> tuple[str, ...]:

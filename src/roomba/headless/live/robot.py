@@ -41,7 +41,7 @@ class Ticked(Protocol):
         """What its body told last."""
 
     @property
-    def robot(self) -> RobotConfig:
+    def robot_config(self) -> RobotConfig:
         """Its configuration."""
 
     def forget_rows(self) -> None:
@@ -164,10 +164,10 @@ class LiveRobot(Generic[_Robot]):
         if self._is_driven_by_hand:
             self._pass_by_hand(until)
             return
-        half_tick = 0.5 * robot.robot.timing.tick
+        half_tick = 0.5 * robot.robot_config.timing.tick
         while robot.now.time < until - half_tick and time.monotonic() - began < _FRAME:
             robot.advance()
-        self._note_ticks(round((robot.now.time - before) / robot.robot.timing.tick), began)
+        self._note_ticks(round((robot.now.time - before) / robot.robot_config.timing.tick), began)
 
     def _note_ticks(self, count: int, began: float) -> None:
         if count > 0:
@@ -182,6 +182,6 @@ class LiveRobot(Generic[_Robot]):
     def _pass_by_hand(self, until: float) -> None:
         """Drive as the hand wants; the mission stands meanwhile."""
         robot = self._robot
-        half_tick, began = 0.5 * robot.robot.timing.tick, time.monotonic()
+        half_tick, began = 0.5 * robot.robot_config.timing.tick, time.monotonic()
         while robot.now.time < until - half_tick and time.monotonic() - began < _FRAME:
             robot.steer(self._by_hand)

@@ -48,7 +48,7 @@ class Snapshots:
         self._map: GridLayer | None = None
         self._map_of: object = None
         self._felt_of: tuple[object, ...] = ()
-        self._visits = Visits(robot.mission.context.occupancy.frame, robot.robot.brush.width)
+        self._visits = Visits(robot.mission.context.occupancy.frame, robot.robot_config.brush.width)
         self._shape = 0
 
     def robot(self) -> RobotView:
@@ -144,7 +144,7 @@ class Snapshots:
                 if robot.brain.growing is not None:
                     self._visits.carry(occupancy.frame)
                 else:
-                    self._visits = Visits(occupancy.frame, robot.robot.brush.width)
+                    self._visits = Visits(occupancy.frame, robot.robot_config.brush.width)
             cells = map_cells(self._live_home.plan, occupancy)
             self._map = GridLayer.over(occupancy.frame, cells, self._shape)
         self._find_rooms(robot)

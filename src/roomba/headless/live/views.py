@@ -151,7 +151,7 @@ def home_view(
 ) -> HomeView:
     """Return what seldom changes."""
     station, plan = robot.mission.context.station, live_home.plan
-    height = robot.robot.body.height
+    height = robot.robot_config.body.height
     return HomeView(
         version=version,
         name=live_home.name,
@@ -159,8 +159,8 @@ def home_view(
         rooms=() if rooms is None else tuple(_room_views(rooms, plan)),
         zones=tuple(ZoneView(zone.name, zone.kind.value, zone.points) for zone in zones.all),
         furniture=() if plan is None else tuple(_outlines(plan, height, is_overhead=False)),
-        radius=robot.robot.body.radius,
-        tool=robot.robot.brush.width,
+        radius=robot.robot_config.body.radius,
+        tool=robot.robot_config.brush.width,
         overhead=() if plan is None else tuple(_outlines(plan, height, is_overhead=True)),
         carpets=() if plan is None else tuple(_carpets(plan)),
         felt_carpets=robot.mission.carpets.felt.all,

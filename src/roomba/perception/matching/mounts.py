@@ -80,10 +80,6 @@ class Mounts:
             self._parents[transform.child] = (transform.parent, transform.matrix)
         self._changes += 1
 
-    def knows(self, frame: str) -> bool:
-        """Whether it is known where a frame is."""
-        return frame_name(frame) in self._parents
-
     def mount(self, base: str, frame: str) -> Mount | None:
         """Return where ``frame`` is on the robot, whose frame is ``base``; None if not known.
 

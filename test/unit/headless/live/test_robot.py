@@ -22,14 +22,14 @@ class StandingRobot:
     """Its time passes, and nothing else happens."""
 
     def __init__(self) -> None:
-        self.robot = RobotConfig()
+        self.robot_config = RobotConfig()
         self.now = Readings(0.0, Pose())
 
     def forget_rows(self) -> None:
         """It keeps none."""
 
     def advance(self) -> None:
-        self.now = replace(self.now, time=self.now.time + self.robot.timing.tick)
+        self.now = replace(self.now, time=self.now.time + self.robot_config.timing.tick)
 
     def steer(self, twist: Twist) -> None:
         self.advance()

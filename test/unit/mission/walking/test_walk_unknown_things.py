@@ -89,7 +89,7 @@ def test_a_thing_that_is_taken_away_is_forgotten() -> None:
     assert nearest(there, at.x, at.y) > CONFIG.body.radius + 0.2
     # So many scans through where it stood it takes until that is sure; of some no beam goes there.
     scans = 2 * math.ceil(ThingConfig().most / ThingConfig().loss)
-    while robot.simulator.time < 15.0 + scans / robot.robot.lidar.rate:
+    while robot.simulator.time < 15.0 + scans / robot.robot_config.lidar.rate:
         robot.walk(4.5, 3.0)
         robot.walk(4.5, 2.0)
     back = robot.walk(0.5, 2.0)

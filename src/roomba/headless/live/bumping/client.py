@@ -45,7 +45,7 @@ class BumpingClient(WithoutMap):
         self._last: CleanReport | None = None
         self._clean: _CleanUnderWay | None = None
         self._stop = HeldStop(self._obey, _hold, _release)
-        body = robot.robot.body
+        body = robot.robot_config.body
         self._top_speed = body.max_speed
         self._limits = view.PageLimits(
             body.max_speed,
@@ -74,7 +74,7 @@ class BumpingClient(WithoutMap):
     @property
     def bin_capacity(self) -> float:
         """What its dust bin takes, g."""
-        return self._robot.robot.brush.bin_capacity
+        return self._robot.robot_config.brush.bin_capacity
 
     @property
     def ending(self) -> str:

@@ -10,11 +10,11 @@ from roomba.robot.readings import Readings
 
 
 class BumpingRobot:
-    """One robot, whose time passes only while it is ticked; ``robot`` is its configuration."""
+    """One robot, whose time passes only while it is ticked."""
 
     def __init__(self, body: Body, brain: BumpingBrain) -> None:
         """Put a brain in a body, which stands."""
-        self.body, self.brain, self.robot = body, brain, brain.robot
+        self.body, self.brain, self.robot_config = body, brain, brain.robot_config
         self.now: Readings = body.read()
 
     def forget_rows(self) -> None:

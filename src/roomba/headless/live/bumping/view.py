@@ -75,7 +75,7 @@ def view_of(
 def home_of_bumping(version: int, name: str, robot: BumpingRobot) -> HomeView:
     """Return what seldom changes: there are no rooms and no zones."""
     station = robot.brain.station or Pose()
-    body, tool = robot.robot.body, robot.robot.brush.width
+    body, tool = robot.robot_config.body, robot.robot_config.brush.width
     place = (station.x, station.y, station.theta)
     return HomeView(version, name, place, (), (), (), body.radius, tool)
 
