@@ -21,6 +21,7 @@ from roomba.clean_request import CleanRequest
 from roomba.headless.live.robot import LiveRobot
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.result import CleanResult
+from roomba.mission.phases.machine import Event
 from roomba.vocabulary import Phase
 
 MOST_GROWTH: Final = 1.0
@@ -70,7 +71,7 @@ class Life:
             self._rests_since = self.now
             robot.simulator.empty_bin()
             robot.look()
-            mission.empty_bin(robot.senses())
+            mission.command(Event.EMPTIED, robot.senses())
         rested = self.now - self._rests_since >= REST
         if mission.state.phase is Phase.DOCKED and rested and mission.cleaning is None:
             robot.simulator.spill(1.2, 0.6, 0.4, _CRUMBS)

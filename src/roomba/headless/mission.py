@@ -32,6 +32,7 @@ from roomba.headless.records import (
 )
 from roomba.headless.tick_rows import BELIEVED, POSES, TIME
 from roomba.mission.phases.at_station import why_not_emptied
+from roomba.mission.phases.machine import Event
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.perception.rooms.rooms import Rooms
@@ -222,7 +223,7 @@ class HeadlessMission(Embodied):
             self._full_since = None
             return
         if self.is_emptied_at_station and not why_not_emptied(self.now.emptying):
-            self.mission.empty_at_station(self.senses())
+            self.mission.command(Event.EMPTY, self.senses())
             return
         if self._full_since is None:
             self._full_since = self.seen.time

@@ -61,6 +61,14 @@ class Commands:
 
     def obey(self, event: Event, senses: Senses, reason: str) -> None:
         """Obey a command without arguments; raises CommandRefusedError with the reason."""
+        if event is Event.EMPTIED:
+            self._note_empty_bin(senses)
+        elif event is Event.EMPTY:
+            self._empty_at_station(senses)
+        else:
+            self._obey(event, senses, reason)
+
+    def _obey(self, event: Event, senses: Senses, reason: str) -> None:
         self._require_possible(event)
         if event in (Event.DOCK, Event.UNDOCK, Event.STOP):
             self._end(f"it was told to {event.value}", senses)
@@ -75,7 +83,7 @@ class Commands:
             self._transitions.go(Event.CONTACT, senses)
         self._transitions.reason = self._reason_after(event, held)
 
-    def empty_bin(self, senses: Senses) -> None:
+    def _note_empty_bin(self, senses: Senses) -> None:
         """Note that the dust bin was emptied by hand.
 
         Raises CommandRefusedError if its level sensor says no.
@@ -88,7 +96,7 @@ class Commands:
         self._job.bin.emptied()
         self._transitions.go(Event.EMPTIED, senses)
 
-    def empty_at_station(self, senses: Senses) -> None:
+    def _empty_at_station(self, senses: Senses) -> None:
         """Let the station empty the bin; raises CommandRefusedError with the reason."""
         self._require_possible(Event.EMPTY)
         reason = why_not_emptied(senses.emptying)

@@ -122,19 +122,12 @@ class Mission:
         self._commands.explore(senses)
 
     def command(self, event: Event, senses: Senses, reason: str = "") -> None:
-        """Obey a command without arguments; raises CommandRefusedError with the reason."""
-        self._commands.obey(event, senses, reason)
+        """Obey a command without arguments; raises CommandRefusedError with the reason.
 
-    def empty_bin(self, senses: Senses) -> None:
-        """Note that the dust bin was emptied by hand.
-
-        Raises CommandRefusedError if its level sensor says no.
+        EMPTIED notes that the dust bin was emptied by hand, unless its level sensor says no; EMPTY
+        lets the station empty it.
         """
-        self._commands.empty_bin(senses)
-
-    def empty_at_station(self, senses: Senses) -> None:
-        """Let its station empty its bin; raises CommandRefusedError with the reason."""
-        self._commands.empty_at_station(senses)
+        self._commands.obey(event, senses, reason)
 
     def use_context(self, context: PlanningContext) -> None:
         """Go on with other zones or rooms, from the next tick on."""

@@ -214,12 +214,7 @@ class MissionOrders:
 
     def _command(self, event: Event, mission: Mission, senses: Senses) -> tuple[bool, str]:
         try:
-            if event is Event.EMPTIED:
-                mission.empty_bin(senses)
-            elif event is Event.EMPTY:
-                mission.empty_at_station(senses)
-            else:
-                mission.command(event, senses)
+            mission.command(event, senses)
         except RoombaError as error:
             return False, str(error)
         if event is Event.STOP:

@@ -111,7 +111,7 @@ def test_a_full_bin_is_told_after_an_emergency_stop_and_it_does_not_drive_out_wi
     command(robot, Event.RELEASE)
     robot.simulator.empty_bin()
     robot.look()
-    robot.mission.empty_bin(robot.senses())
+    robot.mission.command(Event.EMPTIED, robot.senses())
     assert robot.mission.message == RELEASED
     command(robot, Event.RESUME)
     until(robot, in_phase(robot, Phase.CLEANING), 60.0)
@@ -165,10 +165,10 @@ def test_a_full_bag_is_told_and_an_empty_one_helps() -> None:
     robot.mission.clean(CleanRequest(), robot.senses())
     until(robot, in_phase(robot, Phase.BIN_FULL), 1200.0)
     with pytest.raises(CommandRefusedError, match="bag of its station is full"):
-        robot.mission.empty_at_station(robot.senses())
+        robot.mission.command(Event.EMPTY, robot.senses())
     station.replace_bag()
     robot.tick()
-    robot.mission.empty_at_station(robot.senses())
+    robot.mission.command(Event.EMPTY, robot.senses())
     until(robot, in_phase(robot, Phase.CHARGING), 60.0)
     assert station.in_bag == pytest.approx(FEW_GRAMS, rel=0.05)
 
@@ -177,4 +177,4 @@ def test_a_station_without_that_empties_no_bin_and_says_so() -> None:
     robot = HeadlessMission(HOME, NOISY, seed=1)
     until(robot, in_phase(robot, Phase.DOCKED), 5.0)
     with pytest.raises(CommandRefusedError, match="empty it by hand"):
-        robot.mission.empty_at_station(robot.senses())
+        robot.mission.command(Event.EMPTY, robot.senses())

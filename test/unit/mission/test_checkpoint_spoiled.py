@@ -51,7 +51,7 @@ def robot() -> HeadlessMission:
 def fresh() -> Mission:
     it = robot()
     return Mission(
-        it.context, it.robot, it.config, DockingConfig(), it.things, it.dirt, it.senses()
+        it.context, it.robot_config, it.config, DockingConfig(), it.things, it.dirt, it.senses()
     )
 
 

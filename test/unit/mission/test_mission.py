@@ -312,14 +312,14 @@ def test_on_its_station_it_waits_for_an_empty_bin_and_says_so() -> None:
 def test_told_that_the_bin_is_empty_it_goes_by_its_level_sensor() -> None:
     rig = waiting_for_an_empty_bin()
     with pytest.raises(CommandRefusedError, match="100% full by its level sensor"):
-        rig.mission.empty_bin(rig.senses)
+        rig.mission.command(Event.EMPTIED, rig.senses)
     rig.tick()
     assert rig.phase is Phase.BIN_FULL
     # One that sticks somewhere in the middle is not worth more than the operator's word.
     rig.senses = replace(rig.senses, in_bin=0.6 * FULL)
     rig.tick()
     assert rig.phase is Phase.BIN_FULL
-    rig.mission.empty_bin(rig.senses)
+    rig.mission.command(Event.EMPTIED, rig.senses)
     rig.tick(2)
     assert rig.phase is Phase.UNDOCKING
 
@@ -363,7 +363,7 @@ def test_killed_while_its_bin_is_full_it_still_knows() -> None:
     again.mission.restore(values, again.senses)
     again.tick(5)
     assert again.phase is Phase.BIN_FULL
-    again.mission.empty_bin(again.senses)
+    again.mission.command(Event.EMPTIED, again.senses)
     again.tick(2)
     assert again.phase is Phase.UNDOCKING
 

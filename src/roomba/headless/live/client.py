@@ -231,13 +231,13 @@ class LiveClient:
 
         def empty(robot: Embodied) -> None:
             self._live_home.empty_bin()
-            robot.mission.empty_bin(robot.senses())
+            robot.mission.command(Event.EMPTIED, robot.senses())
 
         self.obey(empty)
 
     def empty_at_station(self) -> None:
         """Let its station empty its bin."""
-        self.obey(lambda robot: robot.mission.empty_at_station(robot.senses()))
+        self.obey(lambda robot: robot.mission.command(Event.EMPTY, robot.senses()))
 
     def replace_bag(self) -> None:
         """Put an empty bag into its simulated station."""
