@@ -274,7 +274,8 @@ class CleaningClient(Protocol):
     def begin_clean(self, request: CleanRequest) -> CleanHandle:
         """Start cleaning; another clean, or a way to the station, ends.
 
-        Raises RequestRefusedError for what this robot cannot be asked, RobotUnavailableError.
+        Raises RequestRefusedError for what this robot cannot be asked, RobotUnavailableError. What
+        it refuses by its map or state, such as a room that there is not, is the handle's report.
         """
 
     def clean(

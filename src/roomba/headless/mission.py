@@ -59,7 +59,7 @@ class HeadlessMission(Embodied):
     """
 
     body: SimulatedBody
-    robot: SimulatedRobotConfig
+    robot_config: SimulatedRobotConfig
 
     def __init__(
         self,

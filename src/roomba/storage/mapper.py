@@ -248,7 +248,7 @@ def _links_of(fields: _Fields, submaps: int) -> tuple[Link, ...]:
 
 
 def _mirrors_of(fields: _Fields, submaps: int) -> tuple[KeptMirror, ...]:
-    if not fields.has("mirror_seen_from"):
+    if not fields.has("mirror_submaps"):
         return ()
     numbers = fields.counts("mirror_submaps", -1)
     if numbers.size and numbers.max() >= submaps:
@@ -257,7 +257,11 @@ def _mirrors_of(fields: _Fields, submaps: int) -> tuple[KeptMirror, ...]:
     reaches = fields.floats("mirror_reaches", len(numbers), 2)
     if reaches.size and reaches.min() <= 0.0:
         raise ValueError(f"expected mirrors that reach farther than 0, got {reaches.min()}")
-    seen_from = fields.floats("mirror_seen_from", len(numbers))
+    # A file of an older program does not tell how each was found: as if it was touched.
+    is_told = fields.has("mirror_seen_from")
+    seen_from = (
+        fields.floats("mirror_seen_from", len(numbers)) if is_told else np.zeros(len(numbers))
+    )
     if seen_from.size and seen_from.min() < 0.0:
         raise ValueError(f"expected mirrors seen from 0 m or farther, got {seen_from.min()}")
     parts = zip(numbers.tolist(), planes, reaches, seen_from.tolist(), strict=True)

@@ -33,7 +33,8 @@ _Report = TypeVar("_Report", covariant=True)
 class RoombaClient:
     """Tells the robot what to do and waits for it; reports say how it went.
 
-    What is asked of a robot that does not answer raises RobotUnavailableError, within seconds.
+    What is asked of a robot that does not answer raises RobotUnavailableError, within seconds; what
+    makes no sense on any map, such as seven passes, RequestRefusedError.
     Ctrl-C ends a walk, but only the waiting for a clean: the robot goes on with that.
     """
 

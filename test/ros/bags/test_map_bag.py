@@ -46,13 +46,15 @@ class RecordedRobot(HeadlessMission):
         super().tick()
         seen = self.seen
         now = BEGAN + seen.time
-        self._note("/imu", imu_message(now, seen, self.robot.simulation.gyro, "imu_link"), now)
+        self._note(
+            "/imu", imu_message(now, seen, self.robot_config.simulation.gyro, "imu_link"), now
+        )
         odometry = odometry_message(now, seen.odometry, seen.odometry_twist, "odom", "base_link")
         self._note("/odom", odometry, now)
         self._note("/ground_truth/pose", pose_message(now, seen.pose, "map"), now)
         if self.body.scans != scans:
             ranges, taken = self.simulator.ranges, BEGAN + self.body.newest_scan().stamp
-            self._note("/scan", scan_message(taken, ranges, self.robot.lidar, "laser"), now)
+            self._note("/scan", scan_message(taken, ranges, self.robot_config.lidar, "laser"), now)
 
     def _note(self, topic: str, message: Any, now: float) -> None:
         self.records.append((topic, message, now))

@@ -237,6 +237,16 @@ def test_what_does_not_fit_together_is_refused(
         load_mapper(path, pytest.fail)
 
 
+def test_mirrors_of_an_older_program_count_as_touched(tmp_path: Path) -> None:
+    path, kept = tmp_path / "robot.npz", kept_map()
+    save_mapper(kept, path)
+    rewritten(path, mirror_seen_from=None)
+    read = load_mapper(path, pytest.fail)
+    assert read is not None
+    assert len(read.state.mirrors) == len(kept.state.mirrors) > 0
+    assert [mirror.seen_from for mirror in read.state.mirrors] == [0.0] * len(read.state.mirrors)
+
+
 def test_a_file_of_an_older_program_has_no_open_ways_and_no_mirrors(tmp_path: Path) -> None:
     path = tmp_path / "robot.npz"
     save_mapper(kept_map(), path)

@@ -83,7 +83,7 @@ class ObservedExplorer(HeadlessMission):
 
     def begin_blind(self, mapping: MappingConfig) -> None:
         """Draw by dead reckoning from now on; it stands on its station."""
-        numbers = self.robot.localization, self.robot.gyro
+        numbers = self.robot_config.localization, self.robot_config.gyro
         apart = {"keyframe_way": mapping.keyframe_way, "keyframe_turn": mapping.keyframe_turn}
         often = {name: _AS_OFTEN * value for name, value in apart.items()}
         self.blind = BlindMap(mapping.model_copy(update=often), *numbers, self.simulator.start)

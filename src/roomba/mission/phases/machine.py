@@ -50,6 +50,7 @@ class Event(Enum):
     LOW = "the battery is just enough for the way home"
     BIN_FULL = "the dust bin is full"
     EMPTIED = "the dust bin was emptied"
+    """By its level sensor, or told by a person; it changes nothing of what was commanded."""
     CHARGED = "charged enough to go on"
     FAILED = "it cannot go on by itself"
 
@@ -123,8 +124,10 @@ def way_ended(
 ) -> CleanOutcome | None:
     """Return how a way into the station or out of it ended; None while it is under way.
 
-    ``errand`` is DOCK or UNDOCK. A robot that was stopped on its way out stands where it was to
-    come to, off its station: by ``last_command``, the last one that it obeyed, this is no success.
+    ``errand`` is DOCK or UNDOCK. The outcome is COMPLETED where it was to come to, STOPPED, or
+    FAULT, of an emergency stop as well. A robot that was stopped on its way out, or held and
+    released, stands off its station, too: by ``last_command``, the last one that it obeyed, this
+    is no success.
     """
     if state.phase in (Phase.ERROR, Phase.EMERGENCY):
         return CleanOutcome.FAULT

@@ -107,9 +107,10 @@ def seen_mirror(beams: Beams, floor: MappedFloor, about: Plane, farthest: float)
 
 
 def still_shows_itself(beams: Beams, plane: Plane, farthest: float) -> bool:
-    """Whether what was taken for a mirror from ``farthest`` m away on shows the robot by now, too.
+    """Whether what was taken for a mirror from ``farthest`` m away on still shows the robot.
 
-    Something that came towards the robot does not.
+    All scans from before it count: where something came towards the robot, most of them do not
+    once it has driven there again.
     """
     return _shows_itself(beams, plane, farthest, _LEAST_STOOD_AWAY)
 
