@@ -120,7 +120,7 @@ class Mirrors:
             for mirror in self._mirrors:
                 new = scans[max(mirror.counted - first, 0) :]
                 if not mirror.counted:
-                    self._count_anew(mirror, self._beams_about(mirror, mount), floor)
+                    self._count_anew(mirror, self._beams_about(self._placed(mirror), mount), floor)
                 elif new:
                     mirror.count(_beams_of(new, mount), floor, poses[mirror.submap])
                     mirror.counted = first + len(scans)
@@ -137,7 +137,7 @@ class Mirrors:
         if self._mirrors:
             floor = MappedFloor.of(occupancy())
             for mirror in self._mirrors:
-                self._count_anew(mirror, self._beams_about(mirror, mount), floor)
+                self._count_anew(mirror, self._beams_about(self._placed(mirror), mount), floor)
         self._look_for_itself(_some(self._scans()), mount, occupancy)
         return not np.array_equal(self.ends, before)
 
@@ -150,7 +150,7 @@ class Mirrors:
             for plane, farthest in own_image_planes(beams, facing):
                 if any(self._is_of(plane, mirror) for mirror in self._mirrors):
                     continue
-                around = _beams_of(self._scans_near(plane.x, plane.y), mount)
+                around = self._beams_about(plane, mount)
                 floor = MappedFloor.of(occupancy())
                 found = seen_mirror(around, floor, plane, farthest)
                 if found is not None:
@@ -159,14 +159,14 @@ class Mirrors:
 
     def _take_back(self, mount: Floats) -> None:
         """Take away mirrors that were not touched and do not show the robot as they did."""
-        self._mirrors = [
-            mirror
-            for mirror in self._mirrors
-            if not mirror.seen_from
-            or still_shows_itself(
-                self._beams_about(mirror, mount), self._placed(mirror), mirror.seen_from
+
+        def is_left(mirror: Mirror) -> bool:
+            plane = self._placed(mirror)
+            return not mirror.seen_from or still_shows_itself(
+                self._beams_about(plane, mount), plane, mirror.seen_from
             )
-        ]
+
+        self._mirrors = [mirror for mirror in self._mirrors if is_left(mirror)]
 
     def pass_through(self, start: Floats, end: Floats) -> bool:
         """Take away the mirrors between two places of the robot, [2], m, map frame: they are none.
@@ -203,9 +203,8 @@ class Mirrors:
     def _scans_near(self, x: float, y: float) -> list[PlacedPoints]:
         return _some([s for s in self._scans() if math.dist(s.pose[:2], (x, y)) < _NEAR])
 
-    def _beams_about(self, mirror: Mirror, mount: Floats) -> Beams:
-        """Return the beams of scans from near a mirror."""
-        plane = self._placed(mirror)
+    def _beams_about(self, plane: Plane, mount: Floats) -> Beams:
+        """Return the beams of scans from near the middle of a plane, map frame."""
         return _beams_of(self._scans_near(plane.x, plane.y), mount)
 
     def _placed(self, mirror: Mirror) -> Plane:
