@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -18,13 +18,14 @@ from roomba.geometry import Pose
 from roomba.perception.slam.mapper_state import LidarNumbers, MapperState
 from roomba.perception.slam.mirrors.mirror import KeptMirror
 from roomba.perception.slam.scan_matching.surface_kernels import POINT
-from roomba.perception.slam.submaps.pose_graph import Link
+from roomba.perception.slam.submaps.pose_graph import Link, LinkKind
 from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe
-
-Arrays = Mapping[str, NDArray[Any]]
+from roomba.storage.array_fields import ArrayFields
 
 FORMAT: Final = 1
 """Of the file; another number is another format."""
+_LINK_KINDS: Final = (LinkKind.MATCHED, LinkKind.DRIVEN, LinkKind.GUESSED, LinkKind.TOLD)
+"""In a file each has its number here."""
 _MOST_BEAMS: Final = 100_000
 _MOST_BYTES: Final = 1_000_000_000
 """Of the file; the points of a drive of hours have a tenth."""
@@ -70,7 +71,7 @@ def load_mapper(path: Path, tell: Callable[[str], object]) -> KeptMap | None:
 
 
 def _parsed(content: bytes) -> KeptMap:
-    return _kept_of(_Fields(read_arrays(content, _MOST_BYTES)))
+    return _kept_of(ArrayFields(read_arrays(content, _MOST_BYTES)))
 
 
 def remove_mapper(path: Path) -> None:
@@ -109,8 +110,7 @@ def _arrays_of(kept: KeptMap) -> dict[str, NDArray[Any]]:
         ),
         "link_relatives": np.array([link.relative for link in links]).reshape(-1, 3),
         "link_information": np.array([link.information for link in links]).reshape(-1, 3, 3),
-        "link_doubts": np.array([link.may_be_wrong for link in links], np.bool_),
-        "link_guesses": np.array([link.is_guessed for link in links], np.bool_),
+        "link_kinds": np.array([_LINK_KINDS.index(link.kind) for link in links], np.int64),
         "mirror_submaps": np.array([mirror.submap for mirror in state.mirrors], np.int64),
         "mirror_planes": np.array([mirror.plane for mirror in state.mirrors]).reshape(-1, 3),
         "mirror_reaches": np.array([mirror.reach for mirror in state.mirrors]).reshape(-1, 2),
@@ -118,64 +118,7 @@ def _arrays_of(kept: KeptMap) -> dict[str, NDArray[Any]]:
     }
 
 
-class _Fields:
-    """The arrays of a file, each checked for its kind, its shape, and that all numbers are finite.
-
-    All methods raise ValueError, or KeyError for an array that is not there.
-    """
-
-    def __init__(self, arrays: Arrays) -> None:
-        self._arrays = arrays
-
-    def floats(self, name: str, *shape: int, kind: type = np.float64) -> NDArray[Any]:
-        """Return numbers of a shape, in which -1 is any length."""
-        found = self._of(name, np.dtype(kind), shape)
-        if not np.isfinite(found).all():
-            raise ValueError(f"{name}: expected finite numbers, got others")
-        return found
-
-    def pose(self, name: str) -> Pose | None:
-        """Return a pose; None for three NaN."""
-        found = self._of(name, np.dtype(np.float64), (3,))
-        if np.isnan(found).all():
-            return None
-        return Pose(*self.floats(name, 3).tolist())
-
-    def counts(self, name: str, *shape: int) -> NDArray[np.int64]:
-        """Return whole numbers of 0 or more."""
-        found = self._of(name, np.dtype(np.int64), shape)
-        if found.size and found.min() < 0:
-            raise ValueError(f"{name}: expected 0 or more, got {found.min()}")
-        return found
-
-    def flags(self, name: str, *shape: int) -> NDArray[np.bool_]:
-        """Return yes or no."""
-        return self._of(name, np.dtype(np.bool_), shape)
-
-    def has(self, name: str) -> bool:
-        """Whether there is such an array: files of older programs lack some."""
-        return name in self._arrays
-
-    def text(self, name: str) -> str:
-        """Return words."""
-        found = self._arrays[name]
-        if found.dtype.kind != "U" or found.shape:
-            raise ValueError(f"{name}: expected words, got {found.dtype} {found.shape}")
-        return str(found)
-
-    def _of(self, name: str, kind: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
-        found = self._arrays[name]
-        fits = len(found.shape) == len(shape) and all(
-            wanted in (-1, length) for wanted, length in zip(shape, found.shape, strict=True)
-        )
-        if found.dtype != kind or not fits:
-            raise ValueError(
-                f"{name}: expected {kind} of shape {shape}, got {found.dtype} of {found.shape}"
-            )
-        return found
-
-
-def _kept_of(fields: _Fields) -> KeptMap:
+def _kept_of(fields: ArrayFields) -> KeptMap:
     its_format = int(fields.counts("format"))
     if its_format != FORMAT:
         raise ValueError(f"expected one of format {FORMAT}, got format {its_format}")
@@ -201,7 +144,7 @@ def _kept_of(fields: _Fields) -> KeptMap:
     )
 
 
-def _submaps_of(fields: _Fields) -> tuple[KeptSubmap, ...]:
+def _submaps_of(fields: ArrayFields) -> tuple[KeptSubmap, ...]:
     driven = fields.floats("submap_ways", -1)
     sizes = fields.counts("submap_keyframes", len(driven))
     lengths = fields.counts("keyframe_points", -1)
@@ -221,7 +164,7 @@ def _submaps_of(fields: _Fields) -> tuple[KeptSubmap, ...]:
     )
 
 
-def _open_ways_of(fields: _Fields, keyframes: int) -> list[NDArray[np.float32]]:
+def _open_ways_of(fields: ArrayFields, keyframes: int) -> list[NDArray[np.float32]]:
     if not fields.has("keyframe_open"):
         return [np.zeros((0, 2), np.float32)] * keyframes
     lengths = fields.counts("keyframe_open", keyframes)
@@ -229,25 +172,48 @@ def _open_ways_of(fields: _Fields, keyframes: int) -> list[NDArray[np.float32]]:
     return np.split(ways, np.cumsum(lengths)[:-1])
 
 
-def _links_of(fields: _Fields, submaps: int) -> tuple[Link, ...]:
+def _links_of(fields: ArrayFields, submaps: int) -> tuple[Link, ...]:
     ends = fields.counts("link_ends", -1, 2)
     if ends.size and ends.max() >= submaps:
         raise ValueError(f"expected links between {submaps} submaps, got one to {ends.max()}")
     relatives = fields.floats("link_relatives", len(ends), 3)
     information = fields.floats("link_information", len(ends), 3, 3)
-    doubts = fields.flags("link_doubts", len(ends)).tolist()
-    guesses = [False] * len(ends)
-    if fields.has("link_guesses"):
-        guesses = fields.flags("link_guesses", len(ends)).tolist()
+    kinds = _link_kinds_of(fields, ends)
+    parts = zip(ends.tolist(), relatives, information, kinds, strict=True)
     return tuple(
-        Link(parent, child, relative, sureness, doubt, guess)
-        for (parent, child), relative, sureness, doubt, guess in zip(
-            ends.tolist(), relatives, information, doubts, guesses, strict=True
-        )
+        Link(parent, child, relative, sureness, kind)
+        for (parent, child), relative, sureness, kind in parts
     )
 
 
-def _mirrors_of(fields: _Fields, submaps: int) -> tuple[KeptMirror, ...]:
+def _link_kinds_of(fields: ArrayFields, ends: NDArray[np.int64]) -> list[LinkKind]:
+    if not fields.has("link_kinds"):
+        return _older_link_kinds_of(fields, ends)
+    numbers = fields.counts("link_kinds", len(ends))
+    if numbers.size and numbers.max() >= len(_LINK_KINDS):
+        raise ValueError(f"expected {len(_LINK_KINDS)} kinds of links, got number {numbers.max()}")
+    return [_LINK_KINDS[number] for number in numbers.tolist()]
+
+
+def _older_link_kinds_of(fields: ArrayFields, ends: NDArray[np.int64]) -> list[LinkKind]:
+    """Return the kinds in a file of an older program, which told them by two flags."""
+    matched = fields.flags("link_doubts", len(ends)).tolist()
+    guessed = [False] * len(ends)
+    if fields.has("link_guesses"):
+        guessed = fields.flags("link_guesses", len(ends)).tolist()
+    follows = (ends[:, 1] == ends[:, 0] + 1).tolist()
+    return [_older_link_kind(*each) for each in zip(matched, guessed, follows, strict=True)]
+
+
+def _older_link_kind(is_matched: bool, is_guessed: bool, follows: bool) -> LinkKind:
+    if is_matched:
+        return LinkKind.MATCHED
+    if is_guessed:
+        return LinkKind.GUESSED
+    return LinkKind.DRIVEN if follows else LinkKind.TOLD
+
+
+def _mirrors_of(fields: ArrayFields, submaps: int) -> tuple[KeptMirror, ...]:
     if not fields.has("mirror_submaps"):
         return ()
     numbers = fields.counts("mirror_submaps", -1)
@@ -268,7 +234,7 @@ def _mirrors_of(fields: _Fields, submaps: int) -> tuple[KeptMirror, ...]:
     return tuple(KeptMirror(*each) for each in parts)
 
 
-def _lidar_of(fields: _Fields) -> LidarNumbers:
+def _lidar_of(fields: ArrayFields) -> LidarNumbers:
     beams, mount = int(fields.counts("lidar_beams")), fields.pose("lidar_mount")
     if not 0 < beams <= _MOST_BEAMS or mount is None:
         raise ValueError(f"expected a lidar with beams and a mount, got {beams} and {mount}")

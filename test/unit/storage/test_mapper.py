@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 from roomba.geometry import Pose
 from roomba.perception.slam.mapper_state import MapperState
 from roomba.perception.slam.mirrors.mirror import KeptMirror
-from roomba.perception.slam.submaps.pose_graph import Link
+from roomba.perception.slam.submaps.pose_graph import Link, LinkKind
 from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe
 from roomba.storage.mapper import (
     KeptMap,
@@ -48,11 +49,11 @@ def are_same(one: KeptMap, other: KeptMap) -> bool:
         == [(s.way, len(s.keyframes)) for s in its.submaps]
         and list(map(bits, frames)) == list(map(bits, others))
         and [
-            (k.parent, k.child, k.may_be_wrong, k.relative.tobytes(), k.information.tobytes())
+            (k.parent, k.child, k.kind, k.relative.tobytes(), k.information.tobytes())
             for k in mine.links
         ]
         == [
-            (k.parent, k.child, k.may_be_wrong, k.relative.tobytes(), k.information.tobytes())
+            (k.parent, k.child, k.kind, k.relative.tobytes(), k.information.tobytes())
             for k in its.links
         ]
         and [(m.submap, m.plane.tobytes(), m.reach.tobytes()) for m in mine.mirrors]
@@ -99,10 +100,12 @@ def kept_maps(draw: st.DrawFn) -> KeptMap:
     )
     number = st.integers(0, len(sizes) - 1)
     links = tuple(
-        Link(parent, child, np.array(relative), np.diag(relative), doubt)
-        for parent, child, relative, doubt in draw(
+        Link(parent, child, np.array(relative), np.diag(relative), kind)
+        for parent, child, relative, kind in draw(
             st.lists(
-                st.tuples(number, number, st.tuples(NUMBERS, NUMBERS, NUMBERS), st.booleans()),
+                st.tuples(
+                    number, number, st.tuples(NUMBERS, NUMBERS, NUMBERS), st.sampled_from(LinkKind)
+                ),
                 max_size=6,
             )
         )
@@ -205,6 +208,8 @@ def rewritten(path: Path, **changes: NDArray[Any] | None) -> None:
         ({"open": np.zeros((1, 2), np.float32)}, "open: expected float32"),
         ({"keyframe_open": np.array([1, 1])}, "keyframe_open: expected"),
         ({"link_ends": np.array([[0, 1], [0, 3]])}, "expected links between 3 submaps"),
+        ({"link_kinds": np.array([1, 4])}, "expected 4 kinds of links, got number 4"),
+        ({"link_kinds": np.array([1])}, "link_kinds: expected"),
         ({"mirror_submaps": np.array([3])}, "expected mirrors in 3 submaps, got one in 3"),
         ({"mirror_reaches": np.zeros((2, 2))}, "mirror_reaches: expected"),
         ({"mirror_reaches": np.array([[0.4, 0.0]])}, "mirrors that reach farther than 0"),
@@ -235,6 +240,29 @@ def test_what_does_not_fit_together_is_refused(
     rewritten(path, **changes)
     with pytest.raises(MapperFileError, match=message):
         load_mapper(path, pytest.fail)
+
+
+def test_links_of_an_older_program_had_two_flags(tmp_path: Path) -> None:
+    kept, path = kept_map(), tmp_path / "robot.npz"
+    kinds = [LinkKind.DRIVEN, LinkKind.TOLD, LinkKind.GUESSED, LinkKind.MATCHED]
+    links = tuple(
+        Link(parent, child, np.zeros(3), np.eye(3), kind)
+        for (parent, child), kind in zip(((0, 1), (0, 2), (1, 2), (1, 2)), kinds, strict=True)
+    )
+    save_mapper(replace(kept, state=replace(kept.state, links=links)), path)
+    doubts, guesses = (
+        np.array([kind is asked for kind in kinds])
+        for asked in (LinkKind.MATCHED, LinkKind.GUESSED)
+    )
+    rewritten(path, link_kinds=None, link_doubts=doubts, link_guesses=guesses)
+    read = load_mapper(path, pytest.fail)
+    assert read is not None
+    assert [link.kind for link in read.state.links] == kinds
+    rewritten(path, link_guesses=None)  # a program that knew no guesses
+    read = load_mapper(path, pytest.fail)
+    assert read is not None
+    expected = [LinkKind.DRIVEN, LinkKind.TOLD, LinkKind.DRIVEN, LinkKind.MATCHED]
+    assert [link.kind for link in read.state.links] == expected
 
 
 def test_mirrors_of_an_older_program_count_as_touched(tmp_path: Path) -> None:

@@ -105,10 +105,10 @@ def test_before_it_knows_where_it_is_a_touch_tells_nothing(is_lifted: bool) -> N
     assert robot.mapper.version == version
 
 
-def crossing(*, begins: bool, leaps: bool = False) -> SubmapMap:
+def crossing(between: str) -> SubmapMap:
     """A map with a mirror across y = 1, and keyframes before and behind it, each of a place.
 
-    Between them a submap ``begins``, or the robot ``leaps`` into another piece.
+    ``between`` is what happens between the two.
     """
     config = NOISY
     made = SubmapMap(MappingConfig(), config.localization, np.zeros(3))
@@ -117,23 +117,25 @@ def crossing(*, begins: bool, leaps: bool = False) -> SubmapMap:
     before, behind = np.array([0.0, 0.8, 0.0]), np.array([0.0, 1.2, 0.0])
     made.mirrors.take_over([KeptMirror(0, np.array([0.0, 1.0, math.pi / 2.0]), np.ones(2))])
     made.keep(points, ranges, before)
-    if leaps:
-        made.begin_piece(behind, 1.0, (1.0, 1.0), 0.01, carried=Carried.TOLD)
-        behind = np.zeros(3)
-    elif begins:
-        made.begin(behind, 1.0, 0.01)
-        behind = np.zeros(3)
-    made.keep(points, ranges, behind)
+    match between:
+        case "a submap begins":
+            made.begin(behind, 1.0, 0.01)
+        case "it is carried":
+            made.begin_piece(behind, 1.0, (1.0, 1.0), 0.01, carried=Carried.TOLD)
+        case "it is told where it is":
+            made.begin_at(behind, 1.0, 0.01)
+    made.keep(points, ranges, behind if between == "nothing" else np.zeros(3))
     return made
 
 
-@pytest.mark.parametrize("begins", [False, True])
-def test_what_the_robot_drives_through_is_no_mirror(begins: bool) -> None:
-    assert len(crossing(begins=begins).mirrors) == 0
+@pytest.mark.parametrize("between", ["nothing", "a submap begins"])
+def test_what_the_robot_drives_through_is_no_mirror(between: str) -> None:
+    assert len(crossing(between).mirrors) == 0
 
 
-def test_a_robot_that_was_carried_did_not_drive_through() -> None:
-    assert len(crossing(begins=False, leaps=True).mirrors) == 1
+@pytest.mark.parametrize("between", ["it is carried", "it is told where it is"])
+def test_a_robot_that_was_carried_did_not_drive_through(between: str) -> None:
+    assert len(crossing(between).mirrors) == 1
 
 
 @pytest.mark.parametrize("ends", ["begin", "begin_piece", "begin_at", "finish"])

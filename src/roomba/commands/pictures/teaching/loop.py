@@ -8,7 +8,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from roomba.arrays import Floats
-from roomba.perception.slam.submaps.pose_graph import Link, composed, optimised, relative_to
+from roomba.perception.slam.submaps.pose_graph import (
+    Link,
+    LinkKind,
+    composed,
+    optimised,
+    relative_to,
+)
 from roomba.plots.style import BLUE, GREEN, GREY, INK, RED, drawn, empty_figure
 from roomba.world.home.home import Home
 
@@ -36,7 +42,7 @@ def picture_of_loop_closing(_: Home) -> Figure:
         poses.append(composed(poses[-1][None], step[None])[0])
     drifted = np.array(poses)
     odometry = [
-        Link(number, number + 1, step, np.diag(1.0 / np.square(_NOISE)), may_be_wrong=False)
+        Link(number, number + 1, step, np.diag(1.0 / np.square(_NOISE)), LinkKind.DRIVEN)
         for number, step in enumerate(measured)
     ]
     closing = [_link(true, 0, len(true) - 1), _link(true, 1, len(true) - 1)]

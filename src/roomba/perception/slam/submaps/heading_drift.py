@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from roomba.angles import wrap_angles
 from roomba.arrays import Floats
 from roomba.perception.slam.submaps.parts import part_labels
-from roomba.perception.slam.submaps.pose_graph import Link
+from roomba.perception.slam.submaps.pose_graph import Link, LinkKind
 
 _LEAST_DRIFT: Final = math.radians(0.25)
 """rad per square root of m: of drives with good lidars, as their loops show it."""
@@ -42,14 +42,16 @@ def heading_drift(poses: Floats, ways: Sequence[float], links: Sequence[Link]) -
 
     What hangs on the first submap by guesses alone does not count.
     """
-    steps = [link for link in links if link.is_step]
+    steps = [link for link in links if link.kind is LinkKind.DRIVEN]
     drift = max(_LEAST_DRIFT, _shown_drift(poses, ways, steps))
     breaks = np.ones(len(poses), np.int64)
     breaks[[0, *(step.child for step in steps)]] = 0
     pieces = np.cumsum(breaks)
     held = [link for link in links if _holds(link, ways, pieces)]
     variances = [
-        drift**2 * _way_of(link, ways) if link.is_step else 1.0 / link.information[2, 2]
+        drift**2 * _way_of(link, ways)
+        if link.kind is LinkKind.DRIVEN
+        else 1.0 / link.information[2, 2]
         for link in held
     ]
     unsure = _variances(len(poses), held, np.array(variances))
@@ -63,8 +65,8 @@ def _way_of(link: Link, ways: Sequence[float]) -> float:
 
 def _holds(link: Link, ways: Sequence[float], pieces: NDArray[np.int64]) -> bool:
     """Whether a link says something of a heading that other ones do not: see ``_LONG_AGO``."""
-    if link.is_guessed or not link.may_be_wrong:
-        return not link.is_guessed
+    if link.kind is not LinkKind.MATCHED:
+        return link.kind is not LinkKind.GUESSED
     is_of_one_piece = bool(pieces[link.parent] == pieces[link.child])
     return not is_of_one_piece or _way_of(link, ways) >= _LONG_AGO
 

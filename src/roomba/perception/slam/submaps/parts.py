@@ -20,7 +20,7 @@ from roomba.arrays import Floats
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.slam.submaps.places import ClearPlace, clearly_best
-from roomba.perception.slam.submaps.pose_graph import Link, composed, inverse, relative_to
+from roomba.perception.slam.submaps.pose_graph import Link, LinkKind, composed, inverse, relative_to
 from roomba.perception.slam.submaps.submap import Keyframe, Submap, cloud_of, moved
 
 Labels = NDArray[np.int64]
@@ -62,7 +62,7 @@ def part_labels(count: int, links: Sequence[Link]) -> Labels:
     """
     labels = np.arange(count)
     for link in links:
-        if not link.is_guessed:
+        if link.kind is not LinkKind.GUESSED:
             first, second = labels[link.parent], labels[link.child]
             labels[labels == max(first, second)] = min(first, second)
     return labels
@@ -73,7 +73,7 @@ def hanging_on(part: int, labels: Labels, links: Sequence[Link]) -> NDArray[np.b
     hanging: NDArray[np.bool_] = labels == part
     for link in sorted(links, key=lambda link: link.child):
         # Parts before it stay where they are.
-        if link.is_guessed and hanging[link.parent] and labels[link.child] > part:
+        if link.kind is LinkKind.GUESSED and hanging[link.parent] and labels[link.child] > part:
             hanging |= labels == labels[link.child]
     return hanging
 

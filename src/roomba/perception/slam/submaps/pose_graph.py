@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import Enum
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -35,26 +36,37 @@ _HELD: Final = 1e-6
 """1/m2; a pose that no link holds stays where it is."""
 
 
+class LinkKind(Enum):
+    """What a link between two submaps was measured with."""
+
+    MATCHED = "matched"
+    """Their scans, which show the same walls. It may be wrong, as places look alike."""
+    DRIVEN = "driven"
+    """The robot was followed from one to the next."""
+    GUESSED = "guessed"
+    """Dead reckoning, or less, from one to the next: no scan confirmed the way."""
+    TOLD = "told"
+    """A reported pose: that of the child on the map, seen from the submap nearest to it."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Link:
     """A measurement: the pose of ``child`` in the frame of ``parent``.
 
     ``relative`` is float64 [3], x, y, theta; ``information`` float64 [3, 3], the inverse of its
-    covariance. A link that ``may_be_wrong`` loses weight when all others contradict it. One that
-    ``is_guessed`` says where the child is thought to lie, though no scan confirmed the way to it.
+    covariance.
     """
 
     parent: int
     child: int
     relative: Floats
     information: Floats
-    may_be_wrong: bool = True
-    is_guessed: bool = False
+    kind: LinkKind = LinkKind.MATCHED
 
     @property
-    def is_step(self) -> bool:
-        """Whether the robot was followed from one submap to the next."""
-        return self.child == self.parent + 1 and not (self.may_be_wrong or self.is_guessed)
+    def may_be_wrong(self) -> bool:
+        """Whether it loses weight when all others contradict it."""
+        return self.kind is LinkKind.MATCHED
 
 
 class Measurements(NamedTuple):

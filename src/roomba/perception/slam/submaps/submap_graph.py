@@ -26,6 +26,7 @@ from roomba.perception.slam.submaps.parts import (
 )
 from roomba.perception.slam.submaps.pose_graph import (
     Link,
+    LinkKind,
     composed,
     inverse,
     optimised,
@@ -104,7 +105,7 @@ class SubmapGraph:
         """Begin a submap at a pose of the newest one, [3]; ``way`` is what was driven in all, m."""
         information = self._driven(way - self.newest.way)
         count = len(self.submaps)
-        self.links.append(Link(count - 1, count, relative.copy(), information, False))
+        self.links.append(Link(count - 1, count, relative.copy(), information, LinkKind.DRIVEN))
         self._add(self.placed(relative), way)
 
     def begin_piece(
@@ -128,7 +129,7 @@ class SubmapGraph:
         away = piece.deviation + piece.share * unsure_way
         turn = piece.heading_deviation + piece.share * unsure_turn
         information = _information(away, turn)
-        self.links.append(Link(count - 1, count, relative.copy(), information, False, True))
+        self.links.append(Link(count - 1, count, relative.copy(), information, LinkKind.GUESSED))
         self._add(self.placed(relative), way)
 
     def begin_at(self, pose: Floats, way: float) -> None:
@@ -137,7 +138,7 @@ class SubmapGraph:
         relative = relative_to(self.poses[parent : parent + 1], pose[None])[0]
         piece = self._config.pieces
         information = _information(piece.told_deviation, piece.told_heading_deviation)
-        self.links.append(Link(parent, len(self.submaps), relative, information, False))
+        self.links.append(Link(parent, len(self.submaps), relative, information, LinkKind.TOLD))
         self._add(pose, way)
 
     def close(self) -> None:
@@ -197,7 +198,7 @@ class SubmapGraph:
         # What was guessed of where it lies holds no more.
         known = [
             _as_lies(link, poses)
-            if link.is_guessed and moved[link.parent] != moved[link.child]
+            if link.kind is LinkKind.GUESSED and moved[link.parent] != moved[link.child]
             else link
             for link in self.links
         ]
@@ -245,7 +246,7 @@ class SubmapGraph:
 
         A way ends where it was carried, or its place was lost.
         """
-        followed = {link.child for link in self.links if link.is_step}
+        followed = {link.child for link in self.links if link.kind is LinkKind.DRIVEN}
         ways = list[list[Floats]]()
         for number, (submap, pose) in enumerate(zip(self.submaps, self.poses, strict=True)):
             if number not in followed:

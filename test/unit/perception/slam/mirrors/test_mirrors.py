@@ -204,10 +204,14 @@ def test_a_mirror_that_it_saw_itself_in_from_afar_alone_is_known() -> None:
     assert len(mirrors) == 1
 
 
-def test_a_robot_that_was_carried_over_its_line_has_not_driven_through() -> None:
+@pytest.mark.parametrize("is_told", [False, True])
+def test_a_robot_that_was_carried_over_its_line_has_not_driven_through(is_told: bool) -> None:
     frames = MirrorRoom().drive((0.6, 0.6), (3.4, 0.5), (1.8, 0.4), (1.8, 2.4))
     graph = graph_of(frames)
-    graph.begin_piece(np.zeros(3), 10.0, 0.1, 0.1, carried=Carried.TOLD)
+    if is_told:
+        graph.begin_at(np.zeros(3), 10.0)
+    else:
+        graph.begin_piece(np.zeros(3), 10.0, 0.1, 0.1, carried=Carried.TOLD)
     graph.poses[-1] = 0.0
     add(graph, [(frames[-1][0], np.array([1.8, HEIGHT + 0.3, 0.0]))])
     mirrors = Mirrors(graph)

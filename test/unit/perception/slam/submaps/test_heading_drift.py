@@ -9,7 +9,7 @@ import pytest
 
 from roomba.arrays import Floats
 from roomba.perception.slam.submaps.heading_drift import heading_drift
-from roomba.perception.slam.submaps.pose_graph import Link
+from roomba.perception.slam.submaps.pose_graph import Link, LinkKind
 
 STEP = 3.0
 """m; way from one submap to the next."""
@@ -26,7 +26,7 @@ def straight(off: float = 0.0) -> tuple[Floats, list[Link]]:
     poses = np.zeros((COUNT, 3))
     poses[:, 0] = WAYS
     links = [
-        Link(child - 1, child, np.array([STEP, 0.0, (-1) ** child * off]), SURE, False)
+        Link(child - 1, child, np.array([STEP, 0.0, (-1) ** child * off]), SURE, LinkKind.DRIVEN)
         for child in range(1, COUNT)
     ]
     return poses, links
@@ -74,12 +74,22 @@ def test_matches_of_neighbours_say_nothing_new() -> None:
 
 def test_what_is_guessed_does_not_count_unless_a_match_joins_it() -> None:
     poses, links = straight()
-    links[9] = Link(9, 10, links[9].relative, ROUGH, False, True)
+    links[9] = Link(9, 10, links[9].relative, ROUGH, LinkKind.GUESSED)
     apart = heading_drift(poses, WAYS, links)
     assert apart.way == WAYS[9]
     joined = heading_drift(poses, WAYS, [*links, match(8, 10)])
     assert joined.way == WAYS[-1]
     assert joined.deviation < 1.1 * LEAST * math.sqrt(WAYS[-1])
+
+
+def test_a_place_that_was_told_is_no_step_that_drifts() -> None:
+    poses, links = straight()
+    poses[10:, 2] = 1.0
+    turned = np.array([STEP, 0.0, 0.0])
+    links[9] = Link(9, 10, turned, SURE, LinkKind.TOLD)
+    told = heading_drift(poses, WAYS, links)
+    assert told.way == WAYS[-1]
+    assert told.deviation == pytest.approx(LEAST * math.sqrt(WAYS[-1] - STEP), rel=0.01)
 
 
 def test_a_single_submap_is_not_bent() -> None:

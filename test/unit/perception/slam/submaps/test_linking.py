@@ -13,7 +13,7 @@ from fixtures.robots.mapped import FURNISHED, points_of, row
 from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose, wrap_angle
 from roomba.perception.slam.submaps.linking import Linker
-from roomba.perception.slam.submaps.pose_graph import Link, relative_to
+from roomba.perception.slam.submaps.pose_graph import Link, LinkKind, relative_to
 from roomba.perception.slam.submaps.submap import Keyframe, Submap
 from roomba.world.home.home import Home
 
@@ -50,7 +50,13 @@ def driven(poses: list[Pose]) -> list[Link]:
     """What links a chain of poses, as they are thought to be."""
     rows = np.array([row(pose) for pose in poses])
     return [
-        Link(at, at + 1, relative_to(rows[at : at + 1], rows[at + 1 : at + 2])[0], KNOWN, False)
+        Link(
+            at,
+            at + 1,
+            relative_to(rows[at : at + 1], rows[at + 1 : at + 2])[0],
+            KNOWN,
+            LinkKind.DRIVEN,
+        )
         for at in range(len(poses) - 1)
     ]
 
@@ -128,7 +134,7 @@ def test_the_shortest_chain_of_links_tells_how_far_it_may_have_drifted(
     submaps = [submap(HERE), Submap(0.0), Submap(0.0), submap(THERE, seed=1)]
     around = ((0, 1), (1, 3))
     for ends, count in ((around, 1), ((*around, *shortcut), 0)):
-        links = [Link(*each, np.zeros(3), KNOWN, False) for each in ends]
+        links = [Link(*each, np.zeros(3), KNOWN, LinkKind.DRIVEN) for each in ends]
         assert len(linked(submaps, thought, links)) == count
 
 

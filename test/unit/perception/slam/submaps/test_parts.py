@@ -17,7 +17,7 @@ from roomba.geometry import Pose
 from roomba.perception.matching.pose_kernels import is_apart
 from roomba.perception.slam.submaps import parts
 from roomba.perception.slam.submaps.parts import found_part, hanging_on, part_labels
-from roomba.perception.slam.submaps.pose_graph import Link
+from roomba.perception.slam.submaps.pose_graph import Link, LinkKind
 from roomba.perception.slam.submaps.submap import Keyframe, Submap
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
 from roomba.world.home.home import Home
@@ -30,7 +30,9 @@ CARRIED = Pose(2.5, -1.0, 1.9)
 
 
 def link(parent: int, child: int, *, guessed: bool = False) -> Link:
-    return Link(parent, child, np.zeros(3), np.eye(3), False, guessed)
+    return Link(
+        parent, child, np.zeros(3), np.eye(3), LinkKind.GUESSED if guessed else LinkKind.DRIVEN
+    )
 
 
 def submap(at: Pose, home: Home, frames: int = 10) -> Submap:
@@ -115,8 +117,7 @@ def test_the_graph_lays_a_part_and_what_hangs_on_it_where_it_was_found() -> None
             one + 1,
             row(relative(graph.poses, one)),
             np.diag([weight, weight, 1e4]),
-            False,
-            weight < 1e4,
+            LinkKind.GUESSED if weight < 1e4 else LinkKind.DRIVEN,
         )
         for one, weight in enumerate((1e4, 4.0, 1e4, 4.0))
     ]

@@ -17,6 +17,7 @@ from roomba.angles import wrap_angles
 from roomba.geometry import Pose
 from roomba.perception.slam.submaps.pose_graph import (
     Link,
+    LinkKind,
     composed,
     optimised,
     relative_to,
@@ -26,10 +27,10 @@ SURE = np.diag([1e4, 1e4, 1e5])
 rows = arrays.arrays(np.float64, (4, 3), elements=st.floats(-3.0, 3.0))
 
 
-def link(truth: Floats, parent: int, child: int, *, may_be_wrong: bool = True) -> Link:
+def link(truth: Floats, parent: int, child: int, kind: LinkKind = LinkKind.MATCHED) -> Link:
     """A measurement without error."""
     relative = relative_to(truth[parent : parent + 1], truth[child : child + 1])[0]
-    return Link(parent, child, relative, SURE, may_be_wrong)
+    return Link(parent, child, relative, SURE, kind)
 
 
 def ring(count: int = 12, radius: float = 3.0) -> Floats:
@@ -40,7 +41,7 @@ def ring(count: int = 12, radius: float = 3.0) -> Floats:
 
 
 def chain(truth: Floats) -> list[Link]:
-    return [link(truth, at, at + 1, may_be_wrong=False) for at in range(len(truth) - 1)]
+    return [link(truth, at, at + 1, LinkKind.DRIVEN) for at in range(len(truth) - 1)]
 
 
 def away(poses: Floats, truth: Floats) -> float:
@@ -90,8 +91,7 @@ def test_drift_around_a_loop_is_spread_over_it() -> None:
     seen = np.diag([0.004**-2, 0.004**-2, 0.0015**-2])
     bent = np.array([0.005, 0.0, 0.002])
     links = [
-        Link(at.parent, at.child, at.relative + bent, drive, may_be_wrong=False)
-        for at in chain(truth)
+        Link(at.parent, at.child, at.relative + bent, drive, LinkKind.DRIVEN) for at in chain(truth)
     ]
     drifted = [truth[:1]]
     for at in links:
@@ -115,7 +115,7 @@ def test_a_wrong_loop_is_outvoted(error: float) -> None:
     start[0] = truth[0]
     assert away(optimised(start, [*chain(truth), *right, wrong]), truth) < 0.005
     # Were it beyond doubt it would bend everything.
-    believed = Link(2, 8, wrong.relative, SURE, may_be_wrong=False)
+    believed = Link(2, 8, wrong.relative, SURE, LinkKind.DRIVEN)
     assert away(optimised(start, [*chain(truth), *right, believed]), truth) > 0.05
 
 

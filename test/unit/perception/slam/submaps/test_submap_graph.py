@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.perception.slam.finishing.finish import align_axes
+from roomba.perception.slam.submaps.pose_graph import LinkKind
 from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
 
@@ -56,7 +57,7 @@ def test_each_submap_begins_where_the_one_before_says_and_is_tied_to_it(
         here = (place.real, place.imag, theta)
         assert_same(graph.poses[-1], place, theta)
         link = graph.links[-1]
-        assert (link.parent, link.child, link.may_be_wrong) == (number, number + 1, False)
+        assert (link.parent, link.child, link.kind) == (number, number + 1, LinkKind.DRIVEN)
         assert tuple(link.relative) == relative
         # What was driven grows unsure with its square root, but never sure of everything.
         sure = 1.0 / (LOCALIZATION.way_noise**2 * max(driven, 0.1))
@@ -79,7 +80,7 @@ def test_a_place_that_was_told_is_tied_to_the_submap_nearest_to_it(
     link = graph.links[-1]
     away = [math.dist(pose[:2], told[:2]) for pose in poses.tolist()]
     assert away[link.parent] == min(away)
-    assert link.child == len(poses)
+    assert (link.child, link.kind) == (len(poses), LinkKind.TOLD)
     x, y, theta = poses[link.parent].tolist()
     assert placed((x, y, theta), tuple(link.relative.tolist())) == pytest.approx(
         complex(told[0], told[1])
