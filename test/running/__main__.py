@@ -14,7 +14,7 @@ from running.alone import listing
 from running.background import Background
 from running.pytests import pytest_command
 from running.robots import Robots
-from running.suites import FIRST, ROOT, Asked, Kind, asked_for
+from running.suites import FIRST, ROOT, Asked, Kind, asked_for, usage
 
 from roomba.commands.process_end import quiet_end
 
@@ -42,6 +42,9 @@ class Computing:
 
 def main(words: list[str]) -> int:
     """Run what is asked for; return 0 if all of it passed."""
+    if words[:1] in (["-h"], ["--help"]):
+        print(usage())
+        return 0
     asked = asked_for(words)
     if asked.thorough:
         be_thorough()

@@ -122,5 +122,17 @@ def asked_for(words: list[str]) -> Asked:
     return Asked(BY_DEFAULT, tuple(rest), thorough)
 
 
+def usage() -> str:
+    """Return how the command is called, and which suites there are."""
+    named = " ".join(name for name, suite in SUITES.items() if suite.by_name_only)
+    return (
+        "usage: ./roomba test [quick|thorough] [SUITE ...] [ARGUMENT ...]\n\n"
+        f"suites: {' '.join(BY_DEFAULT)} (all of these if none is named)\n"
+        f"only when named: {named}\n"
+        "quick: lint, and the unit tests that are not slow; thorough: all cases and examples\n"
+        "arguments, and files of tests, go to pytest: ./roomba test unit -k dock"
+    )
+
+
 def _is_path(word: str) -> bool:
     return not word.startswith("-") and Path(word.partition("::")[0]).exists()

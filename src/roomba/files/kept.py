@@ -12,6 +12,7 @@ that turns out to be damaged is set aside as ``NAME.damaged``, and the one befor
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import os
 import re
@@ -76,14 +77,18 @@ def before_of(path: Path) -> Path:
     return path.with_name(path.name + _BEFORE)
 
 
-def write_kept(path: Path, content: bytes, version: int = 1) -> None:
-    """Write a file that the robot keeps, atomically; raises OSError when the disk refuses.
+def write_kept(path: Path, content: bytes, version: int = 1, *, most: int = MOST_BYTES) -> None:
+    """Write a file that the robot keeps, atomically.
 
-    The one from before is kept beside it, unless it is damaged.
+    The one from before is kept beside it, unless it is damaged. Raises OSError, and writes nothing,
+    when the disk refuses, and for more than the ``most`` bytes that are read again.
     """
-    if _is_whole(path):
-        _link(path, before_of(path))
-    write_whole(path, sealed(content, version))
+    whole = sealed(content, version)
+    if len(whole) > most:
+        raise OSError(errno.EFBIG, f"expected at most {most} bytes, got {len(whole)}", str(path))
+    if _is_whole(path, most):
+        _link(path, before_of(path), most)
+    write_whole(path, whole)
 
 
 def read_kept(
@@ -109,7 +114,7 @@ def read_kept(
     found = _generation_before(path, parse, trouble, version, most)
     with contextlib.suppress(OSError):
         # The next reader must not find none.
-        _link(before_of(path), path)
+        _link(before_of(path), path, most)
     tell(f"{trouble}; the one from before is used")
     return found
 
@@ -153,10 +158,10 @@ def _place(content: bytes) -> int:
     return len(_PGM) if content.startswith(_PGM) else 0
 
 
-def _is_whole(path: Path) -> bool:
+def _is_whole(path: Path, most: int) -> bool:
     """Whether a file is as it was sealed; one without a seal counts while there is none before."""
     try:
-        content, seal = _parted(read_bytes(path))
+        content, seal = _parted(read_bytes(path, most))
     except OSError:
         return False
     if seal is None:
@@ -164,7 +169,7 @@ def _is_whole(path: Path) -> bool:
     return hashlib.sha256(content).hexdigest() == seal.group(2).decode()
 
 
-def _link(path: Path, other: Path) -> None:
+def _link(path: Path, other: Path, most: int) -> None:
     """Let ``other`` be the same file; the content is not written again."""
     new = other.with_name(f".{other.name}-{secrets.token_hex(8)}")
     try:
@@ -174,7 +179,7 @@ def _link(path: Path, other: Path) -> None:
         # A file system without hard links.
         with contextlib.suppress(FileNotFoundError):
             new.unlink()
-        write_whole(other, read_bytes(path))
+        write_whole(other, read_bytes(path, most))
 
 
 def _reason(error: BaseException) -> str:

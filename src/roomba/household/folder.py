@@ -54,6 +54,6 @@ class KeptValues:
         return otherwise if found is None else found
 
     def write(self, values: Frozen) -> None:
-        """Keep values; raises OSError when the disk refuses."""
+        """Keep values; raises OSError when the disk refuses, and for more than is read again."""
         text = json.dumps(values.model_dump(mode="json"), indent=1, allow_nan=False)
-        write_kept(self._path, text.encode() + b"\n")
+        write_kept(self._path, text.encode() + b"\n", most=_MOST_BYTES)

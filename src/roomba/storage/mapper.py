@@ -55,7 +55,7 @@ def save_mapper(kept: KeptMap, path: Path) -> None:
     """Write a map that is being made; raises OSError when the disk refuses."""
     packed = io.BytesIO()
     np.savez(packed, **_arrays_of(kept))
-    write_kept(path, packed.getvalue(), FORMAT)
+    write_kept(path, packed.getvalue(), FORMAT, most=_MOST_BYTES)
 
 
 def load_mapper(path: Path, tell: Callable[[str], object]) -> KeptMap | None:

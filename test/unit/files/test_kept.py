@@ -14,6 +14,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roomba.files.bounded import read_bytes
 from roomba.files.kept import (
     KeptFileError,
     SealError,
@@ -159,12 +160,13 @@ def test_a_damaged_file_does_not_become_the_one_before(tmp_path: Path, how: str)
     assert read_kept(path, parsed, lambda _: None) == b"number: 1\n"
 
 
+def refuse(*_: object, **__: object) -> None:
+    raise PermissionError(1, "Operation not permitted")
+
+
 def test_a_file_system_without_hard_links_has_a_copy(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def refuse(*_: object, **__: object) -> None:
-        raise PermissionError(1, "Operation not permitted")
-
     monkeypatch.setattr(os, "link", refuse)
     path = tmp_path / "map.yaml"
     write_kept(path, b"number: 1\n")
@@ -190,6 +192,26 @@ def test_a_writer_that_is_stopped_leaves_the_file_from_before(
     monkeypatch.undo()
     assert read(path) == b"number: 2\n"
     assert read(before_of(path)) in (b"number: 1\n", b"number: 2\n")
+
+
+@pytest.mark.parametrize("has_links", [False, True])
+def test_what_is_written_can_be_read_again_however_large(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, has_links: bool
+) -> None:
+    # All that reads the file for itself is to read as much.
+    monkeypatch.setattr(read_bytes, "__defaults__", (100,))
+    if not has_links:
+        monkeypatch.setattr(os, "link", refuse)
+    path = tmp_path / "large"
+    for content in (b"a" * 900, b"b" * 900):
+        write_kept(path, content, most=1000)
+    with pytest.raises(OSError, match="expected at most 1000 bytes, got 1081"):
+        write_kept(path, b"c" * 1000, most=1000)
+    assert read_kept(path, bytes, pytest.fail, most=1000) == b"b" * 900
+    damaged(path, "flipped")
+    told = list[str]()
+    assert read_kept(path, bytes, told.append, most=1000) == b"a" * 900
+    assert len(told) == 1
 
 
 def test_a_file_is_forgotten_with_the_one_before(tmp_path: Path) -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import pytest
-from running.suites import BY_DEFAULT, Kind, asked_for
+from running.__main__ import main
+from running.suites import BY_DEFAULT, SUITES, Kind, asked_for
 
 
 def test_without_a_word_all_suites_run_that_need_not_be_named() -> None:
@@ -51,3 +53,18 @@ def test_quick_leaves_out_what_is_slow() -> None:
     asked = asked_for(["quick", "-x"])
     assert asked.suites == ("lint", "unit")
     assert asked.arguments == ("-m", "not slow", "-x")
+
+
+@pytest.mark.parametrize("word", ["-h", "--help"])
+def test_help_names_all_suites_and_runs_none(
+    word: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def run(*_: object, **__: object) -> None:
+        pytest.fail("a suite began")
+
+    monkeypatch.setattr(subprocess, "run", run)
+    monkeypatch.setattr(subprocess, "Popen", run)
+    assert main([word]) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("usage: ./roomba test")
+    assert all(f" {name}" in told for name in SUITES)
