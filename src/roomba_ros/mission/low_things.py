@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from pathlib import Path
 
 import rospy
 from roomba_robot.msg import LowThingArray
@@ -11,11 +10,9 @@ from roomba_robot.srv import IgnoreLowThing, IgnoreLowThingRequest, IgnoreLowThi
 
 from roomba.mission.mission import Mission
 from roomba.perception.rooms.low_things import LowThings
-from roomba.storage.low_things import LowThingsError, load_low_things, save_low_things
-from roomba.storage.map_bound import map_file_name
 from roomba_ros.convert.mission import low_things_message
-from roomba_ros.mission.known_home import GROWING, KnownHome
-from roomba_ros.runtime.background import Background
+from roomba_ros.mission.felt_on_maps import FeltOnMaps
+from roomba_ros.mission.known_home import KnownHome
 
 
 class LowThingTopics:
@@ -24,9 +21,9 @@ class LowThingTopics:
     Services: ``ignore_low_thing`` (IgnoreLowThing). What was felt is saved at once.
     """
 
-    def __init__(self, background: Background, folder: Path) -> None:
-        """Connect nothing yet; files are kept in ``folder``, by the maps' digests."""
-        self._background, self._folder = background, folder
+    def __init__(self, memory: FeltOnMaps[LowThings]) -> None:
+        """Connect nothing yet."""
+        self._memory = memory
         self._lock = threading.Lock()
         self._mission: Mission | None = None
         self._digest = ""
@@ -43,37 +40,16 @@ class LowThingTopics:
         with self._lock:
             if mission is not self._mission:
                 self._mission, self._digest = mission, home.digest
-                self._kept = self._recalled(home)
+                self._kept = self._memory.recalled(home)
                 mission.obstacles.low = self._kept
             if mission.obstacles.low is not self._kept or home.digest != self._digest:
                 self._kept, self._digest = mission.obstacles.low, home.digest
-                self._keep(home)
+                self._memory.keep(home, self._kept)
         said = (self._kept, mission.context.zones)
         if said != self._told:
             self._told = said
             offers = mission.obstacles.offered_zones(mission.context.zones)
             self._publisher.publish(low_things_message(now, offers, "map"))
-
-    def _recalled(self, home: KnownHome) -> LowThings:
-        if home.digest == GROWING:
-            return LowThings()
-        try:
-            return load_low_things(self._path(), home.context.occupancy, rospy.logwarn)
-        except LowThingsError as error:
-            rospy.logwarn("what was felt before is felt anew: %s", error)
-            return LowThings()
-
-    def _keep(self, home: KnownHome) -> None:
-        """Save what was felt; a map that is being made is no map to save it for."""
-        if home.digest == GROWING:
-            return
-        things, occupancy, path = self._kept, home.context.occupancy, self._path()
-        self._background.do(
-            "what was felt is not remembered", lambda: save_low_things(things, occupancy, path)
-        )
-
-    def _path(self) -> Path:
-        return self._folder / f"{map_file_name(self._digest)}.low_things.yaml"
 
     def _on_ignore(self, request: IgnoreLowThingRequest) -> IgnoreLowThingResponse:
         with self._lock:

@@ -20,6 +20,7 @@ from roomba.storage.free_space import require_free_space
 from roomba.vocabulary import Phase, listed
 from roomba_ros.mission.carpets import CarpetTopics
 from roomba_ros.mission.drive import MissionDrive
+from roomba_ros.mission.felt_on_maps import CARPETS, LOW_THINGS, FeltOnMaps
 from roomba_ros.mission.goals import Ended
 from roomba_ros.mission.home import HomeTopics
 from roomba_ros.mission.known_home import GROWING, KnownHome
@@ -104,16 +105,17 @@ class MissionNode:
         self._finished = -self._nodes.periods.finish
         self._looked_at_disk = -math.inf
         self._senses = HeardSenses(self._config, self._nodes.hearing, *_HEARD)
+        zones_folder = folder_of("~zones_folder", "zones")
         self._context = HomeTopics(
             self._config,
             self._mission_config,
             docking,
             self._nodes.deadlines,
             self._background,
-            folder_of("~zones_folder", "zones"),
+            zones_folder,
         )
-        self._low_things = LowThingTopics(self._background, folder_of("~zones_folder", "zones"))
-        self._carpets = CarpetTopics(self._background, folder_of("~zones_folder", "zones"))
+        self._low_things = LowThingTopics(FeltOnMaps(LOW_THINGS, self._background, zones_folder))
+        self._carpets = CarpetTopics(FeltOnMaps(CARPETS, self._background, zones_folder))
         self._drive = MissionDrive(self._config, self._nodes.deadlines.ending)
         self._orders = MissionOrders(self._drive.take, self._nodes.deadlines)
         self._topics = MissionTopics(self._mission_config, self._nodes.periods, self._background)
