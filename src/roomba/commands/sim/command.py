@@ -17,8 +17,8 @@ from roomba.commands.options import UsageError
 from roomba.commands.output import named_table, tell_tables, write_json
 from roomba.commands.process_end import quiet_loading
 from roomba.commands.progress import Show, progress
-from roomba.commands.sim.options import PROGRAM, SimOptions, options_of
-from roomba.commands.trials.trial import RANDOM, Trial
+from roomba.commands.sim.options import PROGRAM, SimOptions, options_of, repeating
+from roomba.commands.trials.trial import Trial
 from roomba.errors import RoombaError
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def _run(words: list[str], open_bag: BagOpener | None) -> int:
     if options.bag is not None and open_bag is None:
         raise UsageError(f"--bag: expected a Python with ROS, got none; call {PROGRAM} --bag")
     if options.homes is not None:
-        return _run_homes(options, options.homes)
+        return _run_homes(options, options.homes, words)
     return _run_one(options, open_bag, words)
 
 
@@ -118,7 +118,7 @@ def _tell_run(options: SimOptions, run: Run, context: PlanningContext) -> None:
         write_json(options.json, run_as_json(run, unreached))
 
 
-def _run_homes(options: SimOptions, homes: int) -> int:
+def _run_homes(options: SimOptions, homes: int, words: list[str]) -> int:
     with quiet_loading():
         from roomba.commands.first_use import require_compiled
         from roomba.commands.trials.many import figures_of, run_many
@@ -135,7 +135,7 @@ def _run_homes(options: SimOptions, homes: int) -> int:
             done = len(figures) + len(failures)
             bad = done - sum(each.is_completed for each in figures.values())
             show(done / homes, f"{done} of {homes}, {bad} not completed")
-    _tell_homes(options, figures, failures, time.monotonic() - began)
+    _tell_homes(options, figures, failures, time.monotonic() - began, repeating(words))
     is_fine = not failures and all(each.is_completed for each in figures.values())
     return COMPLETED if is_fine else ENDED_OTHERWISE
 
@@ -150,7 +150,11 @@ def _sort_in(
 
 
 def _tell_homes(
-    options: SimOptions, figures: dict[int, Figures], failures: dict[int, str], wall: float
+    options: SimOptions,
+    figures: dict[int, Figures],
+    failures: dict[int, str],
+    wall: float,
+    again: str,
 ) -> None:
     from roomba.commands.sim.json_file import runs_as_json
     from roomba.commands.sim.percentiles import percentiles_of
@@ -161,49 +165,9 @@ def _tell_homes(
     completed = sum(each.is_completed for each in figures.values())
     count = len(figures) + len(failures)
     ended = f"{completed} of {count} completed and docked, in {wall:.1f} s"
-    failed = failure_lines(figures, failures, _again(options.trial))
+    failed = failure_lines(figures, failures, again)
     rows = named_table([("homes", ended), *failed], dict.fromkeys(dict(failed), "red"))
     tell_tables([percentile_table(spread), rows], options.json, quiet=options.quiet)
     if options.json is not None:
         config = robot_config_of(options.trial)
         write_json(options.json, runs_as_json(figures, failures, spread, config, wall))
-
-
-def _again(trial: Trial) -> str:
-    """Return the command that repeats one of many runs, but for its seed."""
-    words = [*PROGRAM.split(), "--home", RANDOM]
-    usual = Trial(home=RANDOM)
-    if trial.sensors is not None:
-        words += ["--sensors", trial.sensors]
-    if trial.lidar is not None:
-        words += ["--lidar", trial.lidar]
-    if trial.wheels is not None:
-        words += ["--wheels", trial.wheels]
-    if trial.things:
-        words += ["--things", str(trial.things)]
-    if trial.shut_doors:
-        words.append("--shut-doors")
-    if trial.turned:
-        words += ["--turned", f"{trial.turned:g}"]
-    if trial.battery != usual.battery:
-        words += ["--battery", f"{trial.battery:g}"]
-    if trial.bin is not None:
-        words += ["--bin", f"{trial.bin:g}"]
-    if trial.empties_bin_after != usual.empties_bin_after:
-        words += ["--empty-after", f"{trial.empties_bin_after:g}"]
-    if trial.config is not None:
-        words += ["--config", str(trial.config)]
-    for name, path in trial.stages:
-        words += ["--plan", f"{name}={path}"]
-    request = trial.request
-    if request.mode is not usual.request.mode:
-        words += ["--mode", request.mode.value]
-    if request.passes != usual.request.passes:
-        words += ["--passes", str(request.passes)]
-    if request.fan is not usual.request.fan:
-        words += ["--fan", request.fan.name.lower()]
-    if request.carpets is not usual.request.carpets:
-        words += ["--carpets", request.carpets.value.replace(" ", "-")]
-    if request.edges is not usual.request.edges:
-        words += ["--edges", request.edges.value]
-    return shlex.join(words)

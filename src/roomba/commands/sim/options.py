@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import re
+import shlex
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -87,6 +88,20 @@ def options_of(arguments: list[str] | None) -> SimOptions:
     return SimOptions(
         trial, given.homes, given.json, given.plot, given.bag, given.quiet, given.keep and _CAN_KEEP
     )
+
+
+def repeating(words: list[str]) -> str:
+    """Return the command that repeats one of many runs, but for its seed: of ``words`` all the rest
+    is left out that tells how many they are, and where to.
+    """
+    of_many = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    for option in ("--homes", "--seed"):
+        of_many.add_argument(option)
+    of_many.add_argument("--json", nargs="?")
+    for option in ("--quiet", "--no-history"):
+        of_many.add_argument(option, action="store_true")
+    _, of_each = of_many.parse_known_args(words)
+    return shlex.join([*PROGRAM.split(), "--home", RANDOM, *of_each])
 
 
 def _parser() -> Parser:

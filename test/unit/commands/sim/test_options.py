@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import pytest
 
 from roomba.clean_request import CleanRequest
 from roomba.commands.options import UsageError
-from roomba.commands.sim.options import options_of
+from roomba.commands.sim.options import options_of, repeating
 from roomba.commands.trials.trial import MOST_THINGS, RANDOM, Trial
 from roomba.geometry import Pose
 from roomba.vocabulary import CleanMode, FanLevel
@@ -116,3 +117,21 @@ def test_what_cannot_be_is_refused_in_one_line(words: str) -> None:
 
 def test_as_many_things_as_a_world_takes_may_be_asked_for() -> None:
     assert MOST_THINGS == MOST_DISCS
+
+
+def test_the_command_that_repeats_one_of_many_runs_asks_for_the_same(tmp_path: Path) -> None:
+    config = tmp_path / "my robot.yaml"
+    config.touch()
+    of_each = (
+        *("--sensors", "ideal", "--lidar", "rplidar_a1", "--wheels", "worn", "--things", "2"),
+        *("--turned", "-1e-05", "--battery=0.5", "--bin", "40", "--empty-after", "7"),
+        *("--config", str(config), "--plan", "tour=mine:tour", "--shut-doors"),
+        *("--passes", "2", "--fan", "quiet", "--carpets", "as-elsewhere", "--edges", "last"),
+    )
+    of_many = ("--homes", "9", "--seed=4", "--json", "-", "--quiet", "--no-history")
+    words = [*of_many[:2], *of_each, *of_many[2:]]
+    again = shlex.split(repeating(words))
+    assert not {"--homes", "--seed=4", "--json", "--quiet"} & set(again)
+    one = options_of([*again[again.index("--home") :], "--seed", "6"])
+    assert one.trial == options_of(words).trial.with_seed(6)
+    assert (one.homes, one.json) == (None, None)
