@@ -54,7 +54,7 @@ def write_whole(path: Path, content: bytes) -> None:
     try:
         _remove_left_behind(folder, path.name)
         # In the same folder: a file can take another's place only within one file system.
-        unfinished = f"{_prefix(path.name)}{secrets.token_hex(8)}"
+        unfinished = unfinished_name(path.name)
         try:
             _write_new(folder, unfinished, content)
             os.replace(unfinished, path.name, src_dir_fd=folder, dst_dir_fd=folder)
@@ -64,6 +64,14 @@ def write_whole(path: Path, content: bytes) -> None:
         os.fsync(folder)
     finally:
         os.close(folder)
+
+
+def unfinished_name(name: str) -> str:
+    """Return a new name for a version of a file that is not finished, in the same folder.
+
+    One that a killed writer left behind is removed by a later one.
+    """
+    return f"{_prefix(name)}{secrets.token_hex(8)}"
 
 
 def _prefix(name: str) -> str:

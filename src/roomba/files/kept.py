@@ -6,41 +6,56 @@ line, which is a comment in YAML. The digest is that of all other bytes. A file 
 written before there were seals, or by another program; it is read as it is.
 
 Before a file is replaced, it becomes the generation before, ``NAME.before``, if it is whole. A file
-that turns out to be damaged is set aside as ``NAME.damaged``, and the one before is read.
+that turns out to be damaged is set aside as ``NAME.damaged``, and the one before takes its place.
 """
 
 from __future__ import annotations
 
-import contextlib
 import errno
 import hashlib
 import os
 import re
-import secrets
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final, TypeVar
 
 from roomba.errors import RoombaError
-from roomba.files.atomic import UNREADABLE, write_whole
+from roomba.files.atomic import UNREADABLE, unfinished_name, write_whole
 from roomba.files.bounded import MOST_BYTES, read_bytes
-from roomba.files.damaged import set_aside
+from roomba.files.damaged import aside_of, set_aside
 
 _SEAL: Final = re.compile(rb"# kept (\d{1,9}) sha256 ([0-9a-f]{64})\n")
 _LONGEST_SEAL: Final = 128
 _PGM: Final = b"P5\n"
 _ZIP: Final = b"PK\x03\x04"
 _BEFORE: Final = ".before"
+_NO_FILE: Final = (errno.EFBIG, errno.EINVAL, errno.EISDIR, errno.ELOOP)
+"""Of the disk's errors those that tell of something else in a file's place."""
 
 Content = TypeVar("Content")
 
 
 class SealError(RoombaError):
-    """A file whose seal and content do not belong together, or that a newer program wrote."""
+    """A file whose seal and content do not belong together."""
+
+
+class NewerFileError(SealError):
+    """A file that a newer program wrote."""
 
 
 class KeptFileError(RoombaError):
     """A kept file that cannot be used, and no generation before it that can."""
+
+
+class UnreadFileError(KeptFileError):
+    """A kept file that may be whole: the disk refuses it, or it is for a newer program.
+
+    Nothing was done to it; what is written now would take its place.
+    """
+
+
+class _DamagedError(Exception):
+    """What is wrong with a file that was read, or that is no file."""
 
 
 def sealed(content: bytes, version: int = 1) -> bytes:
@@ -54,7 +69,8 @@ def sealed(content: bytes, version: int = 1) -> bytes:
 def unsealed(content: bytes, version: int = 1) -> bytes:
     """Return a file's content without its seal.
 
-    Raises SealError if it is not what was sealed, or of a newer version than ``version``.
+    Raises SealError if it is not what was sealed, and its kind NewerFileError if it is of a newer
+    version than ``version``.
     """
     content, seal = _parted(content)
     if seal is None:
@@ -66,7 +82,7 @@ def unsealed(content: bytes, version: int = 1) -> bytes:
             "if you edited it, remove its line '# kept'"
         )
     if its_version > version:
-        raise SealError(
+        raise NewerFileError(
             f"expected version {version} or older, got {its_version}, which a newer program wrote"
         )
     return content
@@ -87,7 +103,7 @@ def write_kept(path: Path, content: bytes, version: int = 1, *, most: int = MOST
     if len(whole) > most:
         raise OSError(errno.EFBIG, f"expected at most {most} bytes, got {len(whole)}", str(path))
     if _is_whole(path, most):
-        _link(path, before_of(path), most)
+        _link(path, before_of(path), path.name, most)
     write_whole(path, whole)
 
 
@@ -103,20 +119,17 @@ def read_kept(
 
     Of a file that is damaged, or of which ``parse`` raises RoombaError or one of UNREADABLE, the
     generation before is used, and ``tell`` is told so in a sentence; the damaged one is set aside.
-    Raises KeptFileError, which names the file and the reason, if that one cannot be used either.
+    Raises KeptFileError, which names the file and the reason, if that one cannot be used either,
+    and its kind UnreadFileError, touching nothing, where the file may be whole all the same.
     """
     try:
-        return parse(unsealed(read_bytes(path, most), version))
+        return _content(path, parse, version, most)
     except FileNotFoundError:
         return None
-    except (*UNREADABLE, RoombaError) as error:
-        trouble = f"{path}: {_reason(error)}; {set_aside(path)}"
-    found = _generation_before(path, parse, trouble, version, most)
-    with contextlib.suppress(OSError):
-        # The next reader must not find none.
-        _link(before_of(path), path, most)
-    tell(f"{trouble}; the one from before is used")
-    return found
+    except _DamagedError as damage:
+        found = _generation_before(path, parse, str(damage), version, most)
+        tell(f"{path}: {damage}; {_put_back(path, most)}; the one from before is used")
+        return found
 
 
 def remove_kept(path: Path) -> None:
@@ -125,18 +138,54 @@ def remove_kept(path: Path) -> None:
     path.unlink(missing_ok=True)
 
 
+def _content(path: Path, parse: Callable[[bytes], Content], version: int, most: int) -> Content:
+    """Return what a file holds; raises FileNotFoundError, UnreadFileError and _DamagedError."""
+    try:
+        content = read_bytes(path, most)
+    except FileNotFoundError:
+        raise
+    except OSError as error:
+        if error.errno in _NO_FILE:
+            raise _DamagedError(_reason(error)) from error
+        raise UnreadFileError(
+            f"{path}: expected a file that can be read: {_to_do(error)}"
+        ) from error
+    try:
+        return parse(unsealed(content, version))
+    except NewerFileError as error:
+        raise UnreadFileError(f"{path}: {error}; start that one, or move the file away") from error
+    except (*UNREADABLE, RoombaError) as error:
+        raise _DamagedError(_reason(error)) from error
+
+
 def _generation_before(
-    path: Path, parse: Callable[[bytes], Content], trouble: str, version: int, most: int
+    path: Path, parse: Callable[[bytes], Content], damage: str, version: int, most: int
 ) -> Content:
+    """Return that of a damaged file; where there is none that can be used, both are set aside."""
     before = before_of(path)
     try:
-        return parse(unsealed(read_bytes(before, most), version))
+        return _content(before, parse, version, most)
     except FileNotFoundError:
-        raise KeptFileError(trouble) from None
-    except (*UNREADABLE, RoombaError) as error:
+        raise KeptFileError(f"{path}: {damage}; {set_aside(path)}") from None
+    except _DamagedError as error:
         raise KeptFileError(
-            f"{trouble}; neither can {before.name} be used: {_reason(error)}; {set_aside(before)}"
+            f"{path}: {damage}; {set_aside(path)}; neither can {before.name} be used: {error}; "
+            f"{set_aside(before)}"
         ) from error
+
+
+def _put_back(path: Path, most: int) -> str:
+    """Put the generation before in a damaged file's place; return what became of that one.
+
+    A reader that comes between the two steps finds the damaged one still, and never none.
+    """
+    aside = aside_of(path)
+    try:
+        _link(path, aside, path.name, most)
+        _link(before_of(path), path, path.name, most)
+    except OSError as cause:
+        return f"it cannot be set aside: {cause}"
+    return f"it is set aside as {aside.name}"
 
 
 def _parted(content: bytes) -> tuple[bytes, re.Match[bytes] | None]:
@@ -169,17 +218,29 @@ def _is_whole(path: Path, most: int) -> bool:
     return hashlib.sha256(content).hexdigest() == seal.group(2).decode()
 
 
-def _link(path: Path, other: Path, most: int) -> None:
-    """Let ``other`` be the same file; the content is not written again."""
-    new = other.with_name(f".{other.name}-{secrets.token_hex(8)}")
+def _link(path: Path, other: Path, name: str, most: int) -> None:
+    """Let ``other``, beside the file ``name``, be the same; the content is not written again.
+
+    What a killed program leaves behind is removed when the file ``name`` is written.
+    """
+    new = other.with_name(unfinished_name(name))
     try:
         os.link(path, new, follow_symlinks=False)
-        os.replace(new, other)
+        try:
+            os.replace(new, other)
+        finally:
+            # Where the two are one file already, nothing is replaced.
+            new.unlink(missing_ok=True)
     except OSError:
         # A file system without hard links.
-        with contextlib.suppress(FileNotFoundError):
-            new.unlink()
         write_whole(other, read_bytes(path, most))
+
+
+def _to_do(error: OSError) -> str:
+    """Return why the disk refuses a file, and what a person can do."""
+    if error.errno in (errno.EACCES, errno.EPERM):
+        return f"{_reason(error)}; give it to the user of this program (chown), or move it away"
+    return f"{_reason(error)}; it is left as it is, try again"
 
 
 def _reason(error: BaseException) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 from collections.abc import Callable, Mapping
@@ -10,7 +11,7 @@ from typing import Final, TypeVar
 
 from roomba.configuration.frozen import Frozen, validated
 from roomba.errors import RoombaError
-from roomba.files.kept import read_kept, write_kept
+from roomba.files.kept import UnreadFileError, read_kept, write_kept
 from roomba.files.plain_json import load_json
 from roomba.files.state_folder import state_folder
 
@@ -34,11 +35,15 @@ def household_folder(environment: Mapping[str, str] | None = None) -> Path:
 
 
 class KeptValues:
-    """Values of one model in one file; a damaged file gives way to the one before, and is told."""
+    """Values of one model in one file; a damaged file gives way to the one before, and is told.
+
+    A file that the disk refuses, or that a newer program wrote, is not written over.
+    """
 
     def __init__(self, path: Path, tell: Tell) -> None:
         """Touch nothing yet."""
         self._path, self._tell = path, tell
+        self._unread: UnreadFileError | None = None
 
     def read(self, otherwise: _Kept) -> _Kept:
         """Return what was kept, a model as ``otherwise``, and that where nothing can be read."""
@@ -46,14 +51,24 @@ class KeptValues:
         def parse(content: bytes) -> _Kept:
             return validated(type(otherwise), load_json(content.decode("utf-8")), "")
 
+        self._unread = None
         try:
             found = read_kept(self._path, parse, self._tell, most=_MOST_BYTES)
+        except UnreadFileError as error:
+            self._unread = error
+            self._tell(f"{error}; until this program is started again nothing is kept there")
+            return otherwise
         except RoombaError as error:
             self._tell(f"{error}; it begins anew")
             found = None
         return otherwise if found is None else found
 
     def write(self, values: Frozen) -> None:
-        """Keep values; raises OSError when the disk refuses, and for more than is read again."""
+        """Keep values; raises OSError when the disk refuses, and for more than is read again.
+
+        It does so, too, where :meth:`read` could not read what is there.
+        """
+        if self._unread is not None:
+            raise OSError(errno.EPERM, f"not kept: {self._unread}")
         text = json.dumps(values.model_dump(mode="json"), indent=1, allow_nan=False)
         write_kept(self._path, text.encode() + b"\n", most=_MOST_BYTES)
