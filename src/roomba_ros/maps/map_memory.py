@@ -25,7 +25,9 @@ from roomba_ros.runtime.background import Background
 
 FOLDER: Final = ".being_made"
 """In the maps' folder, where no map's name can be."""
+_BEING_MADE: Final = "being made"
 _WHOLE: Final = "whole"
+"""What of the memory's work the newest alone is done of; the second is its folder, too."""
 
 
 class MapMemory:
@@ -98,15 +100,17 @@ class MapMemory:
         self._background.do(
             "the map that is being made is not remembered",
             lambda: self._save(kept),
+            subject=_BEING_MADE,
         )
 
     def forget(self) -> None:
-        """Forget the map that was being made, at once: it is whole, or another one is begun."""
+        """Forget the map that was being made, soon: it is whole, or another one is begun."""
         self._kept = (-1, False)
-        try:
-            remove_mapper(self._path)
-        except OSError as error:
-            rospy.logwarn("the map that was being made is not forgotten: %s", error)
+        self._background.do(
+            "the map that was being made is not forgotten",
+            lambda: remove_mapper(self._path),
+            subject=_BEING_MADE,
+        )
 
     def recall_whole(self) -> StoredMap | None:
         """Return the whole map without a name that this run of the robot went by, if it did."""
@@ -119,7 +123,9 @@ class MapMemory:
     def keep_whole(self, stored: StoredMap) -> None:
         """Remember a whole map that has no name, soon, instead of the one that was being made."""
         self._background.do(
-            "the map that was made is not remembered", lambda: self._replace_by(stored)
+            "the map that was made is not remembered",
+            lambda: self._replace_by(stored),
+            subject=_WHOLE,
         )
 
     def _replace_by(self, stored: StoredMap) -> None:
@@ -130,7 +136,7 @@ class MapMemory:
 
     def forget_whole(self) -> None:
         """Forget the whole map, soon: another one is begun, or it has a name by now."""
-        self._background.do("the whole map is not forgotten", self._remove_whole)
+        self._background.do("the whole map is not forgotten", self._remove_whole, subject=_WHOLE)
 
     def _remove_whole(self) -> None:
         for run in self._whole.names():

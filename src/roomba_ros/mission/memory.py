@@ -40,7 +40,6 @@ class MissionMemory:
         self._checkpoint = folder / f"{map_file_name(digest)}.json"
         self._dirt = folder / f"{map_file_name(digest)}.npz"
         self._config, self._background = config, background
-        self._not_forgotten = f"the errand is not forgotten in {self._checkpoint.name}"
         self._run = str(rospy.get_param("/run_id", ""))
         self._saved = 0.0
         self._last: tuple[Phase, Goal | None] | None = None
@@ -94,14 +93,19 @@ class MissionMemory:
                 lambda: save_checkpoint(
                     Checkpoint(values, taken_up, goal), self._run, self._checkpoint
                 ),
+                subject=self._checkpoint.name,
             )
         elif self._is_there:
             self._is_there = False
-            self._background.do(self._not_forgotten, lambda: remove_checkpoint(self._checkpoint))
+            self.forget_errand()
 
     def forget_errand(self) -> None:
-        """Forget the errand: the robot was given another map."""
-        self._background.do(self._not_forgotten, lambda: remove_checkpoint(self._checkpoint))
+        """Forget the errand: it is over, or the robot was given another map."""
+        self._background.do(
+            f"the errand is not forgotten in {self._checkpoint.name}",
+            lambda: remove_checkpoint(self._checkpoint),
+            subject=self._checkpoint.name,
+        )
 
     def keep_dirt(self, dirt: DirtMap) -> None:
         """Remember where it was dirty."""

@@ -1,4 +1,4 @@
-"""Work that must not hold up ticks: one thread, and of each kind of work only the newest.
+"""Work that must not hold up ticks: one thread, and of each subject only the newest work.
 
 What the disk refuses is told once and tried again, until it is done or newer work takes its place.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import threading
 import time
+import traceback
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
@@ -20,21 +21,29 @@ _TELL_AGAIN: Final = 60.0
 """s of wall time between two lines of the log about work that goes on being refused."""
 
 
+class _Work(NamedTuple):
+    """What is to be done; ``name`` says what fails then."""
+
+    name: str
+    do: Callable[[], object]
+
+
 class _Failed(NamedTuple):
     """Work that the disk refused: when it is due again, why it was, and when that was logged."""
 
-    work: Callable[[], object]
+    work: _Work
     due: float
     reason: str
     told: float
 
 
 class Background:
-    """Does what it is given, one after the other; what waits is replaced by newer of its name."""
+    """Does what it is given, one after the other; newer work of a subject replaces what waits."""
 
     def __init__(self) -> None:
         """Begin with nothing to do."""
-        self._waiting: dict[str, Callable[[], object]] = {}
+        self._waiting: dict[str, _Work] = {}
+        """By subject, as what failed."""
         self._failed: dict[str, _Failed] = {}
         self._news = threading.Condition()
         self._is_at_work = False
@@ -43,18 +52,23 @@ class Background:
         """Begin to work."""
         threading.Thread(target=self._run, name="background", daemon=True).start()
 
-    def do(self, name: str, work: Callable[[], object]) -> None:
-        """Do this soon, in place of what waits by the same name; ``name`` says what fails then."""
+    def do(self, name: str, work: Callable[[], object], subject: str = "") -> None:
+        """Do this soon, in place of what waits, or was refused, of its ``subject``.
+
+        ``name`` says what fails then, and is the subject where none is told.
+        """
+        subject = subject or name
         with self._news:
-            self._waiting.pop(name, None)
-            self._waiting[name] = work
+            self._waiting.pop(subject, None)
+            self._waiting[subject] = _Work(name, work)
             self._news.notify_all()
 
     @property
     def trouble(self) -> str:
         """What the disk refuses now, and why; empty when all is well."""
         with self._news:
-            return "; ".join(f"{name}: {failed.reason}" for name, failed in self._failed.items())
+            failures = self._failed.values()
+            return "; ".join(f"{failed.work.name}: {failed.reason}" for failed in failures)
 
     def wait(self, deadline: float) -> bool:
         """Return whether all is done, waiting so long for it at most, s of wall time."""
@@ -82,40 +96,43 @@ class Background:
         return max(0.0, min(failed.due for failed in self._failed.values()) - time.monotonic())
 
     def _take_due(self) -> None:
-        """Let work that was refused wait to be done again; newer work of its name is done first."""
-        for name, failed in self._failed.items():
+        """Let work that was refused wait to be done again, unless newer work takes its place."""
+        for subject, failed in self._failed.items():
             if time.monotonic() >= failed.due:
-                self._waiting.setdefault(name, failed.work)
+                self._waiting.setdefault(subject, failed.work)
 
     def _do_next(self) -> None:
         with self._news:
-            name = next(iter(self._waiting))
-            work = self._waiting.pop(name)
+            subject = next(iter(self._waiting))
+            work = self._waiting.pop(subject)
             self._is_at_work = True
         try:
-            work()
-            self._succeeded(name)
+            work.do()
+            self._succeeded(subject)
         except OSError as error:
-            self._refused(name, work, error)
+            self._refused(subject, work, error)
         except (RoombaError, ValueError, rospy.ROSException) as error:
-            rospy.logwarn("%s: %s", name, error)
+            rospy.logwarn("%s: %s", work.name, error)
+        except Exception:
+            # A fault of the program, or no memory: the next work is done all the same.
+            rospy.logerr("%s: %s", work.name, traceback.format_exc())
         finally:
             with self._news:
                 self._is_at_work = False
                 self._news.notify_all()
 
-    def _succeeded(self, name: str) -> None:
+    def _succeeded(self, subject: str) -> None:
         with self._news:
-            was_refused = self._failed.pop(name, None) is not None
-        if was_refused:
-            rospy.logwarn("this is over: %s", name)
+            failed = self._failed.pop(subject, None)
+        if failed is not None:
+            rospy.logwarn("this is over: %s", failed.work.name)
 
-    def _refused(self, name: str, work: Callable[[], object], error: OSError) -> None:
+    def _refused(self, subject: str, work: _Work, error: OSError) -> None:
         now = time.monotonic()
         with self._news:
-            before = self._failed.get(name)
+            before = self._failed.get(subject)
             is_told = before is not None and now - before.told < _TELL_AGAIN
             told = before.told if before is not None and is_told else now
-            self._failed[name] = _Failed(work, now + RETRY, str(error), told)
+            self._failed[subject] = _Failed(work, now + RETRY, str(error), told)
         if not is_told:
-            rospy.logerr("%s: %s; it is tried again", name, error)
+            rospy.logerr("%s: %s; it is tried again", work.name, error)

@@ -98,6 +98,36 @@ def test_other_faults_are_told_and_not_tried_again(lines: list[str]) -> None:
     assert (lines, tries, background.trouble) == (["no plan is shown: no such thing"], [1], "")
 
 
+def test_what_is_forgotten_does_not_come_back_when_there_is_room(lines: list[str]) -> None:
+    background, disk, kept = Background(), Disk(), ["errand"]
+    background.start()
+    background.do("it is not kept", disk.write("errand"), subject="errand")
+    wait_until(lambda: disk.tries > 1, 10.0, "it is tried again")
+    background.do("it is not forgotten", kept.clear, subject="errand")
+    wait_until(lambda: not kept, 10.0, "it is forgotten")
+    wait_until(lambda: background.trouble == "", 10.0, "nothing is left to be tried again")
+    disk.is_full = False
+    assert background.wait(10.0)
+    assert disk.kept == []
+
+
+@pytest.mark.parametrize("error", [MemoryError, ZeroDivisionError])
+def test_a_fault_of_the_program_is_told_and_ends_no_other_work(
+    lines: list[str], error: type[Exception]
+) -> None:
+    def fail() -> None:
+        raise error
+
+    background, done = Background(), threading.Event()
+    background.start()
+    background.do("no plan is shown", fail)
+    background.do("other work", done.set)
+    assert done.wait(10.0)
+    (line,) = lines
+    assert line.startswith("no plan is shown: Traceback")
+    assert error.__name__ in line
+
+
 def test_one_that_waits_is_woken(lines: list[str]) -> None:
     background, done = Background(), threading.Event()
     background.start()
