@@ -11,7 +11,15 @@ from pydantic import Field, field_validator
 from roomba.errors import RoombaError
 from roomba.grid import OccupancyMap
 from roomba.perception.rooms.felt_carpets import MOST_CARPETS, MOST_CORNERS, FeltCarpets
-from roomba.storage.map_bound import Entry, MapBound, Number, Tell, load_map_bound, save_map_bound
+from roomba.storage.map_bound import (
+    Entry,
+    MapBound,
+    Number,
+    Tell,
+    load_map_bound,
+    map_digest,
+    save_map_bound,
+)
 
 _COMMENT = "Carpets that the robot's brush felt: their corners, x and y in m, map frame."
 
@@ -38,7 +46,7 @@ class _CarpetFile(MapBound):
 def save_carpets(carpets: FeltCarpets, occupancy: OccupancyMap, path: Path) -> None:
     """Write the carpets of a map, atomically; raises OSError when the disk refuses."""
     entries: list[dict[str, object]] = [{"corners": corners} for corners in carpets.all]
-    save_map_bound(path, occupancy, "carpets", entries, _COMMENT)
+    save_map_bound(path, map_digest(occupancy), "carpets", entries, _COMMENT)
 
 
 def load_carpets(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) -> FeltCarpets:
@@ -48,7 +56,7 @@ def load_carpets(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) 
     Raises CarpetsError, which names the file and the reason, for a file that cannot be read or is
     of another map.
     """
-    file = load_map_bound(path, occupancy, _CarpetFile, "carpets", CarpetsError, tell)
+    file = load_map_bound(path, map_digest(occupancy), _CarpetFile, "carpets", CarpetsError, tell)
     if file is None:
         return FeltCarpets()
     return FeltCarpets(tuple(tuple(entry.corners) for entry in file.carpets))

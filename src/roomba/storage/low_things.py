@@ -10,7 +10,15 @@ from pydantic import Field
 from roomba.errors import RoombaError
 from roomba.grid import OccupancyMap
 from roomba.perception.rooms.low_things import MOST_LOW_THINGS, LowThing, LowThings
-from roomba.storage.map_bound import Entry, MapBound, Number, Tell, load_map_bound, save_map_bound
+from roomba.storage.map_bound import (
+    Entry,
+    MapBound,
+    Number,
+    Tell,
+    load_map_bound,
+    map_digest,
+    save_map_bound,
+)
 
 _COMMENT = "What was felt and never seen: lowest x, y, highest x, y in m, map frame; how often."
 
@@ -39,7 +47,7 @@ def save_low_things(things: LowThings, occupancy: OccupancyMap, path: Path) -> N
         }
         for thing in things.all
     ]
-    save_map_bound(path, occupancy, "low_things", entries, _COMMENT)
+    save_map_bound(path, map_digest(occupancy), "low_things", entries, _COMMENT)
 
 
 def load_low_things(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) -> LowThings:
@@ -49,7 +57,7 @@ def load_low_things(path: Path, occupancy: OccupancyMap, tell: Tell | None = Non
     Raises LowThingsError, which names the file and the reason, for a file that cannot be read or is
     of another map.
     """
-    file = load_map_bound(path, occupancy, _LowFile, "low things", LowThingsError, tell)
+    file = load_map_bound(path, map_digest(occupancy), _LowFile, "low things", LowThingsError, tell)
     if file is None:
         return LowThings()
     return LowThings(

@@ -14,7 +14,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from roomba.errors import RoombaError
 from roomba.files.bounded import read_bytes
 from roomba.files.kept import KeptFileError, read_kept, unsealed, write_kept
-from roomba.files.plain_yaml import load_yaml
+from roomba.files.plain_yaml import load_with_nodes
+from roomba.files.strict_yaml import repeated_key
 from roomba.geometry import FARTHEST
 from roomba.grid import OccupancyMap
 
@@ -63,27 +64,29 @@ def map_file_name(digest: str) -> str:
 
 
 def save_map_bound(
-    path: Path, occupancy: OccupancyMap, key: str, entries: list[dict[str, object]], comment: str
+    path: Path, digest: str, key: str, entries: list[dict[str, object]], comment: str
 ) -> None:
-    """Write a map's entries under ``key``, atomically.
+    """Write the entries of the map of a ``digest`` under ``key``, atomically.
 
     Raises OSError when the disk refuses.
     """
     # JSON is YAML, and 30 times as fast to write; one entry a line is as good to read.
     lines = [f"- {json.dumps(entry, ensure_ascii=False)}" for entry in entries]
-    head = [f"# {comment}", f"map: {map_digest(occupancy)}", f"{key}:" if lines else f"{key}: []"]
+    head = [f"# {comment}", f"map: {json.dumps(digest)}", f"{key}:" if lines else f"{key}: []"]
     write_kept(path, "\n".join([*head, *lines, ""]).encode())
 
 
 def load_map_bound(
     path: Path,
-    occupancy: OccupancyMap,
+    digest: str,
     kind: type[_File],
     what: str,
     error: type[RoombaError],
     tell: Tell | None = None,
 ) -> _File | None:
-    """Return a map's file, None if there is none; ``what`` is in it, in the plural, for people.
+    """Return the file of the map of a ``digest``, None if there is none.
+
+    ``what`` is in it, in the plural, for people.
 
     With ``tell`` a damaged file is set aside, and the one before is used, of which that is told.
     Raises ``error``, which names the file and the reason, for one that cannot be read or is of
@@ -92,7 +95,10 @@ def load_map_bound(
 
     def parse(content: bytes) -> _File:
         try:
-            return kind.model_validate(load_yaml(content.decode("utf-8")))
+            values, root = load_with_nodes(content.decode("utf-8"))
+            if repeated := repeated_key(root):
+                raise error(f"line {repeated.told}")
+            return kind.model_validate(values)
         except (UnicodeDecodeError, yaml.YAMLError) as cause:
             raise error(f"expected a file of {what} in YAML: {cause}") from cause
         except ValidationError as cause:
@@ -112,7 +118,7 @@ def load_map_bound(
         raise error(f"{path}: {cause}") from cause
     if file is None:
         return None
-    if file.map != map_digest(occupancy):
+    if file.map != digest:
         raise error(
             f"{path}: expected the {what} of this map, got those of another; remove the file, or "
             "bring its map back"

@@ -27,7 +27,7 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones, ZonesError
 from roomba.storage.carpets import CarpetsError, load_carpets, save_carpets
 from roomba.storage.low_things import LowThingsError, load_low_things, save_low_things
-from roomba.storage.map_bound import yaml_text
+from roomba.storage.map_bound import map_digest, yaml_text
 from roomba.storage.rooms import load_rooms, save_rooms
 from roomba.storage.zones import load_zones, save_zones
 
@@ -90,7 +90,7 @@ def write_map(stored: StoredMap, folder: Path) -> None:
     """
     try:
         write_floor(stored, folder)
-        save_zones(stored.zones, stored.occupancy, folder / ZONES_NAME)
+        save_zones(stored.zones, map_digest(stored.occupancy), folder / ZONES_NAME)
         if stored.low_things.all:
             save_low_things(stored.low_things, stored.occupancy, folder / LOW_THINGS_NAME)
         if stored.carpets.all:
@@ -130,7 +130,7 @@ def read_map(folder: Path) -> StoredMap:
     try:
         occupancy, station = read_floor(folder)
         rooms = load_rooms(folder / ROOMS_NAME, occupancy)
-        zones = load_zones(folder / ZONES_NAME, occupancy)
+        zones = load_zones(folder / ZONES_NAME, map_digest(occupancy))
         low_things = load_low_things(folder / LOW_THINGS_NAME, occupancy)
         carpets = load_carpets(folder / CARPETS_NAME, occupancy)
     except (HomeError, RoomsError, ZonesError, LowThingsError, CarpetsError, OSError) as error:

@@ -107,11 +107,13 @@ class MapStore:
         """Remove a map, also a broken one."""
         self._folder_of(name)
         self._tidy_up(name)
-        (self.folder / name).rename(self._beside(name, _GONE))
-        _wait_for_disk(self.folder)
-        for end in (_GONE, _BEFORE, _DAMAGED):
+        # The generations before go first: they must not stand behind a later map of this name.
+        for end in (_BEFORE, _DAMAGED):
             if _is_folder(self._beside(name, end)):
                 shutil.rmtree(self._beside(name, end))
+        (self.folder / name).rename(self._beside(name, _GONE))
+        _wait_for_disk(self.folder)
+        shutil.rmtree(self._beside(name, _GONE))
 
     def rename(self, name: str, new_name: str) -> None:
         """Give a map another name; raises MapStoreError if another map has it."""

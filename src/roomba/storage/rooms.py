@@ -11,7 +11,15 @@ from pydantic import Field
 from roomba.errors import RoomsError
 from roomba.grid import FREE, OccupancyMap
 from roomba.perception.rooms.rooms import Rooms
-from roomba.storage.map_bound import Entry, MapBound, Number, Tell, load_map_bound, save_map_bound
+from roomba.storage.map_bound import (
+    Entry,
+    MapBound,
+    Number,
+    Tell,
+    load_map_bound,
+    map_digest,
+    save_map_bound,
+)
 
 Ring = Annotated[
     list[Annotated[list[Number], Field(min_length=2, max_length=2)]], Field(min_length=4)
@@ -34,7 +42,9 @@ def save_rooms(rooms: Rooms, occupancy: OccupancyMap, path: Path) -> None:
     Raises OSError when the disk refuses.
     """
     entries = [_entry(rooms, label) for label in range(1, len(rooms.names) + 1)]
-    save_map_bound(path, occupancy, "rooms", entries, "Rooms of a map; lengths in m, map frame.")
+    save_map_bound(
+        path, map_digest(occupancy), "rooms", entries, "Rooms of a map; lengths in m, map frame."
+    )
 
 
 def load_rooms(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) -> Rooms | None:
@@ -44,7 +54,7 @@ def load_rooms(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) ->
     Raises RoomsError, which names the file and the reason, for a file that cannot be read or is of
     another map.
     """
-    file = load_map_bound(path, occupancy, _RoomsFile, "rooms", RoomsError, tell)
+    file = load_map_bound(path, map_digest(occupancy), _RoomsFile, "rooms", RoomsError, tell)
     if file is None:
         return None
     outlines = [(room.name, _polygon(path, room)) for room in file.rooms]

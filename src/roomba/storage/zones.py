@@ -6,7 +6,6 @@ from pathlib import Path
 
 from roomba.files.damaged import aside_of
 from roomba.files.kept import before_of
-from roomba.grid import OccupancyMap
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
 from roomba.storage.map_bound import Entry, MapBound, Number, Tell, load_map_bound, save_map_bound
 
@@ -23,8 +22,8 @@ class _ZonesFile(MapBound):
     zones: list[_ZoneEntry]
 
 
-def save_zones(zones: Zones, occupancy: OccupancyMap, path: Path) -> None:
-    """Write the zones of a map, atomically.
+def save_zones(zones: Zones, digest: str, path: Path) -> None:
+    """Write the zones of the map of a ``digest``, atomically.
 
     Raises OSError when the disk refuses.
     """
@@ -36,11 +35,11 @@ def save_zones(zones: Zones, occupancy: OccupancyMap, path: Path) -> None:
         }
         for zone in zones.all
     ]
-    save_map_bound(path, occupancy, "zones", entries, _COMMENT)
+    save_map_bound(path, digest, "zones", entries, _COMMENT)
 
 
-def load_zones(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) -> Zones:
-    """Return the zones that were saved for a map; none if there is no such file.
+def load_zones(path: Path, digest: str, tell: Tell | None = None) -> Zones:
+    """Return the zones that were saved for the map of a ``digest``; none if there is no such file.
 
     With ``tell`` a damaged file is set aside, and the one before is used, of which that is told.
     Raises ZonesError, which names the file and the reason, for a file that cannot be read, now or
@@ -48,7 +47,7 @@ def load_zones(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) ->
     """
     aside = aside_of(path)
     try:
-        file = load_map_bound(path, occupancy, _ZonesFile, "zones", ZonesError, tell)
+        file = load_map_bound(path, digest, _ZonesFile, "zones", ZonesError, tell)
     except ZonesError as error:
         was_set_aside = aside.exists() and not path.exists()
         raise ZonesError(f"{error}{_to_do(path)}" if was_set_aside else str(error)) from error

@@ -22,6 +22,7 @@ from roomba.storage.mapper import (
     save_mapper,
 )
 from roomba_ros.runtime.background import Background
+from roomba_ros.runtime.parameters import robot_name
 
 FOLDER: Final = ".being_made"
 """In the maps' folder, where no map's name can be."""
@@ -47,8 +48,7 @@ class MapMemory:
 
     def start(self, maps: Path) -> None:
         """Take the folder of all maps."""
-        robot = rospy.get_namespace().strip("/").replace("/", "_") or "robot"
-        self._path = maps / FOLDER / robot / "map.npz"
+        self._path = maps / FOLDER / robot_name() / "map.npz"
         self._run = str(rospy.get_param("/run_id", ""))
         self._whole = MapStore(self._path.parent / _WHOLE, rospy.logwarn)
 

@@ -92,7 +92,7 @@ class MapShelf:
         """Let rooms and zones of the map that there is be these; raises OSError and RoombaError."""
         assert stored.rooms is not None
         self._rooms.use(stored.rooms)
-        save_zones(stored.zones, stored.occupancy, self._zones_path(stored.occupancy))
+        save_zones(stored.zones, map_digest(stored.occupancy), self._zones_path(stored.occupancy))
 
     def _old(self, name: str) -> StoredMap:
         try:
@@ -115,7 +115,7 @@ class MapShelf:
             if stored.rooms is not None and not rooms_path.exists():
                 save_rooms(stored.rooms, occupancy, rooms_path)
             if stored.zones.all and not zones_path.exists():
-                save_zones(stored.zones, occupancy, zones_path)
+                save_zones(stored.zones, map_digest(occupancy), zones_path)
         except (OSError, RoombaError) as error:
             rospy.logwarn("rooms and zones of the map are not taken over: %s", error)
 

@@ -146,12 +146,12 @@ class HomeTopics:
         digest = GROWING if is_growing else map_digest(occupancy)
         with self._lock:
             if digest == self._digest and not is_growing:
-                if self._zones.look_again(occupancy):
+                if self._zones.look_again():
                     self._make_anew()
                 return
             is_first = self._map is None
             self._map, self._digest, self._map_came = occupancy, digest, came
-            self._zones.follow_map(occupancy, digest)
+            self._zones.follow_map(digest)
             if not is_first:
                 # Rooms of this map are told after it.
                 self._outlines = None

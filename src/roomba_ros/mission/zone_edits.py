@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -18,18 +19,20 @@ from roomba_robot.srv import (
 )
 from visualization_msgs.msg import MarkerArray
 
-from roomba.grid import OccupancyMap
+from roomba.files.kept import remove_kept
 from roomba.perception.rooms.zones import Zones, ZonesError
 from roomba.storage.map_bound import map_file_name
 from roomba.storage.zones import load_zones, save_zones
 from roomba.vocabulary import listed
 from roomba_ros.convert.mission import zone_of, zones_markers, zones_message
 from roomba_ros.mission.known_home import GROWING
+from roomba_ros.runtime.parameters import robot_name
 
 
 class ZoneEdits:
     """Keeps the zones of the newest map; edits are saved at once.
 
+    Those of a map that is being made count in this run of the robot, and go on in the whole map.
     Publishes: ``zones`` (ZoneArray, latched), ``zones/markers`` (MarkerArray, latched, for RViz).
     Services: ``set_zone`` (SetZone), ``remove_zone`` (RemoveZone).
     """
@@ -37,8 +40,7 @@ class ZoneEdits:
     def __init__(self, folder: Path, lock: threading.Lock, on_edit: Callable[[], None]) -> None:
         """Connect nothing yet; ``on_edit`` is called under the lock when zones were edited."""
         self._folder, self._lock, self._on_edit = folder, lock, on_edit
-        self._map: OccupancyMap | None = None
-        self._digest = ""
+        self._digest = self._growing = ""
         self.zones: Zones | None = None
         """None before a map, and when they cannot be read: then nothing is cleaned."""
         self.unreadable = ""
@@ -46,6 +48,9 @@ class ZoneEdits:
 
     def start(self) -> None:
         """Connect what tells; nothing can be edited yet."""
+        robot, run = robot_name(), str(rospy.get_param("/run_id", ""))
+        self._growing = f"{GROWING}-{robot}-{run}"
+        self._forget_other_runs(robot, run)
         self._zones_publisher = rospy.Publisher("zones", ZoneArray, queue_size=1, latch=True)
         self._markers = rospy.Publisher("zones/markers", MarkerArray, queue_size=1, latch=True)
 
@@ -54,50 +59,73 @@ class ZoneEdits:
         rospy.Service("set_zone", SetZone, self._on_set)
         rospy.Service("remove_zone", RemoveZone, self._on_remove)
 
-    def follow_map(self, occupancy: OccupancyMap, digest: str) -> None:
+    def follow_map(self, digest: str) -> None:
         """Go on with the zones of another map; hold the lock.
 
         More of a map that is being made has the same zones.
         """
-        before, self._digest, self._map = self._digest, digest, occupancy
-        if not digest == before == GROWING:
-            self.zones = self._kept_or_carried(occupancy, before)
-            self._tell()
+        before, self._digest = self._digest, digest
+        if digest == before == GROWING:
+            return
+        if before and digest == GROWING:  # another map is begun
+            self._forget_growing()
+        self.zones = self._kept(digest)
+        if digest != GROWING:
+            self._carry_over()
+        self._tell()
 
-    def look_again(self, occupancy: OccupancyMap) -> bool:
+    def look_again(self) -> bool:
         """Return whether other zones are kept by now, and go on with them; hold the lock.
 
         A map that is told again may have taken some over.
         """
-        kept = self._kept(occupancy)
+        kept = self._kept(self._digest)
         if kept == self.zones:
             return False
         self.zones = kept
         self._tell()
         return True
 
-    def _kept_or_carried(self, occupancy: OccupancyMap, before: str) -> Zones | None:
-        """Return the zones of a map; those of a map that was made go on in the whole one."""
-        kept, zones = self._kept(occupancy), self.zones
-        if before != GROWING or zones is None or not zones.all or kept is None or kept.all:
-            return kept
-        try:
-            save_zones(zones, occupancy, self._path())
-        except OSError as error:
-            rospy.logerr("the zones cannot be saved: %s", error)
-        return zones
+    def _carry_over(self) -> None:
+        """Let zones of the map that was being made go on in the whole one, if it has none."""
+        growing = self._kept(GROWING)
+        if growing is None or self.zones is None:
+            return
+        if growing.all and not self.zones.all:
+            self.zones = growing
+            try:
+                save_zones(growing, self._digest, self._path(self._digest))
+            except OSError as error:
+                rospy.logerr("the zones cannot be saved: %s", error)
+                return
+        self._forget_growing()
 
-    def _kept(self, occupancy: OccupancyMap) -> Zones | None:
+    def _kept(self, digest: str) -> Zones | None:
         """Return the zones of a map; None when they cannot be read."""
         try:
-            return load_zones(self._path(), occupancy, rospy.logerr)
+            return load_zones(self._path(digest), digest, rospy.logerr)
         except ZonesError as error:
             self.unreadable = str(error)
             rospy.logerr("%s", error)
             return None
 
-    def _path(self) -> Path:
-        return self._folder / f"{map_file_name(self._digest)}.yaml"
+    def _path(self, digest: str) -> Path:
+        name = self._growing if digest == GROWING else map_file_name(digest)
+        return self._folder / f"{name}.yaml"
+
+    def _forget_growing(self) -> None:
+        """Forget the zones of a map that was being made: it is whole, or given up."""
+        try:
+            remove_kept(self._path(GROWING))
+        except OSError as error:
+            rospy.logerr("zones of a map that was being made are not forgotten: %s", error)
+
+    def _forget_other_runs(self, robot: str, run: str) -> None:
+        """Remove what earlier runs of the robot left of maps that never became whole."""
+        for path in self._folder.glob(f"{GROWING}-{robot}-*"):
+            if not run or not path.name.startswith(self._growing):
+                with contextlib.suppress(OSError):
+                    path.unlink()
 
     def _tell(self) -> None:
         now, zones = rospy.get_time(), self.zones or Zones()
@@ -107,13 +135,13 @@ class ZoneEdits:
     def _edit(self, change: Callable[[Zones], Zones]) -> tuple[bool, str]:
         """Change the zones, tell and save them; return whether that was done, and what or why."""
         with self._lock:
-            if self._map is None:
+            if not self._digest:
                 return False, "there is no map yet; is home_sim_node running?"
             if self.zones is None:
                 return False, f"{self.unreadable}; then restart"
             try:
                 zones = change(self.zones)
-                save_zones(zones, self._map, self._path())
+                save_zones(zones, self._digest, self._path(self._digest))
             except ZonesError as error:
                 return False, str(error)
             except OSError as error:

@@ -123,6 +123,11 @@ def folder_for(given: str, name: str) -> Path:
     return Path(given or Path(rospkg.get_ros_home()) / "roomba_robot" / name)
 
 
+def robot_name() -> str:
+    """Return the robot's namespace as the name of a file; ``robot`` where it has none."""
+    return rospy.get_namespace().strip("/").replace("/", "_") or "robot"
+
+
 def package_folder() -> Path:
     """Return where this package's launch, config and homes folders are."""
     return Path(rospkg.RosPack().get_path("roomba_robot"))

@@ -261,6 +261,26 @@ def test_what_a_killed_save_left_can_be_removed_and_renamed(
         assert store.load("house").is_same(floor(1.0))
 
 
+@pytest.mark.parametrize("killed_at", ["rmtree 1", "rmtree 2", "rename 1"])
+def test_killed_while_it_is_removed_a_map_stands_behind_no_later_one(
+    store: MapStore, monkeypatch: pytest.MonkeyPatch, killed_at: str
+) -> None:
+    for x in (1.0, 1.2):
+        store.save("home", floor(x))
+    kill(monkeypatch, killed_at)
+    with pytest.raises(Killed):
+        store.remove("home")
+    monkeypatch.undo()
+    if "home" in store.names():
+        store.remove("home")
+    assert store.names() == ()
+    later = MapStore(store.folder, lambda _: None)
+    later.save("home", floor(1.7))
+    (store.folder / "home" / "map.pgm").unlink()
+    with pytest.raises(MapStoreError, match=r"map\.pgm|expected a picture"):
+        later.load("home")
+
+
 def test_a_map_that_cannot_be_written_leaves_the_old_one(
     store: MapStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -15,6 +15,7 @@ from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+from roomba.storage.map_bound import map_digest
 from roomba.storage.zones import load_zones
 
 ZONES_NAME: Final = "zones.yaml"
@@ -48,4 +49,4 @@ def zones_of_home(name_or_path: str) -> Zones:
     path = Path(name_or_path).expanduser()
     folder = path if path.is_dir() else HOMES / name_or_path
     file = folder / ZONES_NAME
-    return load_zones(file, load_map(folder / MAP_NAME)) if file.is_file() else Zones()
+    return load_zones(file, map_digest(load_map(folder / MAP_NAME))) if file.is_file() else Zones()

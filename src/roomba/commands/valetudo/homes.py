@@ -23,6 +23,7 @@ from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.rooms.outlines import outline_of
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+from roomba.storage.map_bound import map_digest
 from roomba.storage.zones import save_zones
 from roomba.world.home.home import Home
 from roomba.world.home.raster import largest_component, where_body_fits
@@ -55,7 +56,7 @@ def write_home(found: ValetudoHome, folder: Path) -> Home:
         width=110,
     )
     write_whole(folder / LAYER_NAME, f"{_COMMENT}{layer}".encode())
-    save_zones(zones, found.occupancy, folder / ZONES_NAME)
+    save_zones(zones, map_digest(found.occupancy), folder / ZONES_NAME)
     return load_home(str(folder), HOMES, body)
 
 

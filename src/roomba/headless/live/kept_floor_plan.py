@@ -84,7 +84,7 @@ class KeptFloorPlan:
 
     def _read(self, folder: Path, floor: FloorRecord) -> tuple[Rooms | None, Zones | None]:
         """Return the rooms and zones that were kept of a floor, each None if none were."""
-        zones = load_zones(folder / ZONES_NAME, floor.occupancy, self._tell)
+        zones = load_zones(folder / ZONES_NAME, map_digest(floor.occupancy), self._tell)
         try:
             rooms = load_rooms(folder / ROOMS_NAME, floor.occupancy, self._tell)
         except RoomsError as error:
@@ -128,7 +128,7 @@ class KeptFloorPlan:
         if not (folder / LAYER_NAME).exists():  # the last file of a map
             self._write_floor(folder)
         if plan.zones is not before.zones:
-            save_zones(plan.zones, occupancy, folder / ZONES_NAME)
+            save_zones(plan.zones, map_digest(occupancy), folder / ZONES_NAME)
         if plan.rooms is not None and plan.rooms is not before.rooms:
             save_rooms(plan.rooms, occupancy, folder / ROOMS_NAME)
 

@@ -31,6 +31,7 @@ from roomba.headless.mission import HeadlessMission
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.coverage_map import GRANTED
 from roomba.storage.low_things import load_low_things, save_low_things
+from roomba.storage.map_bound import map_digest
 from roomba.storage.zones import save_zones
 from roomba.vocabulary import CleanMode
 from roomba.world.catalogue.things import LOW_KINDS
@@ -171,7 +172,7 @@ def test_a_turned_room_is_cleaned_in_the_turned_frame(room: Path) -> None:
 def test_zones_of_a_folder_turn_with_the_home(tmp_path: Path) -> None:
     save_room(tmp_path / "map.yaml")
     bowl = Zone("bowl", ZoneKind.WALL, ((1.0, 0.2), (1.0, 0.9)))
-    save_zones(Zones((bowl,)), load_map(tmp_path / "map.yaml"), tmp_path / "zones.yaml")
+    save_zones(Zones((bowl,)), map_digest(load_map(tmp_path / "map.yaml")), tmp_path / "zones.yaml")
     asked = ((0.0, 0.0, 0.5, 0.5),)
     plain, turned = (
         zones_of(Trial(home=str(tmp_path), turned=angle, no_go=asked)).all for angle in (0.0, 90.0)

@@ -22,6 +22,7 @@ from roomba.files.shipped import HOMES
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.headless.live.client import LiveClient
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
+from roomba.storage.map_bound import map_digest
 from roomba.storage.zones import save_zones
 
 RUG = ZoneView("rug", "no-go", ((0.5, 0.5), (1.0, 0.5), (1.0, 1.0), (0.5, 1.0)))
@@ -121,7 +122,7 @@ def test_zones_of_the_home_count_until_some_are_edited(tmp_path: Path) -> None:
     home, told = tmp_path / "home", [""]
     shutil.copytree(HOMES / "studio", home)
     of_home = Zones((Zone("bowl", ZoneKind.NO_GO, RUG.points),))
-    save_zones(of_home, load_map(home / MAP_NAME), home / ZONES_NAME)
+    save_zones(of_home, map_digest(load_map(home / MAP_NAME)), home / ZONES_NAME)
     with lived(tmp_path / "kept", told, str(home)) as client:
         assert [zone.name for zone in client.home().zones] == ["bowl"]
         assert client.ask(lambda robot: robot.mission.context).zones.names == ("bowl",)
@@ -207,7 +208,7 @@ def test_zones_of_the_home_and_those_taken_over_count_together(tmp_path: Path) -
         client.put_zone(RUG)
     home = Path(changed(tmp_path / "home", with_post))
     of_home = Zones((Zone("bowl", ZoneKind.NO_GO, RUG.points),))
-    save_zones(of_home, load_map(home / MAP_NAME), home / ZONES_NAME)
+    save_zones(of_home, map_digest(load_map(home / MAP_NAME)), home / ZONES_NAME)
     with lived(tmp_path / "kept", told, str(home)) as client:
         assert [zone.name for zone in client.home().zones] == ["bowl", "rug"]
 
@@ -256,7 +257,7 @@ def test_a_zone_of_the_home_with_the_same_name_stays(tmp_path: Path) -> None:
     home = Path(changed(tmp_path / "home", with_post))
     elsewhere = tuple((x + 0.8, y) for x, y in RUG.points)
     of_home = Zones((Zone("rug", ZoneKind.NO_GO, elsewhere),))
-    save_zones(of_home, load_map(home / MAP_NAME), home / ZONES_NAME)
+    save_zones(of_home, map_digest(load_map(home / MAP_NAME)), home / ZONES_NAME)
     with lived(tmp_path / "kept", told, str(home)) as client:
         zones = {zone.name: zone.points for zone in client.home().zones}
         assert zones == {"rug": elsewhere, "rug 2": RUG.points}
