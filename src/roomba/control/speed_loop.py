@@ -98,6 +98,10 @@ class SpeedLoop:
             raise ValueError(f"expected finite velocities, got {twist}")
         self._commands[source] = _Command(twist, now)
 
+    def forget_commands(self) -> None:
+        """Let no command from before count: nothing is wanted of the drive."""
+        self._commands.clear()
+
     def set_hazards(self, hazards: Hazards) -> None:
         """Tell which hazards there are now."""
         self._hazards = hazards
@@ -110,7 +114,7 @@ class SpeedLoop:
         """Return the twist for the drive, and why it is less than the command."""
         if self.emergency:
             # Commands from before are dropped, so that nothing is driven at the release.
-            self._commands.clear()
+            self.forget_commands()
             return STANDSTILL, Hold.EMERGENCY
         command = self._fresh_command(now)
         if command is None:

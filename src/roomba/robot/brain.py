@@ -16,7 +16,7 @@ from roomba.configuration.nodes import PlacingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.control.speed_loop import Hazards, SpeedLoop
 from roomba.errors import RoombaError
-from roomba.geometry import Pose, Twist
+from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.grid import OccupancyMap
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -129,7 +129,9 @@ class Brain:
         if mission.state.drives or mission.state.phase is Phase.EMERGENCY:
             # What was commanded later counts.
             self.walking.end()
-        wanted, cruise, looks_around = step.twist, self._max_speed, step.looks_around
+        is_driving = mission.state.drives or step.twist != STANDSTILL
+        wanted = step.twist if is_driving else None
+        cruise, looks_around = self._max_speed, step.looks_around
         if self.walking.is_under_way:
             wanted, cruise = self.walking.tick(senses, self._max_speed)
             looks_around = True
@@ -225,12 +227,20 @@ class Brain:
         localizer.go_on(occupancy, (here, PlacingConfig().on_finished))
         self.localizer = self.keeper.place = localizer
 
-    def _safely(self, twist: Twist, cruise: float) -> Twist:
-        """Return what the wheels get when a twist is wanted, at ``cruise`` m/s at most."""
-        now = self.readings.time
+    def _safely(self, twist: Twist | None, cruise: float) -> Twist:
+        """Return what the wheels get when a twist is wanted, at ``cruise`` m/s at most.
+
+        A robot of which none is wanted stands, whatever its sensors tell: it leaves its station for
+        no cliff sensor that is dirty. So does one under the emergency stop, whatever is wanted.
+        """
+        now, mission = self.readings.time, self._mapped.mission
+        self._drive.emergency = mission is not None and mission.state.phase is Phase.EMERGENCY
         self._drive.set_hazards(self.readings.hazards)
         self._drive.set_cruise_speed(cruise)
-        self._drive.command(now, twist)
+        if twist is None:
+            self._drive.forget_commands()
+        else:
+            self._drive.command(now, twist)
         return self._drive.tick(now)[0]
 
     @property

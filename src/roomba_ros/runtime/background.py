@@ -21,7 +21,7 @@ _TELL_AGAIN: Final = 60.0
 """s of wall time between two lines of the log about work that goes on being refused."""
 
 
-class _Work(NamedTuple):
+class _NamedWork(NamedTuple):
     """What is to be done; ``name`` says what fails then."""
 
     name: str
@@ -31,7 +31,7 @@ class _Work(NamedTuple):
 class _Failed(NamedTuple):
     """Work that the disk refused: when it is due again, why it was, and when that was logged."""
 
-    work: _Work
+    work: _NamedWork
     due: float
     reason: str
     told: float
@@ -42,7 +42,7 @@ class Background:
 
     def __init__(self) -> None:
         """Begin with nothing to do."""
-        self._waiting: dict[str, _Work] = {}
+        self._waiting: dict[str, _NamedWork] = {}
         """By subject, as what failed."""
         self._failed: dict[str, _Failed] = {}
         self._news = threading.Condition()
@@ -60,7 +60,7 @@ class Background:
         subject = subject or name
         with self._news:
             self._waiting.pop(subject, None)
-            self._waiting[subject] = _Work(name, work)
+            self._waiting[subject] = _NamedWork(name, work)
             self._news.notify_all()
 
     @property
@@ -127,7 +127,7 @@ class Background:
         if failed is not None:
             rospy.logwarn("this is over: %s", failed.work.name)
 
-    def _refused(self, subject: str, work: _Work, error: OSError) -> None:
+    def _refused(self, subject: str, work: _NamedWork, error: OSError) -> None:
         now = time.monotonic()
         with self._news:
             before = self._failed.get(subject)

@@ -33,6 +33,14 @@ def test_an_old_command_counts_no_more() -> None:
     assert speed_loop.tick(10.2) == (Twist(), Hold.NO_COMMAND)
 
 
+def test_what_is_forgotten_counts_no_more() -> None:
+    speed_loop = loop()
+    speed_loop.command(10.0, Twist(0.3, 0.0))
+    speed_loop.command(10.0, Twist(0.1, 0.0), Source.MISSION)
+    speed_loop.forget_commands()
+    assert speed_loop.tick(10.1) == (Twist(), Hold.NO_COMMAND)
+
+
 def test_after_the_clock_was_set_back_a_command_still_grows_old() -> None:
     speed_loop = loop()
     speed_loop.command(1000.0, Twist(0.3, 0.0))

@@ -150,6 +150,41 @@ def test_steered_or_on_a_walk_it_does_not_drive_into_a_hazard(hazard: dict[str, 
     assert robot.steer(Twist(0.3, 0.0)).twist.linear <= 0.0
 
 
+@pytest.mark.parametrize("is_steered", [False, True])
+@pytest.mark.parametrize(
+    "hazard", [{"bumper_left": True}, {"cliff": CliffReading(front_left=True)}, {}]
+)
+def test_under_the_emergency_stop_it_stands_whatever_its_sensors_tell(
+    hazard: dict[str, Any], is_steered: bool
+) -> None:
+    robot = Brain(HOME.map, STATION, NOISY, MissionConfig(), DockingConfig(), start=ON_FLOOR)
+    free = Readings(0.0, Pose(), battery=Battery(1.0, 26.0))
+    robot.tick(free)
+    robot.mission.clean(CleanRequest(), robot.senses())
+    robot.tick(replace(free, time=0.05))
+    assert robot.mission.state.drives
+    robot.mission.command(Event.EMERGENCY, robot.senses(), "pressed")
+    for tick in range(2, 8):
+        robot.sense(replace(free, time=0.05 * tick, **hazard))
+        now = robot.steer(Twist(0.2, 0.5)) if is_steered else robot.decide()
+        assert now.twist == STANDSTILL
+
+
+@pytest.mark.parametrize("phase", [Phase.DOCKED, Phase.PAUSED, Phase.IDLE])
+def test_at_rest_it_stands_though_a_cliff_sensor_is_dirty(phase: Phase) -> None:
+    robot = Brain(HOME.map, STATION, NOISY, MissionConfig(), DockingConfig(), start=ON_FLOOR)
+    free = Readings(0.0, Pose(), battery=Battery(1.0, 26.0, is_docked=phase is Phase.DOCKED))
+    robot.tick(free)
+    if phase is Phase.PAUSED:
+        robot.mission.clean(CleanRequest(), robot.senses())
+        robot.tick(replace(free, time=0.05))
+        robot.mission.command(Event.PAUSE, robot.senses())
+    assert robot.mission.state.phase is phase
+    for tick in range(2, 20):
+        felt = replace(free, time=0.05 * tick, cliff=CliffReading(front_left=True))
+        assert robot.tick(felt).twist == STANDSTILL
+
+
 def test_a_walk_pauses_the_errand_under_way() -> None:
     robot = brain(HOME.map)
     robot.tick(DOCKED)
