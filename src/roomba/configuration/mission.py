@@ -275,7 +275,13 @@ class EnergyConfig(Frozen):
     check_period: Duration = 5.0
     """s; from one look at how far it is home to the next."""
     ample: Ratio = 0.35
-    """With so much of the capacity besides the reserve no way home is too far."""
+    """With so much of the capacity besides the reserve no way home is too far in most homes."""
+    least_gain: Positive = 0.05
+    """m2; a charge that brings a job less brings it nothing."""
+    most_in_vain: AtLeastOne = 2
+    """Charges one after the other; what is left is too far from the station then."""
+
+    in_order: ClassVar[tuple[str, ...]] = ("reserve < full_enough",)
 
 
 class BinConfig(Frozen):

@@ -84,6 +84,7 @@ class MissionTicks:
     def tick(self, senses: Senses) -> MissionStep:
         """Return what is wanted now."""
         self.carpet.note(senses.brush_current)
+        self._job.ledger.longest_way_home = self._drives.context.longest_way
         self._job.account(senses, self.last, sweeps=self.sweeps)
         self._note_carpet(senses, np.array([self.last_place]))
         here, (x, y) = senses.pose, self.last_place

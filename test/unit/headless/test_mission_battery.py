@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
+from fixtures.homes.rooms import room_home
 from fixtures.robots.headless_cleans import assert_all_clean, assert_stands, begun, command
 from fixtures.robots.missions import HOME, floor_clean, in_phase, until, wait
 
 from roomba.clean_request import CleanRequest
+from roomba.configuration.body import BatteryConfig
+from roomba.configuration.mission import EnergyConfig, MissionConfig
+from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.geometry import Pose
 from roomba.headless.mission import HeadlessMission
 from roomba.mission.cleaning.result import CleanOutcome
@@ -112,3 +118,27 @@ def test_with_a_dead_station_it_says_that_it_is_not_docked() -> None:
     record = robot.run()
     assert record.result.outcome is CleanOutcome.COMPLETED
     assert robot.is_home
+
+
+def test_a_clean_that_charges_take_no_further_comes_to_an_end() -> None:
+    home = room_home(6.0, 0.8, station=Pose(0.2, 0.4, math.pi))
+    robot = HeadlessMission(
+        home,
+        SimulatedRobotConfig(battery=BatteryConfig(capacity=0.5)),
+        MissionConfig(energy=EnergyConfig(reserve=0.89)),
+    )
+    record = robot.clean(CleanRequest())
+    assert record.result.outcome is CleanOutcome.COMPLETED
+    assert "what is left is too far from the station" in record.result.message
+    assert record.result.covered < 0.5 * record.result.wanted
+    assert robot.mission.state.phase is Phase.DOCKED
+    # The next one begins to count anew.
+    assert robot.clean(CleanRequest()).result.covered > 0.0
+
+
+def test_with_a_worn_battery_it_comes_home_from_far_away() -> None:
+    home = room_home(28.0, 0.8, station=Pose(0.2, 0.4, math.pi))
+    robot = HeadlessMission(home, SimulatedRobotConfig(battery=BatteryConfig(capacity=1.0)))
+    robot.mission.clean(CleanRequest(), robot.senses())
+    until(robot, in_phase(robot, Phase.CHARGING), 3600.0)
+    assert robot.seen.battery.level > 0.02

@@ -146,6 +146,11 @@ class PlanningContext:
             self._plan_watch,
         )
 
+    @cached_property
+    def longest_way(self) -> float:
+        """No way over the map is longer, m: a shortest way sweeps no floor twice."""
+        return self.occupancy.free_area / (2.0 * self.body_radius)
+
     @property
     def floor(self) -> CoverageFloor:
         """The floor on the fine grid."""

@@ -17,6 +17,7 @@ from roomba.mission.exploring.turn_to_see import TurnToSee
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases import exploring, returning
+from roomba.mission.phases.charges import when_low
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
@@ -52,8 +53,8 @@ class CleanPhase:
         assert cleaning is not None
         if cleaning is not self._cleaning:
             self._begin(cleaning)
-        if self._job.ledger.must_go_home(senses, drives.distance_home):
-            return PhaseStep(event=Event.LOW)
+        if (charging := when_low(self._job, drives, senses)) is not None:
+            return charging
         if self._job.bin.is_full:
             return PhaseStep(event=Event.BIN_FULL)
         if self._turn.is_under_way:

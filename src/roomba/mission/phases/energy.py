@@ -1,4 +1,4 @@
-"""The energy ledger: energy, distance and dirt of an errand, and when it is time to go home."""
+"""Energy, distance and dirt of an errand, when it is time to go home, and what charges bring."""
 
 from __future__ import annotations
 
@@ -11,13 +11,37 @@ from roomba.mission.inputs.senses import Battery, Senses
 from roomba.perception.swept.coverage_kernels import LONGEST_STEP
 
 
+class ChargeGains:
+    """What each charge of the battery brought a job."""
+
+    def __init__(self, config: EnergyConfig) -> None:
+        """Begin before the first charge."""
+        self._config = config
+        self._reached: tuple[float, ...] = ()
+        self._in_vain = 0
+
+    def is_in_vain(self, *reached: float) -> bool:
+        """Note what is reached when it goes home to charge, m2, each more where there was progress.
+
+        Return whether some charges brought nothing.
+        """
+        gains = [now - before for now, before in zip(reached, self._reached, strict=False)]
+        is_vain = bool(gains) and max(gains) < self._config.least_gain
+        self._in_vain = self._in_vain + 1 if is_vain else 0
+        self._reached = reached
+        return self._in_vain >= self._config.most_in_vain
+
+
 class EnergyLedger:
-    """Ticked with what is sensed; ``distance`` m, ``energy`` Wh and ``dirt`` g since the begin."""
+    """Ticked with what is sensed; ``distance`` m, ``energy`` Wh and ``dirt`` g since the begin.
+
+    No way home is longer than ``longest_way_home``, m.
+    """
 
     def __init__(self, config: EnergyConfig, senses: Senses) -> None:
         """Begin to count."""
         self._config = config
-        self.distance = self.energy = self.dirt = 0.0
+        self.distance = self.energy = self.dirt = self.longest_way_home = 0.0
         self._last = senses
         self._checked = senses.now
 
@@ -51,7 +75,9 @@ class EnergyLedger:
 
     def least_ample(self, senses: Senses) -> float:
         """Return the level, 0..1, from which on down it may be time to go home, or all is used."""
-        return self.empty if self._is_low(senses) else self._ample
+        if self._is_low(senses):
+            return self.empty
+        return self._ample(senses.battery) / senses.battery.capacity
 
     @property
     def empty(self) -> float:
@@ -60,13 +86,13 @@ class EnergyLedger:
 
     def _is_low(self, senses: Senses) -> bool:
         """Whether the way home may take what is left."""
-        battery = senses.battery
-        return battery.energy <= self._ample * battery.capacity
+        return senses.battery.energy <= self._ample(senses.battery)
 
-    @property
-    def _ample(self) -> float:
-        """A level with more than which no way home is too far, 0..1."""
-        return self._config.reserve + self._config.ample
+    def _ample(self, battery: Battery) -> float:
+        """Return with more than which energy, Wh, no way home is too far."""
+        longest = self._config.margin * self._config.per_metre * self.longest_way_home
+        reserve = self._config.reserve * battery.capacity
+        return reserve + max(self._config.ample * battery.capacity, longest)
 
     def must_go_home(self, senses: Senses, way_home: Callable[[Senses], float]) -> bool:
         """Whether what is left just suffices for the way home; ``way_home`` tells that way, m."""

@@ -10,6 +10,7 @@ from roomba.mission.driving.drives import Drives
 from roomba.mission.driving.path_driver import DriveState
 from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.senses import Senses
+from roomba.mission.phases.charges import when_low
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
@@ -22,8 +23,8 @@ def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: 
     """Go to the nearest place from where more can be seen; stuck too often it fails."""
     exploration = job.exploration
     assert exploration is not None
-    if job.ledger.must_go_home(senses, drives.distance_home):
-        return PhaseStep(event=Event.LOW)
+    if (charging := when_low(job, drives, senses)) is not None:
+        return charging
     if drives.driver is not None:
         return look_on(exploration, drives, senses, limit, most_stuck)
     obstacles = drives.obstacles.standing(senses.now)

@@ -19,12 +19,15 @@ from roomba.mission.exploring.open_edges import what_is_not_seen
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.dust_bin import DustBin
-from roomba.mission.phases.energy import EnergyLedger
+from roomba.mission.phases.energy import ChargeGains, EnergyLedger
 from roomba.mission.phases.time_ledger import TimeLedger
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.vocabulary import OpenEdge
 
+_TOO_FAR: Final = (
+    "what is left is too far from the station: charge after charge went into the ways alone"
+)
 _DOUBTFUL: Final = 0.05
 """Share of its way; from more on it is told that its place was known roughly."""
 
@@ -61,6 +64,7 @@ class Job:
         self._is_told = False
         self._cleaned: CleanResult | None = None
         self._explored: ExploreResult | None = None
+        self._gains, self._is_too_far = ChargeGains(self._config.energy), False
         self.open_edges: tuple[OpenEdge, ...] = ()
         """Where the map was still open when there was nothing left to look for."""
         self.rough_way = 0.0
@@ -85,6 +89,7 @@ class Job:
 
     def _begin(self, senses: Senses) -> None:
         self.outcome, self._is_told, self.open_edges = None, False, ()
+        self._gains, self._is_too_far = ChargeGains(self._config.energy), False
         self.rough_way = 0.0
         self.ledger.begin(senses)
         self.times.begin()
@@ -143,6 +148,15 @@ class Job:
         if self.bin.look(senses.in_bin, cell, self.dirt.usual) and self.cleaning is not None:
             self.cleaning.ledger.coverage.take_back(self.bin.swept_in_vain())
 
+    def is_charged_in_vain(self, known: float) -> bool:
+        """Note that it goes home to charge, with ``known`` m2 of floor on the map; return whether
+        charges take it no further: what is left is too far from the station.
+        """
+        done = 0.0 if self.cleaning is None else self.cleaning.ledger.clean_area
+        left = 0.0 if self.cleaning is None else self.cleaning.ledger.left
+        self._is_too_far = self._gains.is_in_vain(done, -left, known)
+        return self._is_too_far
+
     def needed_energy(self, tool_width: float) -> float:
         """Return what the rest of it takes, Wh; of an exploration this is not known."""
         if self.exploration is not None:
@@ -185,7 +199,8 @@ class Job:
         elif self.exploration is not None:
             edges = self.exploration.open_edges(context.known)
             if outcome is CleanOutcome.COMPLETED:
-                message = message or what_is_not_seen(edges)
+                too_far = _TOO_FAR if self._is_too_far else ""
+                message = message or "; ".join(filter(None, (what_is_not_seen(edges), too_far)))
             self._explored = ExploreResult(
                 outcome,
                 message,
@@ -213,6 +228,7 @@ class Job:
         if outcome is CleanOutcome.COMPLETED:
             reasons = (
                 message or what_is_not_clean(wanted, covered, missed),
+                _TOO_FAR if self._is_too_far else "",
                 what_is_not_seen(self.open_edges),
                 self._what_is_doubtful(),
             )

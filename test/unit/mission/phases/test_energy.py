@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from roomba.configuration.mission import EnergyConfig
 from roomba.geometry import Pose
 from roomba.mission.inputs.senses import Battery, Senses
-from roomba.mission.phases.energy import EnergyLedger
+from roomba.mission.phases.energy import ChargeGains, EnergyLedger
 
 CONFIG = EnergyConfig()
 CAPACITY = 26.0
@@ -108,6 +108,27 @@ def test_while_the_charge_is_ample_no_look_is_due() -> None:
     assert ledger.least_ample(much) == pytest.approx(least)
     assert ledger.next_check(little) == CONFIG.check_period
     assert ledger.least_ample(little) == CONFIG.empty
+
+
+def test_where_the_way_home_may_be_long_it_looks_earlier() -> None:
+    ledger = EnergyLedger(CONFIG, senses())
+    ledger.longest_way_home = 600.0
+    need = CONFIG.reserve * CAPACITY + CONFIG.margin * CONFIG.per_metre * 600.0
+    much, little = senses(level=need / CAPACITY + 0.01), senses(10.0, level=need / CAPACITY - 0.01)
+    assert ledger.next_check(much) == math.inf
+    assert ledger.least_ample(much) == pytest.approx(need / CAPACITY)
+    assert not ledger.must_go_home(much, no_way_home)
+    assert ledger.must_go_home(little, lambda senses: 600.0)
+
+
+def test_charges_are_in_vain_when_two_in_a_row_bring_nothing() -> None:
+    gains = ChargeGains(CONFIG)
+    assert [gains.is_in_vain(area) for area in (0.0, 2.0, 2.0, 2.5, 2.51, 2.52, 2.53)] == [
+        False, False, False, False, False, True, True,
+    ]  # fmt: skip
+    # What grows in any way is progress.
+    both = ChargeGains(CONFIG)
+    assert not any(both.is_in_vain(3.0, 0.1 * charge) for charge in range(9))
 
 
 def test_it_looks_every_few_seconds_whatever_the_clock_does() -> None:
