@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -13,31 +12,18 @@ from roomba.client.household import TotalsView
 from roomba.client.plain import home_of, report_of
 from roomba.client.protocol import CleanReport, ErrandOutcome
 from roomba.client.told_once import ToldOnce
-from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
+from roomba.client.view import HomeView, RobotView
 from roomba.errors import RoombaError
-from roomba.geometry import wrap_angle
 from roomba.history.database import History
-from roomba.history.run import (
-    REQUEST,
-    TRACE_STEP,
-    CellLayer,
-    RunFigures,
-    RunRecording,
-    RunSource,
-    Word,
-    kind_of,
-    turning_of,
-    untold,
-)
+from roomba.history.run import REQUEST, RunFigures, RunRecording, RunSource
+from roomba.history.under_way import Layers, RunUnderWay, cells_of
 from roomba.history.unfinished import INTERRUPTED, RunSoFar, UnfinishedFile, interrupted_runs
-from roomba.vocabulary import AT_REST, Phase
+from roomba.vocabulary import Phase
 
 _LOOKED_THROUGH: Final = 100
 """Runs of a home among which the newest one of this program is looked for."""
 BEGINS: Final = (Phase.UNDOCKING, Phase.CLEANING, Phase.EXPLORING)
 """Phases in which a run has begun."""
-_SWEEPS: Final = (Phase.UNDOCKING, Phase.CLEANING, Phase.RETURNING, Phase.DOCKING)
-"""Phases of a clean in which what is driven over counts."""
 _UNDER_WAY: Final = (
     *BEGINS,
     Phase.RETURNING,
@@ -53,8 +39,6 @@ _GIVEN_UP: Final = 10.0
 """s of the robot's clock at rest without a report after which it was no run."""
 _NOT_RUN: Final = (ErrandOutcome.REFUSED, ErrandOutcome.DISCONNECTED)
 
-Layers = Callable[[LayerName], GridLayer | None]
-
 
 class RunRecorder:
     """Follows one robot from look to look; a run that ended is returned by the look that saw it."""
@@ -62,7 +46,7 @@ class RunRecorder:
     def __init__(self, source: RunSource) -> None:
         """Begin between two runs."""
         self.source = source
-        self._run: _RunUnderWay | None = None
+        self._run: RunUnderWay | None = None
         self._last: CleanReport | None = None
         self.wish: Mapping[str, Any] | None = None
         """What the next run was asked for by, where that is known: plain values."""
@@ -74,7 +58,7 @@ class RunRecorder:
 
     def resume(self, run: RunSoFar, view: RobotView) -> None:
         """Go on with a run that was kept until a moment ago, at a look that sees it go on."""
-        self._run = _RunUnderWay(view, run.source)
+        self._run = RunUnderWay(view, run.source)
         self._run.resume(run)
         self._last = view.last
 
@@ -84,7 +68,7 @@ class RunRecorder:
         """Take a look; return the run that it was the end of."""
         report, self._last = self._last, view.last
         if self._run is None and view.vacuum.phase in BEGINS:
-            self._run = _RunUnderWay(view, self._source_of_run())
+            self._run = RunUnderWay(view, self._source_of_run())
         if self._run is None:
             return None
         self._run.take(view)
@@ -188,7 +172,7 @@ class HistoryKeeper:
             self._unfinished.remove()
             return
         try:
-            self._unfinished.keep(run, home_of(home), lambda: _cells(layer))
+            self._unfinished.keep(run, home_of(home), lambda: cells_of(layer))
         except (OSError, ValueError) as error:
             self._tell(f"the run under way is not kept until it ends: {error}")
 
@@ -199,95 +183,6 @@ class HistoryKeeper:
         return self._totals
 
 
-class _RunUnderWay:
-    """A run under way."""
-
-    def __init__(self, view: RobotView, source: RunSource) -> None:
-        self._source = source
-        self._began, self._wall = view.time, time.time()
-        self._rows: list[tuple[float, ...]] = []
-        self._words: list[Word] = []
-        self._theta = view.pose[2]
-        self._turning = 0.0
-        self._before: RunSoFar | None = None
-        self.rests_since: float | None = None
-
-    def take(self, view: RobotView) -> None:
-        """Remember what is seen now."""
-        now, vacuum = view.time - self._began, view.vacuum
-        if vacuum.phase not in AT_REST:
-            self.rests_since = None
-        elif self.rests_since is None:
-            self.rests_since = view.time
-        self._turning += abs(wrap_angle(view.pose[2] - self._theta))
-        self._theta = view.pose[2]
-        word = Word(now, vacuum.state, vacuum.phase, vacuum.message, vacuum.room, view.doubt)
-        is_news = not self._words or not word.is_as(self._words[-1])
-        if is_news:
-            self._words.append(word)
-        if not is_news and now - self._rows[-1][0] < TRACE_STEP - 1e-6:
-            return
-        battery, dirt = untold(vacuum.battery), untold(view.dirt)
-        progress = (vacuum.covered, vacuum.wanted, vacuum.seconds_to_go)
-        sweeps = float(vacuum.wanted > 0.0 and vacuum.phase in _SWEEPS)
-        self._rows.append((now, *view.pose, view.speed, battery, dirt, *progress, sweeps))
-
-    def so_far(self) -> RunSoFar:
-        """Return what was seen."""
-        return RunSoFar(self._source, self._began, self._wall, self._rows, self._words)
-
-    def resume(self, run: RunSoFar) -> None:
-        """Go on with what was seen before."""
-        self._began, self._wall = run.clock, run.wall
-        self._rows, self._words = list(run.rows), list(run.words)
-        self._turning = turning_of(run.trace)
-        self._before = run
-
-    def interrupted(self) -> tuple[RunFigures, RunRecording] | None:
-        """Return it as one that came to no end; None: it was none before this program either."""
-        before = self._before
-        if before is None:
-            return None
-        return replace(before, rows=self._rows, words=self._words).interrupted()
-
-    def figures(self, report: CleanReport) -> RunFigures:
-        """Return what was achieved."""
-        return RunFigures(
-            self._source,
-            kind_of(self._words),
-            self._wall,
-            report.outcome.value,
-            report.message,
-            report.duration,
-            report.covered,
-            report.wanted,
-            report.distance,
-            self._turning,
-            report.dirt,
-            report.energy,
-            report.missed,
-            report.times,
-            report.open_edges,
-            report.mapped,
-        )
-
-    def recording(self, home: HomeView, layer: Layers) -> RunRecording:
-        """Return what was seen."""
-        return RunRecording(self.so_far().trace, tuple(self._words), home_of(home), _cells(layer))
-
-
 def _as_interrupted(run: RunFigures) -> dict[str, Any] | None:
     """Return how a run ended, as plain values, if it was interrupted."""
     return report_of(run.report) if run.outcome == INTERRUPTED else None
-
-
-def _cells(layer: Layers) -> dict[str, CellLayer]:
-    """Return the layers that are kept of a run."""
-    found = {}
-    for name in (LayerName.MAP, LayerName.COVERAGE):
-        grid = layer(name)
-        if grid is not None:
-            found[name.value] = CellLayer(
-                grid.resolution, grid.origin_x, grid.origin_y, grid.cells.copy()
-            )
-    return found

@@ -1,0 +1,48 @@
+"""A run under way grows from look to look, and tells what it was."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import pytest
+from unit.history.seen import HOME, REPORT, SOURCE, layer, view
+
+from roomba.history.under_way import RunUnderWay, cells_of
+from roomba.history.unfinished import RunSoFar
+
+
+def seen_at(times: Iterable[float]) -> RunUnderWay:
+    """Look at a robot that cleans."""
+    first, *later = times
+    run = RunUnderWay(view(first, "cleaning"), SOURCE)
+    for time in (first, *later):
+        run.take(view(time, "cleaning"))
+    return run
+
+
+def test_a_run_has_two_rows_a_second_however_often_it_is_looked_at() -> None:
+    run = seen_at(100.0 + tenth / 10.0 for tenth in range(101))
+    assert [row[0] for row in run.so_far().rows] == pytest.approx([n / 2.0 for n in range(21)])
+    figures, recording = run.figures(REPORT), run.recording(HOME, layer)
+    assert figures.turning == pytest.approx(1.0)
+    assert recording.duration == pytest.approx(10.0)
+    assert set(recording.layers) == {"map", "coverage"}
+
+
+def test_a_run_goes_on_with_what_was_seen_before() -> None:
+    before = seen_at([0.0, 1.0]).so_far()
+    run = RunUnderWay(view(5.0, "cleaning"), SOURCE)
+    run.resume(RunSoFar(SOURCE, 0.0, 7.0, before.rows, before.words))
+    run.take(view(5.0, "cleaning"))
+    assert [row[0] for row in run.so_far().rows] == [0.0, 1.0, 5.0]
+    assert run.figures(REPORT).began == 7.0
+    ended = run.interrupted()
+    assert ended is not None
+    assert ended[1].duration == 5.0
+    assert seen_at([0.0]).interrupted() is None
+
+
+def test_the_cells_that_are_kept_are_copies_of_what_there_is() -> None:
+    cells = cells_of(layer)
+    assert set(cells) == {"map", "coverage"}
+    assert cells["map"].cells.shape == (4, 5)
