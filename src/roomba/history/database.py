@@ -16,7 +16,7 @@ from roomba.errors import RoombaError
 from roomba.files.atomic import make_private
 from roomba.files.journal import append_line, read_lines, write_lines
 from roomba.history.run import RunFigures, RunRecording
-from roomba.history.run_file import packed, unpacked
+from roomba.history.run_file import RunFileError, packed, unpacked
 from roomba.history.run_rows import (
     ADDED,
     COLUMNS,
@@ -42,6 +42,16 @@ _MOST_RECORDINGS: Final = 200
 _LARGEST_NUMBER: Final = 2**63 - 1
 """Of a run: larger ones SQLite does not know."""
 
+_UNUSABLE: Final = (
+    sqlite3.Error,
+    OSError,
+    ValueError,
+    TypeError,
+    AttributeError,
+    OverflowError,
+    RunFileError,
+)
+"""What is raised when the disk refuses, or for values that are not as the database has them."""
 _SUMS: Final = ("covered", "duration", "distance", "dirt", "energy")
 
 
@@ -65,18 +75,10 @@ class History:
 
     def add(self, figures: RunFigures, recording: RunRecording | None = None) -> int:
         """Keep a run, and return its number; it is on the disk then."""
-        content = None if recording is None else packed(figures, recording)
-        with self._opened() as database, _transaction(database):
-            number = insert(database, figures)
-            append_line(self._journal, {"number": number, **row_of(figures)})
-            if content is not None:
-                database.execute("INSERT INTO recordings VALUES (?, ?)", (number, content))
-                database.execute(
-                    "DELETE FROM recordings WHERE run NOT IN "
-                    "(SELECT run FROM recordings ORDER BY run DESC LIMIT ?)",
-                    (_MOST_RECORDINGS,),
-                )
-        return number
+        with self._opened() as database:
+            content = None if recording is None else packed(figures, recording)
+            with _transaction(database):
+                return self._insert(database, figures, content)
 
     def add_all(self, runs: Sequence[RunFigures]) -> int:
         """Keep many runs without recordings, all or none; return how many."""
@@ -84,8 +86,7 @@ class History:
             return 0
         with self._opened() as database, _transaction(database):
             for figures in runs:
-                number = insert(database, figures)
-                append_line(self._journal, {"number": number, **row_of(figures)})
+                self._insert(database, figures)
         return len(runs)
 
     def configured(self, program: str, name: str) -> set[str]:
@@ -94,7 +95,7 @@ class History:
             rows = database.execute(
                 "SELECT DISTINCT configuration FROM runs WHERE program = ?", (program,)
             ).fetchall()
-        values = (json.loads(text).get(name) for (text,) in rows)
+            values = [json.loads(text).get(name) for (text,) in rows]
         return {str(value) for value in values if value is not None}
 
     def runs(self, limit: int = 1000, home: str | None = None) -> list[KeptRun]:
@@ -154,12 +155,27 @@ class History:
             row = database.execute(
                 "SELECT content FROM recordings WHERE run = ?", (number,)
             ).fetchone()
-        if row is None:
-            raise HistoryError(
-                f"{self.path}: expected a recording of run {number}, found none; they are kept of "
-                f"the newest {_MOST_RECORDINGS} runs"
+            if row is None:
+                raise HistoryError(
+                    f"{self.path}: expected a recording of run {number}, found none; they are kept "
+                    f"of the newest {_MOST_RECORDINGS} runs"
+                )
+            return unpacked(row[0])[1]
+
+    def _insert(
+        self, database: sqlite3.Connection, figures: RunFigures, content: bytes | None = None
+    ) -> int:
+        """Keep a run in the database and in the journal; return its number."""
+        number = insert(database, figures)
+        append_line(self._journal, {"number": number, **row_of(figures)})
+        if content is not None:
+            database.execute("INSERT INTO recordings VALUES (?, ?)", (number, content))
+            database.execute(
+                "DELETE FROM recordings WHERE run NOT IN "
+                "(SELECT run FROM recordings ORDER BY run DESC LIMIT ?)",
+                (_MOST_RECORDINGS,),
             )
-        return unpacked(row[0])[1]
+        return number
 
     @contextlib.contextmanager
     def _opened(self) -> Iterator[sqlite3.Connection]:
@@ -168,7 +184,7 @@ class History:
             self._prepare()
             with contextlib.closing(self._connect()) as database:
                 yield database
-        except (sqlite3.Error, OSError, ValueError) as error:
+        except _UNUSABLE as error:
             raise HistoryError(f"{self.path}: cannot be used: {error}") from error
 
     def _connect(self) -> sqlite3.Connection:

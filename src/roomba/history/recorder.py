@@ -127,15 +127,15 @@ class HistoryKeeper:
         if ended is None:
             self._keep_so_far(home, layer)
             return
-        trouble = ""
         self.interrupted = _as_interrupted(ended[0])
+        trouble = ""
         try:
             self.history.add(*ended)
         except RoombaError as error:
             trouble = f"the run was not kept: {error}"
         self._totals = None
-        self._unfinished.remove()
         self._tell(trouble)
+        self._remove_unfinished()
 
     def _take_up(self, view: RobotView) -> None:
         """Take the runs that were interrupted: one that goes on is resumed, others are kept."""
@@ -169,12 +169,18 @@ class HistoryKeeper:
     def _keep_so_far(self, home: HomeView, layer: Layers) -> None:
         run = self._recorder.so_far
         if run is None:
-            self._unfinished.remove()
+            self._remove_unfinished()
             return
         try:
             self._unfinished.keep(run, home_of(home), lambda: cells_of(layer))
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, TypeError) as error:
             self._tell(f"the run under way is not kept until it ends: {error}")
+
+    def _remove_unfinished(self) -> None:
+        try:
+            self._unfinished.remove()
+        except OSError as error:
+            self._tell(f"the file of a run that is over cannot be removed: {error}")
 
     def totals(self) -> TotalsView:
         """Return the sums over all runs that were kept of this program; raises HistoryError."""

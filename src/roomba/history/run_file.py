@@ -31,7 +31,7 @@ class RunFileError(RoombaError):
 
 
 def write_run(figures: RunFigures, recording: RunRecording, path: Path) -> None:
-    """Write a run into a file; raises RunFileError when the disk refuses."""
+    """Write a run into a file; raises RunFileError, also for what :func:`packed` refuses."""
     try:
         write_whole(path, packed(figures, recording))
     except OSError as error:
@@ -49,8 +49,24 @@ def read_run(path: Path) -> tuple[RunFigures, RunRecording]:
 
 
 def packed(figures: RunFigures, recording: RunRecording) -> bytes:
-    """Return a run as bytes."""
-    about = {
+    """Return a run as bytes; raises RunFileError for what could not be read again."""
+    if not np.isfinite(recording.trace).all():
+        raise RunFileError("expected a trace of finite numbers, got one with others")
+    try:
+        about = json.dumps(_about(figures, recording), allow_nan=False)
+    except (ValueError, TypeError) as error:
+        raise RunFileError(f"expected plain values and finite numbers: {error}") from error
+    arrays: dict[str, Any] = {name: layer.cells for name, layer in recording.layers.items()}
+    arrays["trace"] = recording.trace
+    arrays["about"] = np.frombuffer(about.encode(), np.uint8)
+    file = io.BytesIO()
+    np.savez_compressed(file, **arrays)
+    return file.getvalue()
+
+
+def _about(figures: RunFigures, recording: RunRecording) -> dict[str, Any]:
+    """Return all of a run that is no array."""
+    return {
         "version": VERSION,
         "figures": _plain(asdict(figures)),
         "words": [asdict(word) for word in recording.words],
@@ -61,12 +77,6 @@ def packed(figures: RunFigures, recording: RunRecording) -> bytes:
             for name, layer in recording.layers.items()
         },
     }
-    arrays: dict[str, Any] = {name: layer.cells for name, layer in recording.layers.items()}
-    arrays["trace"] = recording.trace
-    arrays["about"] = np.frombuffer(json.dumps(about, allow_nan=False).encode(), np.uint8)
-    file = io.BytesIO()
-    np.savez_compressed(file, **arrays)
-    return file.getvalue()
 
 
 def unpacked(content: bytes) -> tuple[RunFigures, RunRecording]:

@@ -72,20 +72,23 @@ def insert(database: sqlite3.Connection, figures: RunFigures) -> int:
 
 
 def row_of(figures: RunFigures) -> dict[str, Any]:
-    """Return the columns of a run, with its missed floor as rows of their own."""
+    """Return the columns of a run, with its missed floor as rows of their own.
+
+    Raises ValueError for numbers that are not finite, and TypeError for values that are not plain.
+    """
     source = figures.source
     return {
         "program": source.program,
         "home": source.home,
         "seed": source.seed,
         "repeat": source.repeat,
-        "configuration": json.dumps(dict(source.configuration), sort_keys=True),
+        "configuration": _text(dict(source.configuration)),
         "kind": figures.kind,
         "began": figures.began,
         "outcome": figures.outcome,
         "message": figures.message,
-        "times": json.dumps(asdict(figures.times), sort_keys=True),
-        "open_edges": json.dumps(
+        "times": _text(asdict(figures.times)),
+        "open_edges": _text(
             [[edge.length, edge.x, edge.y, edge.reason.name] for edge in figures.open_edges]
         ),
         **{name: _known(getattr(figures, name)) for name in _NUMBERS},
@@ -105,6 +108,10 @@ def insert_row(database: sqlite3.Connection, row: dict[str, Any], number: int | 
         "INSERT INTO missed VALUES (?, ?, ?, ?, ?, ?)", [(given, *miss) for miss in row["missed"]]
     )
     return given
+
+
+def _text(value: Any) -> str:
+    return json.dumps(value, sort_keys=True, allow_nan=False)
 
 
 def _known(value: float) -> float | None:

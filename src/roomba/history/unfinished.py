@@ -124,7 +124,7 @@ class UnfinishedFile:
     def keep(self, run: RunSoFar, home: Mapping[str, Any], layers: Layers) -> None:
         """Write what is new, a moment after the last time; it is on the disk then.
 
-        Raises OSError, and ValueError for what is not finite.
+        Raises OSError, ValueError for what is not finite, and TypeError for what is not plain.
         """
         now, written = time.monotonic(), self._written
         if now - written.at < _EVERY or len(run.rows) == written.rows:
@@ -142,13 +142,18 @@ class UnfinishedFile:
         written.rows, written.words, written.home = len(run.rows), len(run.words), home
 
     def remove(self) -> None:
-        """Remove the file: the run is kept, or was none."""
-        if self._path is not None:
-            self._path.unlink(missing_ok=True)
-        if self._held is not None:
-            os.close(self._held)
-        self._path = self._held = None
-        self._written = _Written()
+        """Remove the file: the run is kept, or was none.
+
+        Raises OSError when the disk refuses; the next run gets a file of its own all the same.
+        """
+        try:
+            if self._path is not None:
+                self._path.unlink(missing_ok=True)
+        finally:
+            if self._held is not None:
+                os.close(self._held)
+            self._path = self._held = None
+            self._written = _Written()
 
     def _begin(self, run: RunSoFar) -> Path:
         make_private(self._folder)

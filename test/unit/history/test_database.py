@@ -6,6 +6,7 @@ import math
 import sqlite3
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 from roomba.client.household import TotalsView
+from roomba.client.protocol import MissedFloor
 from roomba.files.journal import read_lines, write_lines
 from roomba.history.database import History, HistoryError
 from roomba.history.run import RunFigures, RunRecording
@@ -210,3 +212,62 @@ def test_totals_are_of_one_program(tmp_path: Path, figures: RunFigures) -> None:
     assert totals.energy == 2.0
     assert totals.covered == pytest.approx(2 * figures.covered)
     assert (totals.duration, totals.distance) == (2 * figures.duration, 2 * figures.distance)
+
+
+def of_seed(figures: RunFigures, seed: int) -> RunFigures:
+    return replace(figures, source=replace(figures.source, seed=seed))
+
+
+def asked_for(figures: RunFigures, by: object) -> RunFigures:
+    return replace(figures, source=replace(figures.source, configuration={"request": by}))
+
+
+@pytest.mark.parametrize(
+    "unfit",
+    [
+        lambda figures: of_seed(figures, 2**64),
+        lambda figures: asked_for(figures, math.nan),
+        lambda figures: asked_for(figures, {"a set"}),
+        lambda figures: replace(figures, began=math.nan),
+        lambda figures: replace(figures, missed=(MissedFloor(math.inf, 0.0, 0.0, "", ""),)),
+    ],
+    ids=["a large seed", "NaN", "what is not plain", "no beginning", "an endless area"],
+)
+def test_figures_that_could_not_be_read_again_are_refused(
+    tmp_path: Path, figures: RunFigures, unfit: Callable[[RunFigures], RunFigures]
+) -> None:
+    history = History(tmp_path)
+    with pytest.raises(HistoryError):
+        history.add(unfit(figures))
+    assert history.runs() == []
+    assert history.add(figures) == 1
+    (journal,) = tmp_path.glob("*.journal")
+    assert len(read_lines(journal)) == 1
+
+
+def test_a_recording_that_could_not_be_read_again_is_refused(
+    tmp_path: Path, figures: RunFigures, recording: RunRecording
+) -> None:
+    trace = recording.trace.copy()
+    trace[3, 9] = math.nan
+    home = {**recording.home, "radius": math.nan}
+    for unfit in (replace(recording, trace=trace), replace(recording, home=home)):
+        with pytest.raises(HistoryError, match="finite"):
+            History(tmp_path).add(figures, unfit)
+    assert History(tmp_path).runs() == []
+
+
+@pytest.mark.parametrize("column", ["times", "configuration", "open_edges"])
+def test_rows_that_make_no_sense_are_told(
+    tmp_path: Path, figures: RunFigures, recording: RunRecording, column: str
+) -> None:
+    history = History(tmp_path)
+    number = history.add(figures, recording)
+    with sqlite3.connect(history.path) as other:
+        other.execute(f"UPDATE runs SET {column} = '[[1]]'")
+        other.execute("UPDATE recordings SET content = x'00'")
+    other.close()
+    with pytest.raises(HistoryError, match="cannot be used"):
+        history.configured("sim", "request") if column == "configuration" else history.runs()
+    with pytest.raises(HistoryError, match="expected a recorded run"):
+        history.recording(number)

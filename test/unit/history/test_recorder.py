@@ -134,3 +134,39 @@ def test_damage_that_is_found_when_sums_are_asked_for_is_told_as_well(tmp_path: 
         keeper.look(view(float(second), "docked"), HOME, layer)
     assert len(told) == 1
     assert "it is set aside as" in told[0]
+
+
+def test_a_file_that_cannot_be_removed_is_told_and_the_next_run_has_its_own(tmp_path: Path) -> None:
+    told: list[str] = []
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, told.append)
+    keeper.look(view(0.0, "cleaning"), HOME, layer)
+    with pytest.MonkeyPatch.context() as disk:
+        disk.setattr(Path, "unlink", refuse)
+        keeper.look(view(9.0, "docked", REPORT), HOME, layer)
+    assert len(told) == 1
+    assert "cannot be removed: read-only" in told[0]
+    (left,) = tmp_path.glob("unfinished-*")
+    keeper.look(view(10.0, "cleaning", REPORT), HOME, layer)
+    assert len(list(tmp_path.glob("unfinished-*"))) == 2
+    keeper.look(view(19.0, "docked", replace(REPORT)), HOME, layer)
+    assert list(tmp_path.glob("unfinished-*")) == [left]
+    HistoryKeeper(History(tmp_path), SOURCE, told.append).look(view(0.0, "docked"), HOME, layer)
+    assert len(keeper.history.runs()) == 2
+    assert len(told) == 1
+
+
+def refuse(*_: object, **__: object) -> None:
+    raise OSError("read-only")
+
+
+@pytest.mark.parametrize("wish", [{"seed": math.nan}, {"rooms": {"hall"}}], ids=["NaN", "a set"])
+def test_a_run_that_cannot_be_kept_as_it_was_asked_for_is_told(
+    tmp_path: Path, wish: dict[str, object]
+) -> None:
+    told: list[str] = []
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, told.append)
+    keeper.note(wish)
+    keeper.look(view(0.0, "cleaning"), HOME, layer)
+    keeper.look(view(9.0, "docked", REPORT), HOME, layer)
+    assert ["not kept" in text for text in told] == [True, True]
+    assert keeper.history.runs() == []

@@ -110,3 +110,17 @@ def test_a_home_that_cannot_be_shown_is_refused(
 ) -> None:
     with pytest.raises(RunFileError, match="with the home that it is of"):
         RecordedRobot(figures, replace(recording, home=home))
+
+
+def test_what_could_not_be_read_again_is_not_written(
+    tmp_path: Path, figures: RunFigures, recording: RunRecording
+) -> None:
+    trace = recording.trace.copy()
+    trace[0, 1] = np.nan
+    with pytest.raises(RunFileError, match="finite"):
+        write_run(figures, replace(recording, trace=trace), tmp_path / "one.run")
+    with pytest.raises(RunFileError, match="finite"):
+        write_run(figures, replace(recording, home={"radius": np.inf}), tmp_path / "one.run")
+    with pytest.raises(RunFileError, match="plain"):
+        write_run(figures, replace(recording, home={"rooms": {1}}), tmp_path / "one.run")
+    assert not list(tmp_path.iterdir())

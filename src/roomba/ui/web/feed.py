@@ -13,7 +13,6 @@ from typing import Final
 from roomba.client.household import Household, told_of
 from roomba.client.observed import ObservedRobot, Timeline
 from roomba.client.plain import home_of, replay_of, state_of
-from roomba.client.protocol import RobotUnavailableError
 from roomba.client.view import HomeView, LayerName, RobotView
 from roomba.errors import RoombaError
 from roomba.history.recorder import HistoryKeeper
@@ -65,14 +64,12 @@ class Feed:
         self._looks += 1
         try:
             view, home = await asyncio.to_thread(self._look_at_robot)
-        except (RobotUnavailableError, RoombaError) as reason:
-            # What was seen last stays on the page, greyed, with the reason.
-            self.state = Told({**self.state.value, "link": "gone", "reason": str(reason)})
-            self.trail.lose_sight()
-            self.metrics.look(None, self.events.note_gone(str(reason)))
-        else:
             self._show(view, home)
-            self.metrics.look(view, self.events.note(view))
+        except RoombaError as reason:
+            self._lose_sight(str(reason))
+        # What a robot of another program answers is not known here: the next look may do.
+        except Exception as fault:
+            self._lose_sight(f"a look failed: {type(fault).__name__}: {fault}")
         self.number += 1
         looked, self._looked = self._looked, asyncio.Event()
         looked.set()
@@ -97,6 +94,13 @@ class Feed:
         self.state = Told(state)
         if home.version != self.home_version:
             self.home, self.home_version = Told(home_of(home)), home.version
+        self.metrics.look(view, self.events.note(view))
+
+    def _lose_sight(self, reason: str) -> None:
+        """Leave on the page what was seen last, greyed, with the reason."""
+        self.state = Told({**self.state.value, "link": "gone", "reason": reason})
+        self.trail.lose_sight()
+        self.metrics.look(None, self.events.note_gone(reason))
 
     def _look_at_robot(self) -> tuple[RobotView, HomeView]:
         view, home = self._robot.robot(), self._robot.home()

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import cast
 
+import pytest
 from unit.history.seen import HOME, view
 
 from roomba.client.observed import ObservedRobot, TimelineView
@@ -91,3 +92,16 @@ def test_another_time_of_a_recording_brings_the_way_up_to_it() -> None:
     assert looked(feed, 1) == [(3.0, 0.0), (3.0, 0.1)]
     robot.driven = [(7.0, 7.0)]
     assert looked(feed, 1) == [(3.0, 0.0), (3.0, 0.1), (3.0, 0.15)]
+
+
+def test_a_look_that_fails_is_told_and_is_not_the_last() -> None:
+    robot = Seen([(0.0, (0.0, 0.0)), (1.0, (0.5, 0.0))])
+    feed = Feed(cast(ObservedRobot, robot))
+    with pytest.MonkeyPatch.context() as answers:
+        answers.setattr(robot, "home", lambda: None)
+        looked(feed, 1)
+    assert feed.state.value["link"] == "gone"
+    assert "a look failed: AttributeError" in feed.state.value["reason"]
+    looked(feed, 1)
+    assert feed.state.value["link"] != "gone"
+    assert feed.number == 2
