@@ -62,9 +62,9 @@ class HistoryError(RoombaError):
 class History:
     """The runs in a folder; nothing is kept open between two calls, which may be of any thread.
 
-    A database that is damaged is set aside under another name, and ``set_aside`` names it; a new
-    one takes its place, with the figures of all runs out of the journal beside it, and without
-    recordings. All methods raise HistoryError.
+    A database that is damaged is set aside under another name, and ``set_aside`` names it. A new
+    one takes its place, or that of one that is missing, with the figures of all runs out of the
+    journal beside it, and without recordings. All methods raise HistoryError.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -187,31 +187,49 @@ class History:
         except _UNUSABLE as error:
             raise HistoryError(f"{self.path}: cannot be used: {error}") from error
 
-    def _connect(self) -> sqlite3.Connection:
-        database = sqlite3.connect(self.path, timeout=_BUSY, isolation_level=None)
-        database.execute("PRAGMA foreign_keys = ON")
-        database.execute("PRAGMA synchronous = FULL")
-        return database
-
     def _prepare(self) -> None:
         """Make the file, or bring it up to date; one process at a time."""
         make_private(self.path.parent)
         flags = os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW
         with open(os.open(self.path.with_suffix(".lock"), flags, 0o600), "r+b") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
-            # SQLite gives its log the mode of the file.
-            os.close(os.open(self.path, flags, 0o600))
+            if not self._is_there():
+                self._make()
             try:
                 self._bring_up_to_date()
             except sqlite3.DatabaseError as error:
                 if isinstance(error, sqlite3.OperationalError):
                     raise
                 self._set_aside()
-                os.close(os.open(self.path, flags, 0o600))
+                self._make()
                 self._bring_up_to_date()
-                self._restore()
             if not self._journal.exists():
                 self._begin_journal()
+
+    def _connect(self) -> sqlite3.Connection:
+        return _connected(self.path)
+
+    def _is_there(self) -> bool:
+        """Whether there is a file that is not empty."""
+        try:
+            with open(os.open(self.path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW), "rb") as file:
+                return file.seek(0, os.SEEK_END) > 0
+        except FileNotFoundError:
+            return False
+
+    def _make(self) -> None:
+        """Make a database with the figures of the journal; it gets its name once it is filled."""
+        new = self.path.with_name(f"{_NAME}.new")
+        # SQLite would take what is left of another one for its own.
+        for left in (new, *_beside(new), *_beside(self.path)):
+            left.unlink(missing_ok=True)
+        # SQLite gives its log the mode of the file.
+        flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC | os.O_NOFOLLOW
+        os.close(os.open(new, flags, 0o600))
+        with contextlib.closing(_connected(new)) as database:
+            _migrate(database, 0)
+            self._restore(database)
+        new.replace(self.path)
 
     def _bring_up_to_date(self) -> None:
         with contextlib.closing(self._connect()) as database:
@@ -224,9 +242,7 @@ class History:
                 )
             if database.execute("PRAGMA quick_check(1)").fetchone()[0] != "ok":
                 raise sqlite3.DatabaseError("the check of its pages failed")
-            for step in range(version, len(MIGRATIONS)):
-                script = f"BEGIN;{MIGRATIONS[step]};PRAGMA user_version = {step + 1};COMMIT;"
-                database.executescript(script)
+            _migrate(database, version)
 
     def _begin_journal(self) -> None:
         """Write the figures of a database that an older program made."""
@@ -234,11 +250,11 @@ class History:
             runs = select(database, "TRUE ORDER BY id", ())
         write_lines(self._journal, ({"number": run.number, **row_of(run.figures)} for run in runs))
 
-    def _restore(self) -> None:
+    def _restore(self, database: sqlite3.Connection) -> None:
         """Fill a new database with the figures of the journal."""
         # Of a number that was given twice the first writer was killed before it was kept.
         rows = {row.pop("number", None): ADDED | row for row in read_lines(self._journal)}
-        with contextlib.closing(self._connect()) as database, _transaction(database):
+        with _transaction(database):
             for number, row in rows.items():
                 if isinstance(number, int) and set(row) == {*COLUMNS, "missed"}:
                     insert_row(database, row, number)
@@ -247,10 +263,29 @@ class History:
         stamp = time.strftime("%Y%m%d-%H%M%S")
         aside = self.path.with_name(f"{_NAME}.damaged-{stamp}-{os.getpid()}")
         self.path.replace(aside)
-        for end in ("-wal", "-shm"):
+        for one, other in zip(_beside(self.path), _beside(aside), strict=True):
             with contextlib.suppress(FileNotFoundError):
-                self.path.with_name(_NAME + end).replace(aside.with_name(aside.name + end))
+                one.replace(other)
         self.set_aside = aside
+
+
+def _beside(path: Path) -> list[Path]:
+    """Return the files that SQLite may have beside a database."""
+    return [path.with_name(path.name + end) for end in ("-wal", "-shm", "-journal")]
+
+
+def _connected(path: Path) -> sqlite3.Connection:
+    database = sqlite3.connect(path, timeout=_BUSY, isolation_level=None)
+    database.execute("PRAGMA foreign_keys = ON")
+    database.execute("PRAGMA synchronous = FULL")
+    return database
+
+
+def _migrate(database: sqlite3.Connection, version: int) -> None:
+    """Bring a database of a version to the newest one."""
+    for step in range(version, len(MIGRATIONS)):
+        script = f"BEGIN;{MIGRATIONS[step]};PRAGMA user_version = {step + 1};COMMIT;"
+        database.executescript(script)
 
 
 @contextlib.contextmanager

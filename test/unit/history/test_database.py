@@ -271,3 +271,52 @@ def test_rows_that_make_no_sense_are_told(
         history.configured("sim", "request") if column == "configuration" else history.runs()
     with pytest.raises(HistoryError, match="expected a recorded run"):
         history.recording(number)
+
+
+@pytest.mark.parametrize("is_damaged", [True, False], ids=["damaged", "missing"])
+def test_a_restore_that_is_interrupted_begins_anew(
+    tmp_path: Path, figures: RunFigures, is_damaged: bool
+) -> None:
+    history = History(tmp_path)
+    for _ in range(3):
+        history.add(figures)
+    if is_damaged:
+        history.path.write_bytes(b"no database")
+    else:
+        history.path.unlink()
+    with pytest.MonkeyPatch.context() as disk:
+        disk.setattr("roomba.history.database.insert_row", fill_the_disk)
+        for _ in range(2):
+            with pytest.raises(HistoryError, match="is full"):
+                history.runs()
+    assert [run.number for run in History(tmp_path).runs()] == [3, 2, 1]
+    assert History(tmp_path).add(figures) == 4
+    assert (history.set_aside is not None) == is_damaged
+    assert not list(tmp_path.glob("*.new*"))
+
+
+def fill_the_disk(*_: object) -> None:
+    raise sqlite3.OperationalError("the disk is full")
+
+
+@pytest.mark.parametrize("left", [b"", None], ids=["empty", "missing"])
+def test_the_figures_of_a_database_that_is_no_more_come_back(
+    tmp_path: Path, figures: RunFigures, left: bytes | None
+) -> None:
+    history = History(tmp_path)
+    for _ in range(3):
+        history.add(figures)
+    log = tmp_path / f"{history.path.name}-wal"
+    with sqlite3.connect(history.path) as reader:
+        reader.execute("UPDATE runs SET home = 'another'")
+        reader.commit()
+        log_of_another = log.read_bytes()
+    reader.close()
+    history.path.unlink()
+    log.write_bytes(log_of_another)
+    if left is not None:
+        history.path.write_bytes(left)
+    assert [run.number for run in History(tmp_path).runs()] == [3, 2, 1]
+    assert {repr(run.figures) for run in History(tmp_path).runs()} == {repr(figures)}
+    assert History(tmp_path).add(figures) == 4
+    assert history.path.stat().st_mode & 0o777 == 0o600
