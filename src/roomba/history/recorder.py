@@ -128,14 +128,19 @@ class HistoryKeeper:
             self._keep_so_far(home, layer)
             return
         self.interrupted = _as_interrupted(ended[0])
-        trouble = ""
-        try:
-            self.history.add(*ended)
-        except RoombaError as error:
-            trouble = f"the run was not kept: {error}"
+        self._keep(*ended)
         self._totals = None
-        self._tell(trouble)
-        self._remove_unfinished()
+
+    def _keep(self, figures: RunFigures, recording: RunRecording) -> None:
+        """Keep a run that ended; one that the history refuses is left to the next program."""
+        try:
+            self.history.add(figures, recording)
+        except RoombaError as error:
+            self._unfinished.leave()
+            self._tell(f"the run was not kept: {error}")
+        else:
+            self._tell("")
+            self._remove_unfinished()
 
     def _take_up(self, view: RobotView) -> None:
         """Take the runs that were interrupted: one that goes on is resumed, others are kept."""
@@ -160,10 +165,10 @@ class HistoryKeeper:
         return None if newest is None else _as_interrupted(newest)
 
     def _has_kept(self, run: RunSoFar) -> bool:
-        """Whether the program was killed only after it had kept the run."""
+        """Whether the run is in the history, and its file could not be removed any more."""
         return any(
             each.figures.began == run.wall and each.figures.source.program == run.source.program
-            for each in self.history.runs(limit=10)
+            for each in self.history.runs(home=run.source.home)
         )
 
     def _keep_so_far(self, home: HomeView, layer: Layers) -> None:

@@ -150,10 +150,14 @@ class UnfinishedFile:
             if self._path is not None:
                 self._path.unlink(missing_ok=True)
         finally:
-            if self._held is not None:
-                os.close(self._held)
-            self._path = self._held = None
-            self._written = _Written()
+            self.leave()
+
+    def leave(self) -> None:
+        """Leave the file, if there is one, to the next program; the next run gets its own."""
+        if self._held is not None:
+            os.close(self._held)
+        self._path = self._held = None
+        self._written = _Written()
 
     def _begin(self, run: RunSoFar) -> Path:
         make_private(self._folder)

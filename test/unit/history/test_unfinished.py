@@ -15,7 +15,7 @@ import pytest
 from fixtures.waiting import wait_until
 from unit.history.seen import HOME, REPORT, SOURCE, layer, view
 
-from roomba.history.database import History
+from roomba.history.database import History, HistoryError
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunFigures, RunRecording
 from roomba.history.unfinished import INTERRUPTED, WHY, interrupted_runs
@@ -25,7 +25,7 @@ WRITER: Final = """
 import sys, time
 from pathlib import Path
 from unit.history.seen import HOME, SOURCE, layer, view
-from roomba.history.database import History
+from roomba.history.database import History, HistoryError
 from roomba.history.recorder import HistoryKeeper
 
 keeper = HistoryKeeper(History(Path(sys.argv[1])), SOURCE, print)
@@ -204,3 +204,25 @@ def test_a_disk_that_refuses_is_told_once(tmp_path: Path) -> None:
         keeper.look(view(float(second), "cleaning"), HOME, layer)
     assert len(told) == 1
     assert "not kept" in told[0]
+
+
+def test_a_run_that_the_history_refuses_is_kept_by_the_next_program(tmp_path: Path) -> None:
+    told: list[str] = []
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, told.append)
+    keeper.look(view(0.0, "cleaning"), HOME, layer)
+    with pytest.MonkeyPatch.context() as disk:
+        disk.setattr(keeper.history, "add", refuse)
+        keeper.look(view(9.0, "docked", REPORT), HOME, layer)
+    keeper.look(view(10.0, "docked", REPORT), HOME, layer)
+    assert told == ["the run was not kept: it is full"]
+    assert History(tmp_path).runs() == []
+    keeper.look(view(11.0, "cleaning", REPORT), HOME, layer)
+    keeper.look(view(19.0, "docked", replace(REPORT)), HOME, layer)
+    HistoryKeeper(History(tmp_path), SOURCE, pytest.fail).look(view(2.0, "docked"), HOME, layer)
+    outcomes = [run.figures.outcome for run in History(tmp_path).runs()]
+    assert outcomes == ["completed", INTERRUPTED]
+    assert not list(tmp_path.glob("unfinished-*"))
+
+
+def refuse(*_: object) -> None:
+    raise HistoryError("it is full")
