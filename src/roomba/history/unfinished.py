@@ -163,11 +163,17 @@ class UnfinishedFile:
         make_private(self._folder)
         path = self._folder / f"unfinished-{secrets.token_hex(8)}.journal"
         flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC | os.O_NOFOLLOW
-        self._held = os.open(path, flags, 0o600)
-        fcntl.flock(self._held, fcntl.LOCK_EX)
-        self._path = path
-        source = asdict(run.source)
-        append_line(path, {"source": source, "clock": run.clock, "wall": run.wall})
+        held = os.open(path, flags, 0o600)
+        try:
+            fcntl.flock(held, fcntl.LOCK_EX)
+            source = asdict(run.source)
+            append_line(path, {"source": source, "clock": run.clock, "wall": run.wall})
+        except BaseException:
+            # What follows would be worth nothing without its first line.
+            os.close(held)
+            path.unlink(missing_ok=True)
+            raise
+        self._held, self._path = held, path
         return path
 
 

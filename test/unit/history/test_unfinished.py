@@ -8,6 +8,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Final
 
 import numpy as np
@@ -15,6 +16,7 @@ import pytest
 from fixtures.waiting import wait_until
 from unit.history.seen import HOME, REPORT, SOURCE, layer, view
 
+from roomba.files.journal import read_lines
 from roomba.history.database import History, HistoryError
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunFigures, RunRecording
@@ -25,6 +27,7 @@ WRITER: Final = """
 import sys, time
 from pathlib import Path
 from unit.history.seen import HOME, SOURCE, layer, view
+from roomba.files.journal import read_lines
 from roomba.history.database import History, HistoryError
 from roomba.history.recorder import HistoryKeeper
 
@@ -53,6 +56,14 @@ def killed_at(tmp_path: Path) -> float:
         program.send_signal(signal.SIGKILL)
         program.wait(10.0)
     return looks(told)[-1]
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Put another clock, s, in place of the one by which is written."""
+    now = [0.0]
+    monkeypatch.setattr("roomba.history.unfinished.time", SimpleNamespace(monotonic=lambda: now[0]))
+    return now
 
 
 def looks(told: Path) -> list[float]:
@@ -226,3 +237,28 @@ def test_a_run_that_the_history_refuses_is_kept_by_the_next_program(tmp_path: Pa
 
 def refuse(*_: object) -> None:
     raise HistoryError("it is full")
+
+
+def test_a_run_whose_first_line_the_disk_refuses_is_kept_from_the_next_one_on(
+    tmp_path: Path, clock: list[float]
+) -> None:
+    told: list[str] = []
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, told.append)
+    with pytest.MonkeyPatch.context() as disk:
+        disk.setattr("roomba.history.unfinished.append_line", fill_the_disk)
+        for second in range(3):
+            clock[0] += 1.0
+            keeper.look(view(float(second), "cleaning"), HOME, layer)
+            assert not list(tmp_path.glob("unfinished-*"))
+    assert told == ["the run under way is not kept until it ends: it is full"]
+    for second in range(3, 9):
+        clock[0] += 1.0
+        keeper.look(view(float(second), "cleaning"), HOME, layer)
+    (path,) = tmp_path.glob("unfinished-*")
+    first, second_line, *_ = read_lines(path)
+    assert first["source"]["home"] == "box"
+    assert len(second_line["rows"]) == 4
+
+
+def fill_the_disk(*_: object) -> None:
+    raise OSError("it is full")
