@@ -144,19 +144,23 @@ class HistoryKeeper:
 
     def _take_up(self, view: RobotView) -> None:
         """Take the runs that were interrupted: one that goes on is resumed, others are kept."""
-        try:
-            with interrupted_runs(self.history.path.parent) as runs:
-                for run in runs:
-                    is_under_way = self._recorder.so_far is None and view.vacuum.phase in _UNDER_WAY
-                    if is_under_way and run.may_go_on(self._recorder.source, view.time):
-                        self._recorder.resume(run, view)
-                    elif not self._has_kept(run):
-                        self.history.add(*run.interrupted())
-        except (RoombaError, OSError) as error:
-            self._tell(f"a run that was interrupted was not kept: {error}")
+        with interrupted_runs(self.history.path.parent, self._tell) as runs:
+            for path, run in runs:
+                try:
+                    self._take(run, view)
+                    path.unlink(missing_ok=True)
+                except (RoombaError, OSError) as error:
+                    self._tell(f"a run that was interrupted was not kept: {error}")
         # A history that cannot be read is told of when it is to keep a run.
         with contextlib.suppress(RoombaError):
             self.interrupted = self._newest_interrupted()
+
+    def _take(self, run: RunSoFar, view: RobotView) -> None:
+        is_under_way = self._recorder.so_far is None and view.vacuum.phase in _UNDER_WAY
+        if is_under_way and run.may_go_on(self._recorder.source, view.time):
+            self._recorder.resume(run, view)
+        elif not self._has_kept(run):
+            self.history.add(*run.interrupted())
 
     def _newest_interrupted(self) -> dict[str, Any] | None:
         source = self._recorder.source

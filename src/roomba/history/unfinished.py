@@ -24,6 +24,7 @@ import numpy as np
 from roomba.arrays import Floats32
 from roomba.client.protocol import ErrandOutcome
 from roomba.files.atomic import make_private
+from roomba.files.damaged import set_aside
 from roomba.files.journal import append_line, read_lines
 from roomba.history.run import (
     CELL_LAYERS,
@@ -178,28 +179,41 @@ class UnfinishedFile:
 
 
 @contextlib.contextmanager
-def interrupted_runs(folder: Path) -> Iterator[list[RunSoFar]]:
-    """Return the runs of programs that are no more, the newest first; they are removed on success.
+def interrupted_runs(
+    folder: Path, tell: Callable[[str], object]
+) -> Iterator[list[tuple[Path, RunSoFar]]]:
+    """Return the runs of programs that are no more, the newest first, each with its file.
 
-    Files that tell of no run are removed as well. Raises OSError.
+    The files are held meanwhile; each is to be removed once its run is kept. Those that tell of no
+    run are removed here. One that cannot be read is set aside, and told.
     """
-    held: list[tuple[int, Path]] = []
-    try:
+    with contextlib.ExitStack() as held:
+        found = []
         for path in sorted(folder.glob("unfinished-*.journal")):
-            descriptor = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW)
             try:
-                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                os.close(descriptor)
-            else:
-                held.append((descriptor, path))
-        found = [_run_of(read_lines(path)) for _, path in held]
-        yield sorted((run for run in found if run), key=lambda run: -run.wall)
-        for _, path in held:
-            path.unlink(missing_ok=True)
-    finally:
-        for descriptor, _ in held:
-            os.close(descriptor)
+                if not _holds(path, held):
+                    continue
+                run = _run_of(read_lines(path))
+                if run is None:
+                    path.unlink(missing_ok=True)
+                else:
+                    found.append((path, run))
+            except FileNotFoundError:
+                continue  # another program was quicker
+            except OSError as error:
+                tell(f"a run that was interrupted cannot be read: {error}; {set_aside(path)}")
+        yield sorted(found, key=lambda each: -each[1].wall)
+
+
+def _holds(path: Path, held: contextlib.ExitStack) -> bool:
+    """Hold a file, if no other program does."""
+    descriptor = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW)
+    held.callback(os.close, descriptor)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
 
 
 def _run_of(lines: Sequence[dict[str, Any]]) -> RunSoFar | None:
@@ -216,7 +230,7 @@ def _run_of(lines: Sequence[dict[str, Any]]) -> RunSoFar | None:
                 for name, packed in line.get("layers", {}).items()
                 if name in CELL_LAYERS
             }
-    except (ValueError, TypeError, KeyError, zlib.error):
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, zlib.error):
         return None
     whole = all(len(row) == len(TRACE) for row in run.rows)
     return run if run.rows and whole and np.isfinite(run.trace).all() else None

@@ -16,7 +16,7 @@ import pytest
 from fixtures.waiting import wait_until
 from unit.history.seen import HOME, REPORT, SOURCE, layer, view
 
-from roomba.files.journal import read_lines
+from roomba.files.journal import read_lines, write_lines
 from roomba.history.database import History, HistoryError
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.run import RunFigures, RunRecording
@@ -27,7 +27,7 @@ WRITER: Final = """
 import sys, time
 from pathlib import Path
 from unit.history.seen import HOME, SOURCE, layer, view
-from roomba.files.journal import read_lines
+from roomba.files.journal import read_lines, write_lines
 from roomba.history.database import History, HistoryError
 from roomba.history.recorder import HistoryKeeper
 
@@ -202,9 +202,9 @@ def test_a_damaged_file_costs_its_own_lines_alone(
     content = bytearray(path.read_bytes())
     content[int(share * len(content))] ^= 0xFF
     path.write_bytes(content)
-    with interrupted_runs(tmp_path) as runs:
-        assert len(runs) == (0 if share == 0.0 else 1)
-    assert not path.exists()
+    with interrupted_runs(tmp_path, pytest.fail) as runs:
+        assert [left for left, _ in runs] == ([] if share == 0.0 else [path])
+    assert path.exists() == (share > 0.0)
 
 
 def test_a_disk_that_refuses_is_told_once(tmp_path: Path) -> None:
@@ -262,3 +262,40 @@ def test_a_run_whose_first_line_the_disk_refuses_is_kept_from_the_next_one_on(
 
 def fill_the_disk(*_: object) -> None:
     raise OSError("it is full")
+
+
+@pytest.mark.parametrize("what", ["a folder", "a link", "too much"])
+def test_a_file_that_cannot_be_read_is_set_aside_and_the_others_are_kept(
+    tmp_path: Path, killed_at: float, what: str
+) -> None:
+    assert killed_at > 101.0
+    bad = tmp_path / "unfinished-0000000000000000.journal"
+    if what == "a folder":
+        bad.mkdir()
+    elif what == "a link":
+        bad.symlink_to(tmp_path / "told")
+    else:
+        with bad.open("w") as file:
+            file.truncate(1_000_000_001)
+    told: list[str] = []
+    HistoryKeeper(History(tmp_path), SOURCE, told.append).look(view(2.0, "docked"), HOME, layer)
+    assert [f"set aside as {bad.name}.damaged" in text for text in told] == [True]
+    assert kept(tmp_path)[0].outcome == INTERRUPTED
+    assert [path.name for path in tmp_path.glob("unfinished-*")] == [f"{bad.name}.damaged"]
+    HistoryKeeper(History(tmp_path), SOURCE, pytest.fail).look(view(2.0, "docked"), HOME, layer)
+
+
+def test_a_run_that_is_refused_does_not_keep_the_others_out(
+    tmp_path: Path, killed_at: float
+) -> None:
+    assert killed_at > 101.0
+    (path,) = tmp_path.glob("unfinished-*")
+    first, *seen = read_lines(path)
+    first["source"]["seed"] = 2**64
+    newer = tmp_path / "unfinished-ffffffffffffffff.journal"
+    write_lines(newer, [first | {"wall": first["wall"] + 1.0}, *seen])
+    told: list[str] = []
+    HistoryKeeper(History(tmp_path), SOURCE, told.append).look(view(2.0, "docked"), HOME, layer)
+    assert ["was not kept" in text for text in told] == [True]
+    assert kept(tmp_path)[0].source == SOURCE
+    assert list(tmp_path.glob("unfinished-*")) == [newer]
