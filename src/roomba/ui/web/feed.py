@@ -13,7 +13,7 @@ from typing import Final
 from roomba.client.household import Household, told_of
 from roomba.client.observed import ObservedRobot, Timeline
 from roomba.client.plain import home_of, replay_of, state_of
-from roomba.client.view import HomeView, LayerName, RobotView
+from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
 from roomba.errors import RoombaError
 from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.streams.events import Events
@@ -63,8 +63,11 @@ class Feed:
         """Look at the robot once, and let waiting viewers know."""
         self._looks += 1
         try:
-            view, home = await asyncio.to_thread(self._look_at_robot)
+            view, home, layers = await asyncio.to_thread(self._look_at_robot)
             self._show(view, home)
+            # Not in the thread that looks: viewers take tiles and their version meanwhile.
+            for name, layer in layers.items():
+                self.layers[name].update(layer)
         except RoombaError as reason:
             self._lose_sight(str(reason))
         # What a robot of another program answers is not known here: the next look may do.
@@ -102,19 +105,17 @@ class Feed:
         self.trail.lose_sight()
         self.metrics.look(None, self.events.note_gone(reason))
 
-    def _look_at_robot(self) -> tuple[RobotView, HomeView]:
+    def _look_at_robot(self) -> tuple[RobotView, HomeView, dict[LayerName, GridLayer]]:
+        """Return what there is to see; of the layers, those that are looked at this time."""
         view, home = self._robot.robot(), self._robot.home()
-        if self._looks % _LAYERS_EVERY == 1:
-            self._look_at_layers()
+        layers = self._look_at_layers() if self._looks % _LAYERS_EVERY == 1 else {}
         if self._keeper is not None:
             self._keeper.look(view, home, self._robot.layer)
-        return view, home
+        return view, home, layers
 
-    def _look_at_layers(self) -> None:
-        for name, tiled in self.layers.items():
-            layer = self._robot.layer(name)
-            if layer is not None:
-                tiled.update(layer)
+    def _look_at_layers(self) -> dict[LayerName, GridLayer]:
+        layers = ((name, self._robot.layer(name)) for name in self.layers)
+        return {name: layer for name, layer in layers if layer is not None}
 
     def _follow_jumps(self, recorded: Timeline) -> None:
         """When another time was chosen, let the way up to it take the place of the trail."""

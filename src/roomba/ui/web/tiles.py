@@ -20,7 +20,7 @@ TILE: Final = 32
 
 
 class TiledLayer:
-    """One layer; ``version`` grows by one with each change."""
+    """One layer; ``version`` grows by one with each change. All calls are of one thread."""
 
     def __init__(self, name: str) -> None:
         """Begin empty."""

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import cast
 
+import numpy as np
 import pytest
 from unit.history.seen import HOME, view
 
@@ -105,3 +107,32 @@ def test_a_look_that_fails_is_told_and_is_not_the_last() -> None:
     looked(feed, 1)
     assert feed.state.value["link"] != "gone"
     assert feed.number == 2
+
+
+class Mapped(Seen):
+    """One with layers, of which the last one comes once it is let go."""
+
+    def __init__(self) -> None:
+        super().__init__([(0.0, (0.0, 0.0))])
+        self.is_waiting, self.goes_on = threading.Event(), threading.Event()
+
+    def layer(self, name: LayerName) -> GridLayer | None:
+        if name is list(LayerName)[-1]:
+            self.is_waiting.set()
+            assert self.goes_on.wait(10.0)
+        return GridLayer(1, 0.05, 0.0, 0.0, np.ones((4, 5), np.uint8))
+
+
+def test_layers_change_between_two_turns_of_the_viewers_and_not_meanwhile() -> None:
+    robot = Mapped()
+    feed = Feed(cast(ObservedRobot, robot))
+
+    async def look() -> None:
+        looking = asyncio.create_task(feed.look())
+        assert await asyncio.to_thread(robot.is_waiting.wait, 10.0)
+        assert [layer.since(0) for layer in feed.layers.values()] == [None] * len(LayerName)
+        robot.goes_on.set()
+        await looking
+        assert all(layer.since(0) for layer in feed.layers.values())
+
+    asyncio.run(look())
