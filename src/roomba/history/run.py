@@ -111,6 +111,15 @@ class CellLayer:
     origin_y: float
     cells: NDArray[np.uint8]
 
+    def is_as(self, other: CellLayer | None) -> bool:
+        """Whether another one has the same cells in the same place."""
+        return (
+            other is not None
+            and (self.resolution, self.origin_x, self.origin_y)
+            == (other.resolution, other.origin_x, other.origin_y)
+            and np.array_equal(self.cells, other.cells)
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Word:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -22,11 +23,15 @@ from roomba.history.run import (
     turning_of,
     untold,
 )
-from roomba.history.unfinished import RunSoFar
+from roomba.history.unfinished import Row, RunSoFar
 from roomba.vocabulary import AT_REST, Phase
 
 _SWEEPS: Final = (Phase.UNDOCKING, Phase.CLEANING, Phase.RETURNING, Phase.DOCKING)
 """Phases of a clean in which what is driven over counts."""
+_STANDING_STEP: Final = 10.0
+"""s between two rows while the robot stands."""
+_SAME_PLACE: Final = 0.01
+"""m and rad; a robot that is no farther away stands."""
 
 Layers = Callable[[LayerName], GridLayer | None]
 
@@ -38,7 +43,9 @@ class RunUnderWay:
         """Begin at a look."""
         self._source = source
         self._began, self._wall = view.time, time.time()
-        self._rows: list[tuple[float, ...]] = []
+        self._rows: list[Row] = []
+        self._standing: Row | None = None
+        """Of a standstill the newest row, which is not among those that are kept yet."""
         self._words: list[Word] = []
         self._theta = view.pose[2]
         self._turning = 0.0
@@ -58,15 +65,30 @@ class RunUnderWay:
         is_news = not self._words or not word.is_as(self._words[-1])
         if is_news:
             self._words.append(word)
-        if not is_news and now - self._rows[-1][0] < TRACE_STEP - 1e-6:
-            return
+        row = self._row(now, view)
+        stands = not is_news and _is_at(row, self._rows[-1])
+        step = _STANDING_STEP if stands else TRACE_STEP
+        if is_news or now - self._rows[-1][0] > step - 1e-6:
+            if not stands:
+                self._end_standstill()
+            self._rows.append(row)
+        self._standing = row if stands else None
+
+    def _row(self, now: float, view: RobotView) -> Row:
+        vacuum = view.vacuum
         battery, dirt = untold(vacuum.battery), untold(view.dirt)
         progress = (vacuum.covered, vacuum.wanted, vacuum.seconds_to_go)
         sweeps = float(vacuum.wanted > 0.0 and vacuum.phase in _SWEEPS)
-        self._rows.append((now, *view.pose, view.speed, battery, dirt, *progress, sweeps))
+        return (now, *view.pose, view.speed, battery, dirt, *progress, sweeps)
+
+    def _end_standstill(self) -> None:
+        """Keep the last row of a standstill: the robot was still there, and goes on from then."""
+        row, self._standing = self._standing, None
+        if row is not None and row[0] - self._rows[-1][0] > TRACE_STEP - 1e-6:
+            self._rows.append(row)
 
     def so_far(self) -> RunSoFar:
-        """Return what was seen."""
+        """Return what was seen, up to a moment ago."""
         return RunSoFar(self._source, self._began, self._wall, self._rows, self._words)
 
     def resume(self, run: RunSoFar) -> None:
@@ -81,6 +103,7 @@ class RunUnderWay:
         before = self._before
         if before is None:
             return None
+        self._end_standstill()
         return replace(before, rows=self._rows, words=self._words).interrupted()
 
     def figures(self, report: CleanReport) -> RunFigures:
@@ -106,7 +129,15 @@ class RunUnderWay:
 
     def recording(self, home: HomeView, layer: Layers) -> RunRecording:
         """Return what was seen."""
+        self._end_standstill()
         return RunRecording(self.so_far().trace, tuple(self._words), home_of(home), cells_of(layer))
+
+
+def _is_at(row: Row, other: Row) -> bool:
+    """Whether the robot is where it was."""
+    (x, y, theta), (other_x, other_y, other_theta) = row[1:4], other[1:4]
+    turned = abs(wrap_angle(theta - other_theta))
+    return max(math.hypot(x - other_x, y - other_y), turned) <= _SAME_PLACE
 
 
 def cells_of(layer: Layers) -> dict[str, CellLayer]:

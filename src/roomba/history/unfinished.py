@@ -103,11 +103,12 @@ class RunSoFar:
 
 @dataclass(slots=True)
 class _Written:
-    """How many rows and words are written, what was told of the home, and when, monotonic s."""
+    """How many rows and words are written, of home and floor the newest, and when, monotonic s."""
 
     rows: int = 0
     words: int = 0
     home: Mapping[str, Any] | None = None
+    layers: Mapping[str, CellLayer] = field(default_factory=dict)
     at: float = -math.inf
     layers_at: float = -math.inf
 
@@ -136,10 +137,17 @@ class UnfinishedFile:
         seen["words"] = [asdict(word) for word in run.words[written.words :]]
         if home != written.home:
             seen["home"] = home
+        floor = written.layers
         if now - written.layers_at >= _LAYERS_EVERY:
             written.layers_at = now
-            seen["layers"] = {name: _packed(layer) for name, layer in layers().items()}
+            floor = layers()
+            seen["layers"] = {
+                name: _packed(layer)
+                for name, layer in floor.items()
+                if not layer.is_as(written.layers.get(name))
+            }
         append_line(path, seen)
+        written.layers = floor
         written.rows, written.words, written.home = len(run.rows), len(run.words), home
 
     def remove(self) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import pytest
 from unit.history.seen import HOME, REPORT, SOURCE, layer, view
@@ -46,3 +47,32 @@ def test_the_cells_that_are_kept_are_copies_of_what_there_is() -> None:
     cells = cells_of(layer)
     assert set(cells) == {"map", "coverage"}
     assert cells["map"].cells.shape == (4, 5)
+
+
+def test_a_robot_that_stands_has_few_rows_and_its_time_line_is_right() -> None:
+    run = RunUnderWay(view(0.0, "cleaning"), SOURCE)
+    # It stands from 2 s to 27.4 s, and is looked at ten times a second.
+    for tenth in range(300):
+        time = tenth / 10.0
+        way = min(time, 2.0) + max(time - 27.4, 0.0)
+        run.take(replace(view(time, "cleaning"), pose=(way / 5.0, 0.0, 0.0)))
+    recording = run.recording(HOME, layer)
+    times = [0.0, 0.5, 1.0, 1.5, 2.0, 12.0, 22.0, 27.4, 27.5, 28.0, 28.5, 29.0, 29.5]
+    assert recording.column("time").tolist() == pytest.approx(times)
+    assert recording.column("x")[4:8] == pytest.approx([0.4] * 4)
+
+
+def test_a_run_lasts_until_its_last_look_though_the_robot_stands() -> None:
+    run = RunUnderWay(view(0.0, "cleaning"), SOURCE)
+    for second in range(10):
+        run.take(replace(view(0.0, "cleaning"), time=float(second)))
+    assert len(run.so_far().rows) == 1
+    assert run.recording(HOME, layer).column("time").tolist() == [0.0, 9.0]
+
+
+def test_what_a_robot_says_while_it_stands_is_kept_at_once() -> None:
+    run = RunUnderWay(view(0.0, "cleaning"), SOURCE)
+    for second, phase in enumerate(["cleaning", "paused", "paused", "paused", "cleaning"]):
+        run.take(replace(view(0.0, phase), time=float(second)))
+    assert [row[0] for row in run.so_far().rows] == [0.0, 1.0, 3.0, 4.0]
+    assert [word.time for word in run.so_far().words] == [0.0, 1.0, 4.0]

@@ -16,6 +16,7 @@ import pytest
 from fixtures.waiting import wait_until
 from unit.history.seen import HOME, REPORT, SOURCE, layer, view
 
+from roomba.client.view import GridLayer, LayerName
 from roomba.files.journal import read_lines, write_lines
 from roomba.history.database import History, HistoryError
 from roomba.history.recorder import HistoryKeeper
@@ -27,6 +28,7 @@ WRITER: Final = """
 import sys, time
 from pathlib import Path
 from unit.history.seen import HOME, SOURCE, layer, view
+from roomba.client.view import GridLayer, LayerName
 from roomba.files.journal import read_lines, write_lines
 from roomba.history.database import History, HistoryError
 from roomba.history.recorder import HistoryKeeper
@@ -299,3 +301,25 @@ def test_a_run_that_is_refused_does_not_keep_the_others_out(
     assert ["was not kept" in text for text in told] == [True]
     assert kept(tmp_path)[0].source == SOURCE
     assert list(tmp_path.glob("unfinished-*")) == [newer]
+
+
+def test_a_robot_that_is_paused_does_not_fill_the_disk(tmp_path: Path, clock: list[float]) -> None:
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
+    paused = view(0.0, "paused")
+    keeper.look(view(0.0, "cleaning"), HOME, layer)
+    for half in range(1, 2401):
+        clock[0] = half / 2.0
+        keeper.look(replace(paused, time=clock[0]), HOME, layer)
+    (path,) = tmp_path.glob("unfinished-*")
+    _, *seen = read_lines(path)
+    assert sum(len(line["rows"]) for line in seen) <= 2 + 1200 / 10
+    assert sum(1 for line in seen if line.get("layers")) == 1
+    clock[0] += 10.0
+    keeper.look(replace(paused, time=clock[0]), HOME, swept_again)
+    assert set(read_lines(path)[-1]["layers"]) == {"coverage"}
+
+
+def swept_again(name: LayerName) -> GridLayer | None:
+    if name is not LayerName.COVERAGE:
+        return layer(name)
+    return GridLayer(1, 0.05, 0.0, 0.0, np.full((4, 5), 2, np.uint8))
