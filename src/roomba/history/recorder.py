@@ -104,7 +104,10 @@ class HistoryKeeper:
         self._unfinished = UnfinishedFile(history.path.parent)
         self._has_looked = False
         self._set_aside: Path | None = None
-        self._totals: TotalsView | None = None
+        self._added = 0
+        """Runs that the history was given."""
+        self._totals: tuple[int, TotalsView] | None = None
+        """How many of them there were before these sums."""
         self.interrupted: dict[str, Any] | None = None
         """How the newest run ended, as plain values, if it was interrupted before this start."""
 
@@ -129,18 +132,23 @@ class HistoryKeeper:
             return
         self.interrupted = _as_interrupted(ended[0])
         self._keep(*ended)
-        self._totals = None
 
     def _keep(self, figures: RunFigures, recording: RunRecording) -> None:
         """Keep a run that ended; one that the history refuses is left to the next program."""
         try:
-            self.history.add(figures, recording)
+            self._add(figures, recording)
         except RoombaError as error:
             self._unfinished.leave()
             self._tell(f"the run was not kept: {error}")
         else:
             self._tell("")
             self._remove_unfinished()
+
+    def _add(self, figures: RunFigures, recording: RunRecording) -> None:
+        try:
+            self.history.add(figures, recording)
+        finally:
+            self._added += 1
 
     def _take_up(self, view: RobotView) -> None:
         """Take the runs that were interrupted: one that goes on is resumed, others are kept."""
@@ -160,7 +168,7 @@ class HistoryKeeper:
         if is_under_way and run.may_go_on(self._recorder.source, view.time):
             self._recorder.resume(run, view)
         elif not self._has_kept(run):
-            self.history.add(*run.interrupted())
+            self._add(*run.interrupted())
 
     def _newest_interrupted(self) -> dict[str, Any] | None:
         source = self._recorder.source
@@ -192,10 +200,15 @@ class HistoryKeeper:
             self._tell(f"the file of a run that is over cannot be removed: {error}")
 
     def totals(self) -> TotalsView:
-        """Return the sums over all runs that were kept of this program; raises HistoryError."""
-        if self._totals is None:
-            self._totals = self.history.totals(self._recorder.source.program)
-        return self._totals
+        """Return the sums over all runs that were kept of this program; raises HistoryError.
+
+        May be called from any thread.
+        """
+        added, known = self._added, self._totals
+        if known is None or known[0] != added:
+            # A run that is kept meanwhile may be missing: the next call counts anew.
+            known = self._totals = added, self.history.totals(self._recorder.source.program)
+        return known[1]
 
 
 def _as_interrupted(run: RunFigures) -> dict[str, Any] | None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from unit.history.seen import HOME, REPORT, SOURCE, layer, view
 
+from roomba.client.household import TotalsView
 from roomba.client.protocol import CleanReport, ErrandOutcome, ExploreReport
 from roomba.client.view import exploration_as_clean
 from roomba.history.database import History
@@ -170,3 +171,23 @@ def test_a_run_that_cannot_be_kept_as_it_was_asked_for_is_told(
     keeper.look(view(9.0, "docked", REPORT), HOME, layer)
     assert ["not kept" in text for text in told] == [True, True]
     assert keeper.history.runs() == []
+
+
+def test_sums_that_a_run_comes_in_between_are_counted_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    history = History(tmp_path)
+    keeper = HistoryKeeper(history, SOURCE, pytest.fail)
+    keeper.look(view(1.0, "cleaning"), HOME, layer)
+    count = history.totals
+
+    def count_and_be_late(program: str) -> TotalsView:
+        totals = count(program)
+        monkeypatch.undo()
+        keeper.look(view(9.0, "docked", REPORT), HOME, layer)
+        return totals
+
+    monkeypatch.setattr(history, "totals", count_and_be_late)
+    assert keeper.totals().runs == 0
+    assert keeper.totals().runs == 1
+    assert keeper.totals() is keeper.totals()
