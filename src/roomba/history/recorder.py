@@ -37,6 +37,8 @@ _UNDER_WAY: Final = (
 """Phases in which a run may go on."""
 _GIVEN_UP: Final = 10.0
 """s of the robot's clock at rest without a report after which it was no run."""
+_UNWRITABLE: Final = (OSError, ValueError, TypeError)
+"""What the file of the run under way raises."""
 _NOT_RUN: Final = (ErrandOutcome.REFUSED, ErrandOutcome.DISCONNECTED)
 
 
@@ -138,8 +140,10 @@ class HistoryKeeper:
         try:
             self._add(figures, recording)
         except RoombaError as error:
-            self._unfinished.leave()
             self._tell(f"the run was not kept: {error}")
+            # It is kept as interrupted if its file cannot take the end, either.
+            with contextlib.suppress(*_UNWRITABLE):
+                self._unfinished.leave(figures)
         else:
             self._tell("")
             self._remove_unfinished()
@@ -168,7 +172,7 @@ class HistoryKeeper:
         if is_under_way and run.may_go_on(self._recorder.source, view.time):
             self._recorder.resume(run, view)
         elif not self._has_kept(run):
-            self._add(*run.interrupted())
+            self._add(*run.closed())
 
     def _newest_interrupted(self) -> dict[str, Any] | None:
         source = self._recorder.source
@@ -190,7 +194,7 @@ class HistoryKeeper:
             return
         try:
             self._unfinished.keep(run, home_of(home), lambda: cells_of(layer))
-        except (OSError, ValueError, TypeError) as error:
+        except _UNWRITABLE as error:
             self._tell(f"the run under way is not kept until it ends: {error}")
 
     def _remove_unfinished(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
@@ -68,7 +69,7 @@ def _about(figures: RunFigures, recording: RunRecording) -> dict[str, Any]:
     """Return all of a run that is no array."""
     return {
         "version": VERSION,
-        "figures": _plain(asdict(figures)),
+        "figures": plain_of(figures),
         "words": [asdict(word) for word in recording.words],
         "home": recording.home,
         "columns": TRACE,
@@ -98,7 +99,9 @@ def unpacked(content: bytes) -> tuple[RunFigures, RunRecording]:
             if name in about["layers"]
         }
         words = _WORDS.validate_python(about["words"])
-        return _figures(about["figures"]), RunRecording(trace, words, dict(about["home"]), layers)
+        return figures_from(about["figures"]), RunRecording(
+            trace, words, dict(about["home"]), layers
+        )
     except UNREADABLE as error:
         raise RunFileError(
             "expected a recorded run, as ./roomba report --recording writes it, got a file that "
@@ -114,14 +117,15 @@ def _layer(place: list[float], array: Any) -> CellLayer:
     return CellLayer(resolution, x, y, cells)
 
 
-def _plain(values: dict[str, Any]) -> dict[str, Any]:
-    """Return values as JSON has them: what is not finite is null."""
+def plain_of(figures: RunFigures) -> dict[str, Any]:
+    """Return figures as values that JSON has: what is not known is None."""
     return {
         name: None if isinstance(value, float) and not math.isfinite(value) else value
-        for name, value in values.items()
+        for name, value in asdict(figures).items()
     }
 
 
-def _figures(values: dict[str, Any]) -> RunFigures:
+def figures_from(values: Mapping[str, Any]) -> RunFigures:
+    """Return the figures of plain values; raises ValueError for others."""
     known = {name: math.nan if value is None else value for name, value in dict(values).items()}
     return _FIGURES.validate_python(known)

@@ -104,7 +104,7 @@ class RunUnderWay:
         if before is None:
             return None
         self._end_standstill()
-        return replace(before, rows=self._rows, words=self._words).interrupted()
+        return replace(before, rows=self._rows, words=self._words).closed()
 
     def figures(self, report: CleanReport) -> RunFigures:
         """Return what was achieved."""

@@ -38,6 +38,7 @@ from roomba.history.run import (
     told,
     turning_of,
 )
+from roomba.history.run_file import figures_from, plain_of
 
 INTERRUPTED: Final = ErrandOutcome.INTERRUPTED.value
 """The outcome of a run whose program ended in the middle of it."""
@@ -58,7 +59,8 @@ Layers = Callable[[], Mapping[str, CellLayer]]
 class RunSoFar:
     """What was seen of a run: it began at ``clock``, s of the robot's, and ``wall``, s since 1970.
 
-    ``rows`` are those of a trace.
+    ``rows`` are those of a trace. ``ended`` is what it achieved, if it came to an end that the
+    history refused.
     """
 
     source: RunSource
@@ -68,23 +70,28 @@ class RunSoFar:
     words: list[Word] = field(default_factory=list)
     home: Mapping[str, Any] = field(default_factory=dict)
     layers: dict[str, CellLayer] = field(default_factory=dict)
+    ended: RunFigures | None = None
 
     def may_go_on(self, source: RunSource, now: float) -> bool:
         """Whether a robot that is under way at a time of its clock, s, may be on this run."""
         is_same = (source.program, source.home) == (self.source.program, self.source.home)
-        return is_same and 0.0 <= now - self.clock - self.rows[-1][0] <= _GAP
+        return self.ended is None and is_same and 0.0 <= now - self.clock - self.rows[-1][0] <= _GAP
 
     @property
     def trace(self) -> Floats32:
         """The rows so far, float32 [n, len(TRACE)], as :class:`RunRecording` has them."""
         return np.array(self.rows, np.float32).reshape(-1, len(TRACE))
 
-    def interrupted(self) -> tuple[RunFigures, RunRecording]:
-        """Return it as a run that came to no end."""
+    def closed(self) -> tuple[RunFigures, RunRecording]:
+        """Return it as it ended, or as a run that came to no end."""
+        figures = self._interrupted() if self.ended is None else self.ended
+        return figures, RunRecording(self.trace, tuple(self.words), self.home, self.layers)
+
+    def _interrupted(self) -> RunFigures:
         last = dict(zip(TRACE, self.rows[-1], strict=True))
         trace = self.trace
         steps = np.diff(trace[:, 1:3].astype(np.float64), axis=0)
-        figures = RunFigures(
+        return RunFigures(
             self.source,
             kind_of(self.words),
             self.wall,
@@ -98,7 +105,6 @@ class RunSoFar:
             told(last["dirt"]),
             math.nan,
         )
-        return figures, RunRecording(trace, tuple(self.words), self.home, self.layers)
 
 
 @dataclass(slots=True)
@@ -159,10 +165,20 @@ class UnfinishedFile:
             if self._path is not None:
                 self._path.unlink(missing_ok=True)
         finally:
-            self.leave()
+            self._let_go()
 
-    def leave(self) -> None:
-        """Leave the file, if there is one, to the next program; the next run gets its own."""
+    def leave(self, figures: RunFigures) -> None:
+        """Leave the file, if there is one, of a run that ended to the next program.
+
+        Raises as :meth:`keep`; the next run gets a file of its own all the same.
+        """
+        try:
+            if self._path is not None:
+                append_line(self._path, {"rows": [], "words": [], "ended": plain_of(figures)})
+        finally:
+            self._let_go()
+
+    def _let_go(self) -> None:
         if self._held is not None:
             os.close(self._held)
         self._path = self._held = None
@@ -233,6 +249,7 @@ def _run_of(lines: Sequence[dict[str, Any]]) -> RunSoFar | None:
             run.rows += [tuple(map(float, row)) for row in line["rows"]]
             run.words += [Word(**word) for word in line["words"]]
             run.home = line.get("home", run.home)
+            run.ended = figures_from(line["ended"]) if "ended" in line else None
             run.layers |= {
                 name: _unpacked(*packed)
                 for name, packed in line.get("layers", {}).items()

@@ -62,7 +62,7 @@ def test_dirt_that_the_robot_cannot_tell_hinders_nothing(tmp_path: Path) -> None
     assert run is not None
     file.keep(run, {}, dict)
     assert list(tmp_path.iterdir())
-    figures, recording = run.interrupted()
+    figures, recording = run.closed()
     assert math.isnan(figures.dirt)
     assert np.isfinite(recording.trace).all()
 

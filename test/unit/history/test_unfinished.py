@@ -231,10 +231,27 @@ def test_a_run_that_the_history_refuses_is_kept_by_the_next_program(tmp_path: Pa
     assert History(tmp_path).runs() == []
     keeper.look(view(11.0, "cleaning", REPORT), HOME, layer)
     keeper.look(view(19.0, "docked", replace(REPORT)), HOME, layer)
+    # It is under way again, on another run.
+    HistoryKeeper(History(tmp_path), SOURCE, pytest.fail).look(view(20.0, "cleaning"), HOME, layer)
+    later, refused = [run.figures for run in History(tmp_path).runs()]
+    assert (later.outcome, refused.outcome) == ("completed", "completed")
+    assert (refused.covered, refused.missed) == (REPORT.covered, REPORT.missed)
+    assert len(list(tmp_path.glob("unfinished-*"))) == 1
+
+
+@pytest.mark.parametrize("is_full", [True, False])
+def test_a_run_whose_end_the_disk_refuses_as_well_is_kept_as_interrupted(
+    tmp_path: Path, is_full: bool
+) -> None:
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, lambda _: None)
+    keeper.look(view(0.0, "cleaning"), HOME, layer)
+    with pytest.MonkeyPatch.context() as disk:
+        disk.setattr(keeper.history, "add", refuse)
+        if is_full:
+            disk.setattr("roomba.history.unfinished.append_line", fill_the_disk)
+        keeper.look(view(9.0, "docked", REPORT), HOME, layer)
     HistoryKeeper(History(tmp_path), SOURCE, pytest.fail).look(view(2.0, "docked"), HOME, layer)
-    outcomes = [run.figures.outcome for run in History(tmp_path).runs()]
-    assert outcomes == ["completed", INTERRUPTED]
-    assert not list(tmp_path.glob("unfinished-*"))
+    assert kept(tmp_path)[0].outcome == (INTERRUPTED if is_full else "completed")
 
 
 def refuse(*_: object) -> None:
