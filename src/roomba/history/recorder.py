@@ -67,22 +67,23 @@ class RunRecorder:
     def look(
         self, view: RobotView, home: HomeView, layer: Layers
     ) -> tuple[RunFigures, RunRecording] | None:
-        """Take a look; return the run that it was the end of."""
-        report, self._last = self._last, view.last
+        """Take a look; return the run that it was the end of.
+
+        Raises what ``layer`` does; the next look is the end then.
+        """
         if self._run is None and view.vacuum.phase in BEGINS:
             self._run = RunUnderWay(view, self._source_of_run())
-        if self._run is None:
-            return None
-        self._run.take(view)
-        if view.last is not None and view.last is not report:
-            run, self._run = self._run, None
-            if view.last.outcome in _NOT_RUN:
-                return None
-            return run.figures(view.last), run.recording(home, layer)
-        if self._run.rests_since is not None and view.time - self._run.rests_since > _GIVEN_UP:
-            run, self._run = self._run, None
-            return run.interrupted()
-        return None
+        run, ended = self._run, None
+        if run is not None:
+            run.take(view)
+            if view.last is not None and view.last is not self._last:
+                is_run = view.last.outcome not in _NOT_RUN
+                ended = (run.figures(view.last), run.recording(home, layer)) if is_run else None
+                self._run = None
+            elif run.rests_since is not None and view.time - run.rests_since > _GIVEN_UP:
+                ended, self._run = run.interrupted(), None
+        self._last = view.last
+        return ended
 
     def _source_of_run(self) -> RunSource:
         """Return the source with what the run that begins was asked for by."""

@@ -12,8 +12,13 @@ import pytest
 from unit.history.seen import HOME, REPORT, SOURCE, layer, view
 
 from roomba.client.household import TotalsView
-from roomba.client.protocol import CleanReport, ErrandOutcome, ExploreReport
-from roomba.client.view import exploration_as_clean
+from roomba.client.protocol import (
+    CleanReport,
+    ErrandOutcome,
+    ExploreReport,
+    RobotUnavailableError,
+)
+from roomba.client.view import GridLayer, LayerName, exploration_as_clean
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper, RunRecorder
 from roomba.history.run import RunFigures, RunRecording
@@ -191,3 +196,18 @@ def test_sums_that_a_run_comes_in_between_are_counted_anew(
     assert keeper.totals().runs == 0
     assert keeper.totals().runs == 1
     assert keeper.totals() is keeper.totals()
+
+
+def test_a_robot_that_goes_away_at_the_end_of_a_run_has_it_kept_by_the_next_look(
+    tmp_path: Path,
+) -> None:
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
+    keeper.look(view(0.0, "cleaning"), HOME, layer)
+    with pytest.raises(RobotUnavailableError):
+        keeper.look(view(9.0, "docked", REPORT), HOME, go_away)
+    keeper.look(view(9.5, "docked", REPORT), HOME, layer)
+    assert [run.is_recorded for run in keeper.history.runs()] == [True]
+
+
+def go_away(_: LayerName) -> GridLayer | None:
+    raise RobotUnavailableError("expected the map, got no answer")
