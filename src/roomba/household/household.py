@@ -6,6 +6,7 @@ import contextlib
 import datetime as dt
 import math
 import threading
+import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
@@ -38,7 +39,8 @@ _END: Final = 10.0
 class LiveHousehold:
     """The household of one robot; its methods may be called from any thread.
 
-    What goes wrong with the disk is told once for each reason, and the robot goes on.
+    What goes wrong of a look, with the disk or by a fault of the program, is told once for each
+    reason. It holds up nothing else of that look, nor the looks after it.
     """
 
     def __init__(
@@ -62,6 +64,7 @@ class LiveHousehold:
         self._is_full_told = False
         self._capacity, self._emptying, self._bag = bin_capacity, config.emptying, math.nan
         self._summed = TotalsView()
+        self._view: RobotView | None = None
         kept = KeptValues(folder / "upkeep.json", tell)
         self._upkeep = UpkeepKeeper(robot, kept, config.upkeep, bin_capacity)
         self._plans = PlanKeeper(
@@ -95,7 +98,15 @@ class LiveHousehold:
 
     def look(self) -> None:
         """Look at the robot once."""
-        self._trying(self._look)
+        self._trying(
+            self._in_use.look,
+            self._sum_up,
+            self._see,
+            self._count_work,
+            self._tell_full_bin,
+            self._empty_at_station,
+            lambda: self._plans.look(self._view),
+        )
 
     def upkeep(self) -> UpkeepView:
         """Return how the parts are, and the totals of the last look, at once."""
@@ -163,23 +174,25 @@ class LiveHousehold:
         while not self._ends.wait(self._period):
             self.look()
 
-    def _look(self) -> None:
-        self._in_use.look()
+    def _sum_up(self) -> None:
         # What is wrong with the history its keeper tells.
         with contextlib.suppress(RoombaError):
             self._summed = self._totals()
-        try:
-            view = self.robot.robot()
-        except RoombaError:
-            view = None
-        if view is not None:
-            self._upkeep.look(view)
-            self._tell_full_bin()
-            self._empty_at_station(view)
-        self._plans.look(view)
+
+    def _see(self) -> None:
+        """See the robot; None while it does not answer."""
+        self._view = None
+        with contextlib.suppress(RoombaError):
+            self._view = self.robot.robot()
+
+    def _count_work(self) -> None:
+        if self._view is not None:
+            self._upkeep.look(self._view)
 
     def _tell_full_bin(self) -> None:
         """Let the robot sound once when its bin is due; in quiet hours, only after them."""
+        if self._view is None:
+            return
         is_due = any(state.is_due for state in self._upkeep.states() if state.part is Part.BIN)
         if is_due and not self._is_full_told and not self._plans.is_quiet():
             with contextlib.suppress(RequestRefusedError, RobotUnavailableError):
@@ -187,8 +200,11 @@ class LiveHousehold:
             self._is_full_told = True
         self._is_full_told = self._is_full_told and is_due
 
-    def _empty_at_station(self, view: RobotView) -> None:
+    def _empty_at_station(self) -> None:
         """Let the station empty the bin, if it is time for that."""
+        view = self._view
+        if view is None:
+            return
         self._bag = view.bag
         wanted = self.plans().household.emptying
         if is_to_be_emptied(
@@ -210,14 +226,22 @@ class LiveHousehold:
     def _change(self, change: Change) -> None:
         _kept(lambda: self._plans.change(change))
 
-    def _trying(self, write: Callable[[], None]) -> None:
-        """Do what writes; trouble with the disk is told."""
-        trouble = ""
-        try:
-            write()
-        except OSError as error:
-            trouble = f"what belongs to the household was not kept: {error}"
-        self._tell(trouble)
+    def _trying(self, *steps: Callable[[], None]) -> None:
+        """Take steps, each of them also if another one fails; what went wrong is told."""
+        troubles = [trouble for trouble in map(_trouble_of, steps) if trouble]
+        self._tell("\n".join(troubles))
+
+
+def _trouble_of(step: Callable[[], None]) -> str:
+    """Take a step; return what went wrong, empty if nothing did."""
+    try:
+        step()
+    except OSError as error:
+        return f"what belongs to the household was not kept: {error}"
+    except Exception as error:
+        fault = "".join(traceback.format_exception(error))
+        return f"a fault of the program, and the household goes on without this step: {fault}"
+    return ""
 
 
 def _kept(change: Callable[[], None]) -> None:

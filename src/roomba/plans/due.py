@@ -122,9 +122,7 @@ def _need(
     room, most = dirtiest
     if rate is None:
         return RoomNeed(name, None, True, "how fast it becomes dirty is not known yet")
-    longest = max(1, round(config.longest / period))
-    times = min(int(most / rate * (1.0 + config.spare)), longest) if rate > 0.0 else longest
-    times = max(times, 1)
+    times = _times(rate, most * (1.0 + config.spare), max(1, round(config.longest / period)))
     since = (now - records.rooms[name].cleaned).total_seconds() / DAY
     # Half a period: a clean ends some time after its plan's time.
     is_due = since >= (times - 0.5) * period or since < 0.0
@@ -132,3 +130,9 @@ def _need(
         return RoomNeed(name, times, is_due, "it becomes dirty the fastest")
     share = rate / most if most > 0.0 else 1.0
     return RoomNeed(name, times, is_due, f"it becomes {share:.2f} times as dirty as {room}")
+
+
+def _times(rate: float, most: float, longest: int) -> int:
+    """Return after how many times a room is as dirty as ``most``: 1 to ``longest`` of them."""
+    # Divided only then: by a rate that is nearly none nothing that can be counted comes out.
+    return longest if rate * longest <= most else max(1, int(most / rate))

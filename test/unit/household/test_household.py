@@ -120,6 +120,38 @@ def test_a_full_disk_is_told_and_a_reset_is_refused(robot: WrittenRobot, tmp_pat
     assert len([text for text in told if "was not kept" in text]) == 1
 
 
+def test_a_fault_in_a_look_is_told_with_its_place_and_plans_begin_all_the_same(
+    robot: WrittenRobot, tmp_path: Path
+) -> None:
+    told: list[str] = []
+
+    def faulty() -> TotalsView:
+        raise ZeroDivisionError("a fault")
+
+    robot.view = replace(VIEW, vacuum=replace(VIEW.vacuum, state="docked", phase="docked"))
+    now = [NOW[0]]
+    household = LiveHousehold(
+        robot,
+        tmp_path,
+        HouseholdConfig(),
+        100.0,
+        told.append,
+        faulty,
+        now=lambda: now[0],
+        period=0.02,
+    )
+    household.put_plan(Plan(name="daily", at=(dt.time(9),)))
+    household.start()
+    try:
+        now[0] = NOW[0].replace(hour=9)
+        wait_until(lambda: "clean" in [name for name, _ in robot.told], DEADLINE, "the plan begun")
+    finally:
+        household.stop()
+    (fault,) = told
+    assert "ZeroDivisionError: a fault" in fault
+    assert "in faulty" in fault
+
+
 def test_it_looks_by_itself_and_a_robot_that_is_gone_ends_nothing(
     robot: WrittenRobot, household: LiveHousehold
 ) -> None:

@@ -97,7 +97,7 @@ def test_a_clock_that_is_set_back_leaves_nothing_dirty() -> None:
     assert all(need.is_due for need in needs(after_two_days(), -3).values())
 
 
-@pytest.mark.parametrize("rate", [0.0, 1e-9])
+@pytest.mark.parametrize("rate", [0.0, 1e-307, 1e-9])
 def test_a_room_that_stays_clean_is_cleaned_once_a_week(rate: float) -> None:
     records = learned(DirtRecords(), found({"den": 5.0, "hall": 5.0}), day(0), CONFIG)
     records = learned(records, found({"den": rate, "hall": 100.0}), day(1), CONFIG)
