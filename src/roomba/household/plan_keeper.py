@@ -14,7 +14,6 @@ from roomba.client.household import PlansView, PlanView
 from roomba.client.observed import ObservedRobot
 from roomba.client.protocol import (
     CleanReport,
-    ErrandOutcome,
     RequestRefusedError,
     RobotUnavailableError,
 )
@@ -24,14 +23,13 @@ from roomba.household.dirt_keeper import DirtKeeper
 from roomba.household.folder import KeptValues
 from roomba.household.plan_changes import Change
 from roomba.household.rooms_follower import RoomsFollower
+from roomba.household.situation import EndedErrands, situation_of
 from roomba.plans.due import DAY, RoomNeed
 from roomba.plans.memory import Memory, Note
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder
-from roomba.plans.scheduler import Act, Deed, PlanEnd, Scheduler, Situation, next_of
+from roomba.plans.scheduler import Act, Deed, Scheduler, next_of
 from roomba.plans.times import next_after, quiet_until
-from roomba.vocabulary import AT_REST, CleanMode, Phase, listed
-
-_DONE: Final = (ErrandOutcome.COMPLETED, ErrandOutcome.NOT_DOCKED)
+from roomba.vocabulary import CleanMode, listed
 
 _SHORTEST: Final = 0.01
 """Days; plans that follow on one another sooner are as if they did so after this."""
@@ -58,8 +56,7 @@ class PlanKeeper:
         self._household = plans.read(HouseholdPlans(zone=zone))
         self._memory = self._written = memory.read(Memory())
         self._version, self._view_of_version = 0, PlansView()
-        self._is_first = True
-        self._last: CleanReport | None = None
+        self._ended = EndedErrands()
         self._rooms = RoomsFollower(robot, rooms, dirt, self._on_disk, self._by_other_names)
         self._show()
 
@@ -95,17 +92,18 @@ class PlanKeeper:
         """Let the scheduler take a step, and the robot what it wants; raises OSError."""
         now = self._now()
         scheduler = Scheduler(self._household, self._config)
-        has_learned = self._learn(view, now)
-        self._memory, act = scheduler.step(self._memory, now, self._situation(view))
+        ended = self._ended.news(view)
+        has_learned = self._learn(ended, now)
+        self._ended.take(view)
+        situation = situation_of(view, ended, self._config.least_battery)
+        self._memory, act = scheduler.step(self._memory, now, situation)
         if act is not None:
             self._memory = self._carried_out(scheduler, act, now)
         self._keep_memory(is_changed=has_learned)
 
-    def _learn(self, view: RobotView | None, now: dt.datetime) -> bool:
-        """Learn of the rooms' dirt from a clean that ended since the last look; raises OSError."""
-        last = None if view is None else view.last
-        is_news = last is not None and last is not self._last and not self._is_first
-        return last is not None and is_news and self._dirt.note(last, now)
+    def _learn(self, ended: CleanReport | None, now: dt.datetime) -> bool:
+        """Learn of the rooms' dirt from a clean that ended; raises OSError."""
+        return ended is not None and self._dirt.note(ended, now)
 
     @contextlib.contextmanager
     def _by_other_names(self, change: Change, why: str) -> Iterator[None]:
@@ -118,42 +116,6 @@ class PlanKeeper:
                     self._memory = self._memory.noting(note)
         yield
         self._keep_memory(is_changed=True)
-
-    def _situation(self, view: RobotView | None) -> Situation:
-        if view is None:
-            return Situation(unfit="the robot does not answer")
-        ended, message = self._ending(view.last)
-        phase = view.vacuum.phase
-        is_busy, is_paused = phase not in AT_REST, phase == Phase.PAUSED
-        is_held = bool(view.held)
-        return Situation(self._unfit(view), is_busy, is_paused, is_held, ended, message)
-
-    def _ending(self, last: CleanReport | None) -> tuple[PlanEnd | None, str]:
-        """Return how an errand ended since the last look, and what is said of it."""
-        before, self._last = self._last, last
-        # What ended before the first look was of another program.
-        is_first, self._is_first = self._is_first, False
-        if last is None or last is before or is_first:
-            return None, ""
-        if last.outcome in _DONE:
-            cleaned = f"{last.covered:.1f} of {last.wanted:.1f} m²"
-            return PlanEnd.DONE, f"{cleaned}; {last.message}" if last.message else cleaned
-        if last.outcome is ErrandOutcome.STOPPED:
-            return PlanEnd.STOPPED, ""
-        return PlanEnd.FAILED, last.message or last.outcome.value
-
-    def _unfit(self, view: RobotView) -> str:
-        """Return why no clean can begin; the same words while the reason is the same."""
-        vacuum, least = view.vacuum, self._config.least_battery
-        if view.held:
-            return "the emergency stop holds the drive"
-        if vacuum.state == "error":
-            return "the robot needs help"
-        if vacuum.phase not in AT_REST:
-            return "the robot is busy"
-        if vacuum.battery < least:  # a battery that is not heard of is not judged
-            return f"the battery is below {100.0 * least:.0f} %"
-        return ""
 
     def _carried_out(self, scheduler: Scheduler, act: Act, now: dt.datetime) -> Memory:
         """Let the robot do an act; return what is remembered then."""

@@ -105,7 +105,7 @@ class RemoteClient(WithoutMap):
             raise RobotUnavailableError(lost)
         spent = self._now() - self._began
         failures = Failures(lost, self._not_stopped, watch.scan_trouble)
-        return remote_view(spent, state, watch.scan, self._held, failures)
+        return remote_view(spent, state, watch.scan, self._held, failures, watch.last)
 
     def home(self) -> view.HomeView:
         """Return what seldom changes."""

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.client.protocol import VacuumSnapshot
+from roomba.client.protocol import CleanReport, VacuumSnapshot
 from roomba.client.view import NO_POINTS, HomeView, RobotView
 from roomba.configuration.robot import RobotConfig
 from roomba.mission.phases.machine import VACUUM_STATES
@@ -39,10 +39,11 @@ def remote_view(
     scan: NDArray[np.float32] = NO_POINTS,
     held: str = "",
     failures: Failures = Failures(),
+    last: CleanReport | None = None,
 ) -> RobotView:
     """Return a robot as it told at ``time``, s: it is shown where it began, with what it sees.
 
-    ``held`` is why the emergency stop holds.
+    ``held`` is why the emergency stop holds, ``last`` how its last clean ended.
     """
     lost = failures.lost
     not_stopped = f"it did not obey the stop: {failures.stop}"
@@ -65,7 +66,7 @@ def remote_view(
         ),
         scan=scan,
         path=NO_POINTS,
-        last=None,
+        last=last,
         charges=state.is_charging,
     )
 

@@ -11,8 +11,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.client.protocol import CleanReport
 from roomba.client.view import NO_POINTS
 from roomba.errors import RoombaError
+from roomba.headless.live.remote.errand_end import ErrandEnd
 from roomba.robot.remote import RemoteRobot, RemoteState
 from roomba.vocabulary import Phase
 
@@ -42,6 +44,7 @@ class RemoteWatch:
         self.state: RemoteState | None = None
         self.scan: NDArray[np.float32] = NO_POINTS
         self.scan_trouble = ""
+        self._errand = ErrandEnd()
         self._lost = ""
         self._looks, self._looked_at = 0, -math.inf
         self._failure: Exception | None = None
@@ -81,6 +84,11 @@ class RemoteWatch:
         return self._lost
 
     @property
+    def last(self) -> CleanReport | None:
+        """How its last clean ended; None before one did. It is there when ``state`` tells rest."""
+        return self._errand.last
+
+    @property
     def moves(self) -> bool:
         """Whether it cleaned or went home when it was seen last."""
         return self.state is not None and self.state.phase in _MOVES
@@ -104,8 +112,10 @@ class RemoteWatch:
             self._lost = str(error)
 
     def _look(self) -> None:
-        self.state = self._remote.look()
+        state = self._remote.look()
         self._looked_at = self._now()
+        self._errand.look(state, self._looked_at)
+        self.state = state
         self._looks += 1
         if not self.moves:
             self.scan, self.scan_trouble = NO_POINTS, ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import datetime as dt
 import json
 import threading
 from collections.abc import Callable, Iterator
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures.robots.heard_remote import Heard
 from fixtures.robots.neato_rig import NEATO
 from fixtures.waiting import wait_until
 from numpy.typing import NDArray
@@ -18,52 +20,24 @@ from roomba.clean_request import CleanRequest
 from roomba.client.plain import state_of
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.client.view import LayerName
+from roomba.configuration.household import HouseholdConfig
 from roomba.configuration.robot import load_robot_config
 from roomba.drivers.line import LineError
 from roomba.headless.live.remote.client import RemoteClient
 from roomba.headless.live.remote.view import BY_ITSELF
-from roomba.robot.remote import RemoteState, RemoteWish, WishRefusedError
+from roomba.history.database import History
+from roomba.history.recorder import HistoryKeeper
+from roomba.history.report.words import figure_rows
+from roomba.history.run import RunSource
+from roomba.household.household import LiveHousehold
+from roomba.plans.plan import Plan
+from roomba.robot.remote import RemoteWish, WishRefusedError
 from roomba.ui.web.streams.told import Told
 from roomba.vocabulary import CleanMode, Phase
 
 DEADLINE = 20.0
 """s of wall time."""
 CONFIG = load_robot_config(NEATO)
-_CAME = {
-    RemoteWish.CLEAN_HOUSE: Phase.CLEANING,
-    RemoteWish.CLEAN_SPOT: Phase.CLEANING,
-    RemoteWish.PAUSE: Phase.PAUSED,
-    RemoteWish.RESUME: Phase.CLEANING,
-    RemoteWish.STOP: Phase.IDLE,
-    RemoteWish.DOCK: Phase.RETURNING,
-}
-
-
-class Heard:
-    """A robot that does at once what it is told, while it is reached."""
-
-    def __init__(self) -> None:
-        self.phase, self.wishes, self.is_reached = Phase.DOCKED, list[RemoteWish](), True
-        self.is_taken, self.trouble = False, ""
-        self.scans = 0
-
-    def look(self) -> RemoteState:
-        self._require_reached()
-        is_charging = self.phase is Phase.DOCKED
-        return RemoteState(self.phase, 0.5, is_charging, self.trouble, self.is_taken)
-
-    def scan(self) -> NDArray[np.float32]:
-        self.scans += 1
-        return np.array([[1.0, 2.0]], np.float32)
-
-    def tell(self, wish: RemoteWish) -> None:
-        self._require_reached()
-        self.wishes.append(wish)
-        self.phase = _CAME.get(wish, self.phase)
-
-    def _require_reached(self) -> None:
-        if not self.is_reached:
-            raise LineError("the radio is gone")
 
 
 @pytest.fixture
@@ -116,6 +90,36 @@ def test_it_cleans_is_paused_goes_on_and_comes_home(client: RemoteClient, robot:
     client.stop()
     client.locate()
     assert robot.wishes[-3:] == [RemoteWish.CLEAN_SPOT, RemoteWish.STOP, RemoteWish.BEEP]
+
+
+def test_a_plan_is_cleaned_once_and_its_run_is_kept(
+    client: RemoteClient, robot: Heard, tmp_path: Path
+) -> None:
+    now = [dt.datetime(2026, 3, 2, 8, 0, tzinfo=dt.timezone.utc)]
+    fail = lambda text: pytest.fail(text)  # noqa: E731
+    keeper = HistoryKeeper(History(tmp_path), RunSource("play", "openneato"), fail)
+    household = LiveHousehold(
+        client, tmp_path, HouseholdConfig(), client.bin_capacity, fail, now=lambda: now[0]
+    )
+
+    def look(minutes: int) -> None:
+        for _ in range(minutes):
+            now[0] += dt.timedelta(minutes=1)
+            household.look()
+            keeper.look(client.robot(), client.home(), client.layer)
+
+    household.put_plan(Plan(name="daily", at=(dt.time(9),)))
+    look(61)
+    wait_for(client, Phase.CLEANING)
+    look(40)
+    robot.phase = Phase.DOCKED
+    wait_for(client, Phase.DOCKED)
+    look(120)
+    assert robot.wishes == [RemoteWish.CLEAN_HOUSE]
+    assert [note.text for note in household.plans().notes] == ["began", "done"]
+    (run,) = keeper.history.runs()
+    assert (run.figures.outcome, run.figures.kind) == ("completed", "clean")
+    assert figure_rows(run.figures)
 
 
 def test_its_scan_is_shown_while_it_moves(client: RemoteClient, robot: Heard) -> None:
