@@ -27,6 +27,7 @@ from roomba.household.plan_changes import Change, removed, replaced
 from roomba.household.plan_keeper import PlanKeeper
 from roomba.household.room_names import require_rooms
 from roomba.household.upkeep_keeper import UpkeepKeeper
+from roomba.plans.moment import is_set
 from roomba.plans.plan import Emptying, Plan, PlannedOrder, Preset, QuietHours
 from roomba.upkeep.parts import Part
 
@@ -34,6 +35,10 @@ _PERIOD: Final = 1.0
 """s of wall time between two looks."""
 _END: Final = 10.0
 """s of wall time that the end waits for a look under way."""
+
+
+class ClockNotSetError(RoombaError):
+    """The clock of this computer tells a time at which there was no such program."""
 
 
 class LiveHousehold:
@@ -59,7 +64,8 @@ class LiveHousehold:
 
         ``now`` is the wall clock, aware of its zone; ``period`` is s of wall time between looks.
         """
-        self.robot, self._totals, self._period = robot, totals, period
+        self.robot, self._totals = robot, totals
+        self._now, self._period = now, period
         self._tell = ToldOnce(tell)
         self._is_full_told = False
         self._capacity, self._emptying, self._bag = bin_capacity, config.emptying, math.nan
@@ -105,6 +111,7 @@ class LiveHousehold:
             self._count_work,
             self._tell_full_bin,
             self._empty_at_station,
+            self._require_clock,
             lambda: self._plans.look(self._view),
         )
 
@@ -213,6 +220,15 @@ class LiveHousehold:
             with contextlib.suppress(RequestRefusedError, RobotUnavailableError):
                 self.robot.empty_at_station()
 
+    def _require_clock(self) -> None:
+        """Raise ClockNotSetError if no plan can begin for that."""
+        now = self._now()
+        if not is_set(now):
+            raise ClockNotSetError(
+                f"expected a clock of this computer that is set, got {now:%Y-%m-%d}: plans wait "
+                "until it is, by the network or by hand"
+            )
+
     def _require_rooms(self, order: PlannedOrder) -> None:
         """Raise RequestRefusedError for rooms that the map does not have.
 
@@ -236,6 +252,8 @@ def _trouble_of(step: Callable[[], None]) -> str:
     """Take a step; return what went wrong, empty if nothing did."""
     try:
         step()
+    except ClockNotSetError as error:
+        return str(error)
     except OSError as error:
         return f"what belongs to the household was not kept: {error}"
     except Exception as error:

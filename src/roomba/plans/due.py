@@ -14,7 +14,7 @@ from pydantic import Field
 
 from roomba.configuration.frozen import Frozen, NotNegative
 from roomba.configuration.household import DueConfig
-from roomba.plans.moment import Moment
+from roomba.plans.moment import Moment, is_set
 from roomba.vocabulary import MOST_ZONES, RoomDirt
 
 DAY: Final = 86400.0
@@ -64,8 +64,11 @@ def learned(
 ) -> DirtRecords:
     """Return what is known after a clean that ended at a moment and found dirt in rooms.
 
-    A room of which too little was swept counts as not cleaned.
+    A room of which too little was swept counts as not cleaned. While the clock is not set nothing
+    is learned.
     """
+    if not is_set(at):
+        return records
     rooms = dict(records.rooms)
     for each in found:
         if each.share < config.least_share:

@@ -15,6 +15,7 @@ from typing import Final
 
 from roomba.configuration.household import PlansConfig
 from roomba.plans.memory import Memory, Note, Running, Waiting
+from roomba.plans.moment import is_set
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder
 from roomba.plans.times import UTC, last_until, next_after, quiet_until
 
@@ -83,8 +84,11 @@ class Scheduler:
     ) -> tuple[Memory, Act | None]:
         """Return what is remembered after a moment (aware of its zone), and what is to be done.
 
-        Once an act is carried out, :meth:`begun` or :meth:`refused` is to follow a BEGIN.
+        Once an act is carried out, :meth:`begun` or :meth:`refused` is to follow a BEGIN. While the
+        clock is not set nothing is to be done.
         """
+        if not is_set(now):
+            return self._follow_end(memory, now, situation), None
         memory = self.keep_to_plans(memory, now)
         memory = self._note_due(memory, now)
         memory, act = self._follow_running(memory, now, situation)
@@ -112,7 +116,12 @@ class Scheduler:
         return memory.without_waiting(plan).noting(told)
 
     def keep_to_plans(self, memory: Memory, now: dt.datetime) -> Memory:
-        """Return the memory without what is no plan any more, and with those that are new."""
+        """Return the memory without what is no plan any more, and with those that are new.
+
+        While the clock is not set it stays as it is.
+        """
+        if not is_set(now):
+            return memory
         seen = memory.seen
         # A clock that is set back by less cleans nothing twice.
         is_back = seen is not None and seen - now > _DAY
@@ -178,6 +187,12 @@ class Scheduler:
             return self._finish(memory, running, now, off), None
         resting = running.model_copy(update={"rests_since": since})
         return memory.model_copy(update={"running": resting}), None
+
+    def _follow_end(self, memory: Memory, now: dt.datetime, situation: Situation) -> Memory:
+        """Finish what runs if it ended."""
+        if memory.running is None or situation.ended is None:
+            return memory
+        return self._finish(memory, memory.running, now, situation)
 
     def _finish(
         self, memory: Memory, running: Running, now: dt.datetime, situation: Situation

@@ -152,6 +152,20 @@ def test_a_fault_in_a_look_is_told_with_its_place_and_plans_begin_all_the_same(
     assert "in faulty" in fault
 
 
+def test_a_clock_that_is_not_set_is_told(robot: WrittenRobot, tmp_path: Path) -> None:
+    told: list[str] = []
+    now = [dt.datetime(1970, 1, 1, tzinfo=dt.timezone.utc)]
+    household = LiveHousehold(
+        robot, tmp_path, HouseholdConfig(), 100.0, told.append, now=lambda: now[0]
+    )
+    household.look()
+    household.look()
+    now[0] = NOW[0]
+    household.look()
+    assert len(told) == 1
+    assert "got 1970-01-01: plans wait" in told[0]
+
+
 def test_it_looks_by_itself_and_a_robot_that_is_gone_ends_nothing(
     robot: WrittenRobot, household: LiveHousehold
 ) -> None:

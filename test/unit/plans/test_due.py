@@ -97,6 +97,12 @@ def test_a_clock_that_is_set_back_leaves_nothing_dirty() -> None:
     assert all(need.is_due for need in needs(after_two_days(), -3).values())
 
 
+def test_nothing_is_learned_by_a_clock_that_is_not_set() -> None:
+    records = after_two_days()
+    never_set = dt.datetime(1970, 1, 1, tzinfo=dt.timezone.utc)
+    assert learned(records, found({"den": 7.0, "attic": 7.0}), never_set, CONFIG) == records
+
+
 @pytest.mark.parametrize("rate", [0.0, 1e-307, 1e-9])
 def test_a_room_that_stays_clean_is_cleaned_once_a_week(rate: float) -> None:
     records = learned(DirtRecords(), found({"den": 5.0, "hall": 5.0}), day(0), CONFIG)

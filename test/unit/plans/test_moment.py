@@ -9,7 +9,7 @@ import pytest
 from fixtures.households.kept_household import FIRST_AND_LAST
 from pydantic import TypeAdapter, ValidationError
 
-from roomba.plans.moment import Moment
+from roomba.plans.moment import Moment, is_set
 
 MOMENTS: TypeAdapter[dt.datetime] = TypeAdapter(Moment)
 
@@ -26,3 +26,10 @@ def test_each_other_one_has_days_before_and_after_in_any_zone(text: str) -> None
     for zone in ("Pacific/Kiritimati", "Pacific/Niue"):
         there = moment.astimezone(zoneinfo.ZoneInfo(zone))
         assert there - dt.timedelta(days=400) < moment < there + dt.timedelta(days=400)
+
+
+@pytest.mark.parametrize(
+    ("text", "can_be"), [("1970-01-01", False), ("2025-12-31", False), ("2026-01-01", True)]
+)
+def test_a_clock_that_tells_a_day_before_the_program_was_never_set(text: str, can_be: bool) -> None:
+    assert is_set(dt.datetime.fromisoformat(text).replace(tzinfo=dt.timezone.utc)) is can_be

@@ -90,6 +90,25 @@ def test_a_clean_begins_at_its_time_once() -> None:
     assert following[1].astimezone(BERLIN).isoformat() == "2026-03-03T09:00:00+01:00"
 
 
+NEVER_SET = dt.datetime(1970, 1, 1, 0, 0, 20, tzinfo=dt.timezone.utc)
+
+
+def test_a_clock_that_was_not_set_for_a_while_changes_nothing() -> None:
+    days = Days(plan(), plan("later", "20:30"))
+    assert begins(days.at("09:00")) == "all"
+    assert days.at("09:40", Situation(ended=PlanEnd.DONE)) is None
+    before = days.memory
+    days.now = NEVER_SET
+    assert days.step() is None
+    assert Scheduler(days.household, CONFIG).keep_to_plans(before, NEVER_SET) == before
+    assert days.at("03-02 20:00") is None
+    assert days.memory.since == before.since
+    assert begins(days.at("20:30")) == "later"
+    days.now = NEVER_SET
+    assert days.step(Situation(ended=PlanEnd.DONE)) is None
+    assert days.memory.running is None, "its end is told once"
+
+
 def test_quiet_hours_delay_it() -> None:
     days = Days(plan("night", "23:00"), quiet=(NIGHT,))
     assert days.at("23:00") is None
@@ -334,7 +353,7 @@ def test_a_refusal_is_told_and_tried_again() -> None:
     zone=st.sampled_from(
         ["Europe/Berlin", "America/New_York", "Australia/Lord_Howe", "Asia/Tokyo"]
     ),
-    begin=st.datetimes(dt.datetime(2024, 1, 1), dt.datetime(2027, 1, 1)),
+    begin=st.datetimes(dt.datetime(2026, 1, 2), dt.datetime(2029, 1, 1)),
     minute=st.integers(0, 24 * 60 - 1),
     step=st.integers(1, 50),
 )
@@ -342,7 +361,7 @@ def test_each_day_has_one_clean_whatever_the_clock_does(
     zone: str, begin: dt.datetime, minute: int, step: int
 ) -> None:
     at = (dt.datetime(2000, 1, 1) + dt.timedelta(minutes=minute)).time()
-    daily = Plan(name="all", at=(at,), begins=dt.date(2023, 12, 1))
+    daily = Plan(name="all", at=(at,), begins=dt.date(2025, 12, 1))
     scheduler = Scheduler(HouseholdPlans(zone=zone, plans=(daily,)), CONFIG)
     now = begin.replace(tzinfo=dt.timezone.utc)
     memory, cleans = Memory(), []
