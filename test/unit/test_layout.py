@@ -63,7 +63,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
         PART,
     ),
     "roomba/arrays": ("unit/raster/test_regions.py", "types alone"),
-    "roomba/plans/memory": ("unit/plans/test_scheduler.py", VALUES),
     "roomba/client/ports": ("unit/commands/status/test_command.py", VALUES),
     "roomba/client/protocol": ("unit/client/fake/test_robot.py", "an interface"),
     "roomba/client/observed": ("unit/ui/web/test_app.py", "an interface"),

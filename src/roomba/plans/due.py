@@ -77,6 +77,10 @@ def learned(
         rate = None if before is None else before.rate
         if before is not None:
             days = (at - before.cleaned).total_seconds() / DAY
+            if days < 0.0:
+                # The clock was ahead before, and by how much is not known.
+                rooms[each.room] = RoomRecord(cleaned=at, rate=rate)
+                continue
             if days < config.shortest:
                 # Cleaned again at once: what lies there says nothing of a day.
                 rooms[each.room] = RoomRecord(cleaned=before.cleaned, rate=rate)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime as dt
 from typing import Annotated, Final
 
 from pydantic import Field
@@ -40,6 +41,13 @@ class Running(Frozen):
     rests_since: Moment | None = None
     """Since when the robot stands without telling how the clean ended."""
 
+    def not_after(self, now: dt.datetime) -> Running:
+        """Return it with no moment that is to come."""
+        moments = {name: getattr(self, name) for name in ("due", "began", "held", "rests_since")}
+        return self.model_copy(
+            update={name: min(at, now) for name, at in moments.items() if at is not None}
+        )
+
 
 class Note(Frozen):
     """What became of a plan."""
@@ -72,6 +80,23 @@ class Memory(Frozen):
             for name in ("since", "next_at", "waiting")
         }
         return self.model_copy(update=update)
+
+    def not_ahead(self, now: dt.datetime, longest: dt.timedelta) -> Memory:
+        """Return the memory without what a clock that was ahead noted: nothing waits for that.
+
+        What began is no later than now, and what waits is tried again within ``longest``.
+        """
+        waiting = {
+            name: waits.model_copy(
+                update={
+                    "due": min(waits.due, now),
+                    "not_before": min(waits.not_before, now + longest),
+                }
+            )
+            for name, waits in self.waiting.items()
+        }
+        running = None if self.running is None else self.running.not_after(now)
+        return self.model_copy(update={"waiting": waiting, "running": running})
 
     def replanned(self) -> Memory:
         """Return the memory for times that were changed: what comes next is looked for anew."""

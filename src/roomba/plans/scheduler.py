@@ -90,6 +90,7 @@ class Scheduler:
         if not is_set(now):
             return self._follow_end(memory, now, situation), None
         memory = self.keep_to_plans(memory, now)
+        memory = memory.not_ahead(now, self._seconds(self.config.retry_after))
         memory = self._note_due(memory, now)
         memory, act = self._follow_running(memory, now, situation)
         if act is None and memory.running is None:
@@ -122,9 +123,8 @@ class Scheduler:
         """
         if not is_set(now):
             return memory
-        seen = memory.seen
         # A clock that is set back by less cleans nothing twice.
-        is_back = seen is not None and seen - now > _DAY
+        is_back = any(at - now > _DAY for at in (memory.seen or now, *memory.since.values()))
         names = {plan.name for plan in self.household.plans if plan.is_on}
         for name in set(memory.since) | set(memory.waiting):
             if name not in names or is_back:

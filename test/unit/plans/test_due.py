@@ -97,6 +97,17 @@ def test_a_clock_that_is_set_back_leaves_nothing_dirty() -> None:
     assert all(need.is_due for need in needs(after_two_days(), -3).values())
 
 
+def test_after_a_clock_that_was_ahead_it_is_learned_on() -> None:
+    records = learned(after_two_days(), found({"den": 90.0}), day(3650), CONFIG)
+    rate = records.rooms["den"].rate
+    records = learned(records, found({"den": 9000.0}), day(3), CONFIG)
+    assert (records.rooms["den"].cleaned, records.rooms["den"].rate) == (day(3), rate)
+    assert not needs(records, 4)["den"].is_due
+    again = learned(records, found({"den": 1000.0}), day(4), CONFIG).rooms["den"].rate
+    assert again is not None
+    assert again > 100.0
+
+
 def test_nothing_is_learned_by_a_clock_that_is_not_set() -> None:
     records = after_two_days()
     never_set = dt.datetime(1970, 1, 1, tzinfo=dt.timezone.utc)
