@@ -10,6 +10,7 @@ from typing import Final
 
 from pydantic import ValidationError
 
+from roomba.clean_request import CleanRequest
 from roomba.client.household import PlansView, PlanView
 from roomba.client.observed import ObservedRobot
 from roomba.client.protocol import (
@@ -119,25 +120,40 @@ class PlanKeeper:
 
     def _carried_out(self, scheduler: Scheduler, act: Act, now: dt.datetime) -> Memory:
         """Let the robot do an act; return what is remembered then."""
+        if act.deed is Deed.BEGIN and act.order is not None:
+            return self._begun(scheduler, act.plan, act.order, now)
+        deeds = {
+            Deed.PAUSE: self._robot.pause,
+            Deed.RESUME: self._robot.resume,
+            Deed.DOCK: self._robot.dock,
+        }
         try:
-            if act.deed is Deed.BEGIN and act.order is not None:
-                order = self._order_now(act.plan, act.order, now)
-                if order is None:
-                    return scheduler.not_due(self._memory, act.plan, now)
-                self._robot.clean(order.request())
-                return scheduler.begun(self._memory, act.plan, now)
-            deeds = {
-                Deed.PAUSE: self._robot.pause,
-                Deed.RESUME: self._robot.resume,
-                Deed.DOCK: self._robot.dock,
-            }
             deeds[act.deed]()
         except (RequestRefusedError, RobotUnavailableError) as refusal:
-            if act.deed is Deed.BEGIN:
-                return scheduler.refused(self._memory, act.plan, now, str(refusal))
             text = f"the robot did not obey ({act.deed.value}): {refusal}"
             return self._memory.noting(Note(at=now, plan=act.plan, text=text))
         return self._memory
+
+    def _begun(
+        self, scheduler: Scheduler, plan: str, order: PlannedOrder, now: dt.datetime
+    ) -> Memory:
+        """Let the robot begin the clean of a plan; return what is remembered then."""
+        try:
+            wanted = self._order_now(plan, order, now)
+            if wanted is None:
+                return scheduler.not_due(self._memory, plan, now)
+            unanswered = self._asked(wanted.request())
+        except (RequestRefusedError, RobotUnavailableError) as refusal:
+            return scheduler.refused(self._memory, plan, now, str(refusal))
+        return scheduler.begun(self._memory, plan, now, unanswered)
+
+    def _asked(self, request: CleanRequest) -> str:
+        """Ask the robot for a clean; return why it may not have heard that, empty if it has."""
+        try:
+            self._robot.clean(request)
+        except RobotUnavailableError as silence:
+            return str(silence)
+        return ""
 
     def _order_now(self, plan: str, order: PlannedOrder, now: dt.datetime) -> PlannedOrder | None:
         """Return what is to be cleaned of an order; None if nothing of it is due."""

@@ -40,6 +40,8 @@ class Running(Frozen):
     """The emergency stop was pressed: people alone decide on it, also if it is tried again."""
     rests_since: Moment | None = None
     """Since when the robot stands without telling how the clean ended."""
+    unanswered: str = ""
+    """Why it is not known whether it began, empty if it is: the robot was asked, and silent."""
 
     def not_after(self, now: dt.datetime) -> Running:
         """Return it with no moment that is to come."""

@@ -97,14 +97,18 @@ class Scheduler:
             memory, act = self._choose(memory, now, situation)
         return memory.model_copy(update={"seen": now}), act
 
-    def begun(self, memory: Memory, plan: str, now: dt.datetime) -> Memory:
-        """Return what is remembered once the robot began the clean of a plan."""
+    def begun(self, memory: Memory, plan: str, now: dt.datetime, unanswered: str = "") -> Memory:
+        """Return what is remembered once the robot began the clean of a plan.
+
+        ``unanswered`` is why that is not known; then it did if it is seen to work, and it did not
+        if it goes on to rest.
+        """
         waits = memory.waiting[plan]
-        running = Running(plan=plan, due=waits.due, began=now, tries=waits.tries)
-        late = now - waits.due > self._seconds(self.config.on_time)
-        text = f"began; it was due {self._clock(waits.due, now)}" if late else "began"
-        memory = memory.without_waiting(plan).model_copy(update={"running": running})
-        return memory.noting(Note(at=now, plan=plan, text=text))
+        running = Running(
+            plan=plan, due=waits.due, began=now, tries=waits.tries, unanswered=unanswered
+        )
+        memory = _running(memory.without_waiting(plan), running)
+        return memory if unanswered else self._noting_begin(memory, running)
 
     def refused(self, memory: Memory, plan: str, now: dt.datetime, reason: str) -> Memory:
         """Return what is remembered once the robot refused the clean of a plan."""
@@ -179,14 +183,21 @@ class Scheduler:
         if situation.ended is not None:
             return self._finish(memory, running, now, situation), None
         if situation.is_working or situation.is_paused or situation.is_held:
-            rested = running.model_copy(update={"rests_since": None})
-            return self._hold(memory.model_copy(update={"running": rested}), rested, now, situation)
+            if running.unanswered:
+                memory = self._noting_begin(memory, running)
+            works = running.model_copy(update={"rests_since": None, "unanswered": ""})
+            return self._hold(_running(memory, works), works, now, situation)
         since = running.rests_since or now
         if now - since >= _ENDED_WITHOUT_WORD:
-            off = Situation(ended=PlanEnd.FAILED, message="the robot was switched off meanwhile")
+            why = running.unanswered or "the robot was switched off meanwhile"
+            off = Situation(ended=PlanEnd.FAILED, message=why)
             return self._finish(memory, running, now, off), None
-        resting = running.model_copy(update={"rests_since": since})
-        return memory.model_copy(update={"running": resting}), None
+        return _running(memory, running.model_copy(update={"rests_since": since})), None
+
+    def _noting_begin(self, memory: Memory, running: Running) -> Memory:
+        late = running.began - running.due > self._seconds(self.config.on_time)
+        due = f"; it was due {self._clock(running.due, running.began)}" if late else ""
+        return memory.noting(Note(at=running.began, plan=running.plan, text=f"began{due}"))
 
     def _follow_end(self, memory: Memory, now: dt.datetime, situation: Situation) -> Memory:
         """Finish what runs if it ended."""

@@ -13,7 +13,12 @@ from fixtures.households.living_plans import LivingPlans
 from fixtures.households.written_robot import VIEW, WrittenRobot
 
 from roomba.clean_request import CleanRequest
-from roomba.client.protocol import CleanReport, ErrandOutcome, RequestRefusedError
+from roomba.client.protocol import (
+    CleanReport,
+    ErrandOutcome,
+    RequestRefusedError,
+    RobotUnavailableError,
+)
 from roomba.client.view import RobotView
 from roomba.household.plan_changes import removed, replaced
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset
@@ -94,6 +99,45 @@ def test_a_refusal_is_told(living: Living) -> None:
     living.look(DOCKED, 60)
     assert living.reason() == "there is no room kitchen"
     assert living.keeper.view().running == ""
+
+
+SILENCE = "expected the robot's answer within 5 s, got none"
+
+
+def silent(living: Living) -> list[CleanRequest]:
+    """Let the robot hear what it is to clean, and not answer; return what it hears from now on."""
+    heard: list[CleanRequest] = []
+
+    def clean(request: CleanRequest) -> None:
+        heard.append(request)
+        raise RobotUnavailableError(SILENCE)
+
+    living.robot.__dict__["clean"] = clean
+    return heard
+
+
+def test_a_clean_that_began_without_an_answer_is_not_begun_again(living: Living) -> None:
+    heard = silent(living)
+    living.look(DOCKED, 60)
+    living.look(DOCKED, 0.1)
+    living.look(VIEW, 0.1)
+    assert (living.keeper.view().running, living.last_note()) == ("kitchen", "began")
+    living.look(VIEW, 40)
+    living.look(ended(ErrandOutcome.COMPLETED), 1)
+    living.look(DOCKED, 60)
+    assert living.last_note() == "done: 5.0 of 6.0 m²"
+    assert len(heard) == 1
+
+
+def test_one_that_did_not_begin_is_tried_again_and_why_is_told(living: Living) -> None:
+    heard = silent(living)
+    living.look(DOCKED, 60)
+    living.look(DOCKED, 0.1)
+    living.look(DOCKED, 1)
+    assert living.reason() == SILENCE
+    assert [note.text for note in living.keeper.view().notes] == [f"tried again 09:31: {SILENCE}"]
+    living.look(DOCKED, 31)
+    assert len(heard) == 2
 
 
 def test_a_program_that_begins_anew_knows_what_was_under_way(living: Living) -> None:
