@@ -73,16 +73,19 @@ class LiveHousehold:
         self._view: RobotView | None = None
         kept = KeptValues(folder / "upkeep.json", tell)
         self._upkeep = UpkeepKeeper(robot, kept, config.upkeep, bin_capacity)
+        zone = local_zone()
         self._plans = PlanKeeper(
             robot,
             KeptValues(folder / "plans.json", tell),
             KeptValues(folder / "agenda.json", tell),
             config.plans,
             now,
-            local_zone(),
+            zone.name,
             DirtKeeper(KeptValues(folder / "dirt.json", tell), config.due),
             KeptValues(folder / "rooms.json", tell),
         )
+        if zone.doubt and self.plans().household.zone == zone.name:
+            tell(f"{zone.doubt}: plans go by the hours of {zone.name}; set the zone on the page")
         self._in_use = InUse(folder, tell)
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._live, name="household", daemon=True)

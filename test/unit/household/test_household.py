@@ -6,6 +6,7 @@ import datetime as dt
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
@@ -17,6 +18,7 @@ from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.commands.play.living import live_client
 from roomba.configuration.household import HouseholdConfig
 from roomba.household.household import LiveHousehold
+from roomba.household.local_zone import LocalZone
 from roomba.plans.plan import Plan, PlannedOrder, Preset, QuietHours
 from roomba.ui.state_words import lines_of
 from roomba.ui.web.app import create_app
@@ -49,6 +51,11 @@ def household(robot: WrittenRobot, tmp_path: Path) -> LiveHousehold:
         now=lambda: NOW[0],
         period=0.02,
     )
+
+
+def kept(robot: WrittenRobot, folder: Path, told: list[str], **others: Any) -> LiveHousehold:
+    """Return the household in a folder, as a program begins it that writes down what is told."""
+    return LiveHousehold(robot, folder, HouseholdConfig(), 100.0, told.append, **others)
 
 
 @pytest.fixture
@@ -109,7 +116,7 @@ def test_a_bin_that_the_robot_does_not_let_be_emptied_is_not_reset(
 def test_a_full_disk_is_told_and_a_reset_is_refused(robot: WrittenRobot, tmp_path: Path) -> None:
     told: list[str] = []
     (tmp_path / "file").touch()
-    household = LiveHousehold(robot, tmp_path / "file", HouseholdConfig(), 100.0, told.append)
+    household = kept(robot, tmp_path / "file", told)
     app = create_app(robot, Guard("token"), household=household)
     answer = TestClient(app, base_url="http://127.0.0.1").post(
         "/api/v1/upkeep/reset", json={"part": "filter"}, headers=AUTHORISED
@@ -130,16 +137,7 @@ def test_a_fault_in_a_look_is_told_with_its_place_and_plans_begin_all_the_same(
 
     robot.view = replace(VIEW, vacuum=replace(VIEW.vacuum, state="docked", phase="docked"))
     now = [NOW[0]]
-    household = LiveHousehold(
-        robot,
-        tmp_path,
-        HouseholdConfig(),
-        100.0,
-        told.append,
-        faulty,
-        now=lambda: now[0],
-        period=0.02,
-    )
+    household = kept(robot, tmp_path, told, totals=faulty, now=lambda: now[0])
     household.put_plan(Plan(name="daily", at=(dt.time(9),)))
     household.start()
     try:
@@ -153,17 +151,26 @@ def test_a_fault_in_a_look_is_told_with_its_place_and_plans_begin_all_the_same(
 
 
 def test_a_clock_that_is_not_set_is_told(robot: WrittenRobot, tmp_path: Path) -> None:
-    told: list[str] = []
-    now = [dt.datetime(1970, 1, 1, tzinfo=dt.timezone.utc)]
-    household = LiveHousehold(
-        robot, tmp_path, HouseholdConfig(), 100.0, told.append, now=lambda: now[0]
-    )
+    told, now = list[str](), [dt.datetime(1970, 1, 1, tzinfo=dt.timezone.utc)]
+    household = kept(robot, tmp_path, told, now=lambda: now[0])
     household.look()
     household.look()
     now[0] = NOW[0]
     household.look()
     assert len(told) == 1
     assert "got 1970-01-01: plans wait" in told[0]
+
+
+def test_a_zone_that_is_a_guess_is_told_until_another_one_is_set(
+    robot: WrittenRobot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        "roomba.household.household.local_zone", lambda: LocalZone("UTC", "expected a zone")
+    )
+    told: list[str] = []
+    kept(robot, tmp_path, told).set_zone("Europe/Berlin")
+    kept(robot, tmp_path, told)
+    assert told == ["expected a zone: plans go by the hours of UTC; set the zone on the page"]
 
 
 def test_it_looks_by_itself_and_a_robot_that_is_gone_ends_nothing(
@@ -377,11 +384,7 @@ def test_a_second_program_with_the_same_household_is_told(
     robot: WrittenRobot, tmp_path: Path
 ) -> None:
     told: list[str] = []
-
-    def kept() -> LiveHousehold:
-        return LiveHousehold(robot, tmp_path, HouseholdConfig(), 100.0, told.append)
-
-    first, second = kept(), kept()
+    first, second = kept(robot, tmp_path, told), kept(robot, tmp_path, told)
     first.start()
     try:
         assert not told
@@ -391,7 +394,7 @@ def test_a_second_program_with_the_same_household_is_told(
     finally:
         first.stop()
     told.clear()
-    third = kept()
+    third = kept(robot, tmp_path, told)
     third.start()
     third.stop()
     assert not told
