@@ -67,6 +67,8 @@ class Memory(Frozen):
     """Of each plan: its times up to here were dealt with."""
     next_at: dict[str, Moment] = Field(default={})
     """Of each plan that has a further time: when that is."""
+    reckoned: dict[str, str] = Field(default={})
+    """Of each plan: the days and times, and their zone, of which the above was reckoned."""
     waiting: dict[str, Waiting] = Field(default={})
     running: Running | None = None
     notes: Annotated[tuple[Note, ...], Field(max_length=MOST_NOTES)] = ()
@@ -102,7 +104,7 @@ class Memory(Frozen):
 
     def replanned(self) -> Memory:
         """Return the memory for times that were changed: what comes next is looked for anew."""
-        return self.model_copy(update={"since": {}, "next_at": {}})
+        return self.model_copy(update={"since": {}, "next_at": {}, "reckoned": {}})
 
     def without_waiting(self, plan: str) -> Memory:
         """Return the memory in which nothing waits of a plan."""

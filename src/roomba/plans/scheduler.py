@@ -123,17 +123,20 @@ class Scheduler:
     def keep_to_plans(self, memory: Memory, now: dt.datetime) -> Memory:
         """Return the memory without what is no plan any more, and with those that are new.
 
-        While the clock is not set it stays as it is.
+        One that has other days or times than before is new; so it is where its file was edited by
+        hand. While the clock is not set it stays as it is.
         """
         if not is_set(now):
             return memory
         # A clock that is set back by less cleans nothing twice.
         is_back = any(at - now > _DAY for at in (memory.seen or now, *memory.since.values()))
-        names = {plan.name for plan in self.household.plans if plan.is_on}
+        times = {plan.name: self._times_of(plan) for plan in self.household.plans if plan.is_on}
+        before = {**times, **memory.reckoned}
         for name in set(memory.since) | set(memory.waiting):
-            if name not in names or is_back:
+            if is_back or name not in times or times[name] != before[name]:
                 memory = memory.forgetting(name)
-        new = {name: now for name in names if name not in memory.since}
+        memory = memory.model_copy(update={"reckoned": times})
+        new = {name: now for name in times if name not in memory.since}
         if not new:
             return memory
         memory = memory.model_copy(update={"since": {**memory.since, **new}})
@@ -317,6 +320,11 @@ class Scheduler:
                 told = waits.model_copy(update={"reason": reason})
                 memory = memory.with_waiting(name, told)
         return memory, None
+
+    def _times_of(self, plan: Plan) -> str:
+        """Return the days and times of a plan: another text for others."""
+        times = " ".join(f"{time:%H:%M}" for time in plan.at)
+        return f"{plan.rule} from {plan.begins} at {times} {self.household.zone}"
 
     @property
     def _zone(self) -> zoneinfo.ZoneInfo:

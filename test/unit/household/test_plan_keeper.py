@@ -196,6 +196,27 @@ def test_what_another_program_changed_meanwhile_stays(living: Living) -> None:
     assert [plan.name for plan in living.keeper.view().plans] == [AT_NINE.name, "theirs", "ours"]
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "hour"),
+    [("09:00", "08:30", 8), ('"zone": "UTC"', '"zone": "Atlantic/Azores"', 10)],
+)
+def test_plans_that_were_edited_by_hand_go_by_their_new_times(
+    living: Living, old: str, new: str, hour: int
+) -> None:
+    file = living.folder / "plans.json"
+    lines = file.read_text("utf-8").replace(old, new).splitlines()
+    # As the message says to a person who edits what is sealed.
+    file.write_text("\n".join(line for line in lines if "# kept" not in line), "utf-8")
+    living.again()
+    living.look(DOCKED)
+    expected = living.keeper.view().next_at
+    assert expected is not None
+    assert (expected.day, expected.hour) == (living.now.day, hour)
+    living.now = expected
+    living.look(DOCKED)
+    assert [name for name, _ in living.robot.told] == ["clean"]
+
+
 def test_another_zone_moves_all_times(living: Living) -> None:
     living.keeper.change(lambda all_: all_.model_copy(update={"zone": "America/New_York"}))
     assert living.keeper.view().next_at == living.now.replace(hour=14)
