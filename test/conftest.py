@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import signal
+import time
 from collections.abc import Generator, Iterator
 from pathlib import Path
 
@@ -26,6 +27,10 @@ settings.register_profile(
 settings.load_profile("project")
 
 RosGraph.forks = True
+
+# A container may not tell its time zone, and the programs say so.
+os.environ["TZ"] = "UTC"
+time.tzset()
 
 # Tests that are started in the background inherit that Ctrl-C is ignored, and so would the
 # programs that they start: these would end after their deadlines only.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -25,9 +24,8 @@ AHEAD = Twist(0.3, 0.1)
 
 
 @pytest.fixture
-def graph() -> Iterator[Lockstep]:
-    with Lockstep().installed() as lockstep:
-        yield lockstep
+def graph(monkeypatch: pytest.MonkeyPatch) -> Lockstep:
+    return Lockstep().install(monkeypatch)
 
 
 def link(**parameters: object) -> DriveLink:
