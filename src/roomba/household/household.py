@@ -270,4 +270,4 @@ def _kept(change: Callable[[], None]) -> None:
     try:
         change()
     except OSError as error:
-        raise RequestRefusedError(f"it was not kept: {error}; is the disk full?") from error
+        raise RequestRefusedError(f"it was not kept: {error}") from error
