@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from fixtures.processes.dead_man import kill_dead_mans_switch
 from fixtures.robots.create2_rig import Create2Rig, create2_in_studio
 from fixtures.waiting import wait_until
 
@@ -84,6 +85,20 @@ def test_it_stands_when_the_program_that_drives_it_is_killed_or_frozen(
         program.kill()
         program.wait(5.0)
         rig.end()
+
+
+def test_one_whose_dead_mans_switch_is_killed_gets_another_before_it_drives_on(
+    rig: Create2Rig,
+) -> None:
+    rig.drive_until(Twist(-0.1, 0.0), lambda: rig.moves, "it drives")
+    kill_dead_mans_switch(os.fspath(rig.link))
+    rig.drive_until(Twist(-0.1, 0.0), lambda: bool(rig.errors), "it is noticed")
+    assert "dead man's switch" in str(rig.errors[0])
+    rig.drive_until(
+        Twist(-0.1, 0.0), lambda: rig.moves and rig.body.trouble == "", "it goes on by itself"
+    )
+    rig.stop_serving()
+    assert_it_stands_soon(rig)
 
 
 def test_it_stands_when_nothing_comes_from_it_for_two_seconds(rig: Create2Rig) -> None:

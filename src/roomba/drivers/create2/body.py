@@ -253,9 +253,11 @@ class Create2Body:
             data += commands.power(*self._duties(wanted, twist))
         if sings:
             data += commands.play()
+        # It drives until it hears this command, and may from then on.
+        if not self._switch.tell(twist != STANDSTILL or self._twist != STANDSTILL):
+            raise LineError("its dead man's switch ended, and nothing else stops a robot for long")
         line.write(data + self._next_list())
         self._twist = twist
-        self._switch.tell(mode is not OpenMode.PASSIVE and twist != STANDSTILL)
 
     def _mode_for(self, twist: Twist, state: Create2State, now: float) -> OpenMode:
         """Return the mode: passive where it charges, else safe; only off its station full."""

@@ -28,8 +28,8 @@ class Switch(Protocol):
     def start(self) -> None:
         """Watch from now on."""
 
-    def tell(self, drives: bool) -> None:
-        """Say that the driver lives, and whether the robot is to drive."""
+    def tell(self, drives: bool) -> bool:
+        """Say that the driver lives, and whether the robot may drive; return whether it hears."""
 
     def end(self) -> None:
         """Watch no more."""
@@ -56,20 +56,18 @@ class DeadManSwitch:
             bufsize=0,
         )
 
-    def tell(self, drives: bool) -> None:
-        """Say that the driver lives, and whether the robot is to drive."""
+    def tell(self, drives: bool) -> bool:
+        """Say that the driver lives, and whether the robot may drive; return whether it hears.
+
+        It does not when it was killed, or its line is gone: the next start() is another one.
+        """
         if self._process is None or self._process.stdin is None:
-            return
+            return False
         try:
             self._process.stdin.write(DRIVES if drives else STANDS)
         except BrokenPipeError:
-            # Its line was unplugged, or it was killed: the next start() is another one.
-            self._process.stdin = None
-
-    @property
-    def is_alive(self) -> bool:
-        """Whether the process runs."""
-        return self._process is not None and self._process.poll() is None
+            return False
+        return True
 
     def end(self) -> None:
         """Close the pipe: it stops the robot once more, and ends."""

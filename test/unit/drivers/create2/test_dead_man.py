@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures.processes.dead_man import kill_dead_mans_switch
 from fixtures.waiting import wait_until
 
 from roomba.drivers.create2.dead_man import SILENT, STOP, DeadManSwitch
@@ -61,10 +62,25 @@ def test_a_robot_that_stands_may_be_left_alone(line: PseudoTerminal) -> None:
     switch.end()
 
 
-def test_one_whose_line_is_not_there_costs_its_driver_nothing(tmp_path: Path) -> None:
+def test_one_whose_line_is_not_there_does_not_hear_its_driver(tmp_path: Path) -> None:
     switch = DeadManSwitch(str(tmp_path / "nowhere"))
     switch.start()
-    wait_until(lambda: not switch.is_alive, 5.0, "it ended")
-    switch.tell(True)
-    switch.tell(True)
+    wait_until(lambda: not switch.tell(True), 5.0, "it ended")
+    assert not switch.tell(True)
     switch.end()
+
+
+def test_one_that_was_killed_does_not_hear_and_the_next_one_does(line: PseudoTerminal) -> None:
+    switch = DeadManSwitch(line.name)
+    switch.start()
+    assert switch.tell(False)
+    kill_dead_mans_switch(line.name)
+    wait_until(lambda: not switch.tell(False), 5.0, "it ended")
+    switch.start()
+    assert switch.tell(True)
+    wait_until(lambda: heard(line) == STOP, 5.0, "the stop")
+    switch.end()
+
+
+def test_before_its_start_it_does_not_hear(line: PseudoTerminal) -> None:
+    assert not DeadManSwitch(line.name).tell(True)
