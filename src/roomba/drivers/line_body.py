@@ -1,7 +1,8 @@
 """A body of a brain by a driver on a line: served by a thread of its own, in real time.
 
 The brain's thread reads what was told and says what is wanted; the line's thread talks with the
-robot. A line that is gone is opened again and again until the robot answers.
+robot. A line that is gone is opened again and again until the robot answers, and so it is after a
+fault of the driver: the thread lives as long as the body.
 """
 
 from __future__ import annotations
@@ -39,6 +40,12 @@ class LineAgain(Protocol):
 
 class NoScanError(RoombaError):
     """The robot answers, and its lidar does not."""
+
+
+class DriverFaultError(LineError):
+    """The driver met what it was not made for."""
+
+    remedy = "Please report this"
 
 
 class LineBody:
@@ -125,8 +132,8 @@ class LineBody:
         while not self._is_over.is_set():
             try:
                 self._driver.serve()
-            except LineError as error:
-                self._take_over_again(error)
+            except Exception as error:
+                self._take_over_again(_as_line_error(error))
 
     def _take_over_again(self, error: LineError) -> None:
         """Try until the robot answers again, or all ends; meanwhile its clock stands."""
@@ -138,13 +145,20 @@ class LineBody:
                 if not is_open:
                     self._line.reopen()
                 self._driver.begin()
-            except LineError as newer:
-                error, is_open = newer, False
+            except Exception as newer:
+                error, is_open = _as_line_error(newer), False
                 self._is_over.wait(_AGAIN)
                 continue
             self._clock.go_on()
             self._trouble = ""
             return
+
+
+def _as_line_error(error: Exception) -> LineError:
+    """Return what is told of an error; a fault of the driver is told with its kind."""
+    if isinstance(error, LineError):
+        return error
+    return DriverFaultError(f"its driver failed, by {type(error).__name__}: {error}")
 
 
 def _told(error: LineError) -> str:

@@ -22,6 +22,8 @@ _LEAST_BEAMS: Final = 300
 """Lines of a scan; with fewer the answer was cut."""
 _FIRST_ERROR: Final = 1
 """Of a beam; 0 is a range."""
+_LONGEST: Final = 65_535
+"""mm; the lidar tells ranges in 16 bits."""
 
 Values = Mapping[str, float]
 
@@ -152,9 +154,10 @@ def scan_of(lines: Sequence[str]) -> Scan:
 def _beam(cells: Sequence[str]) -> tuple[int, int, int]:
     """Return angle, range and error of a line of a scan; the angle is -1 where it is none."""
     try:
-        return int(cells[0]), int(cells[1]), int(cells[3], 16)
+        angle, millimetres, error = int(cells[0]), int(cells[1]), int(cells[3], 16)
     except (IndexError, ValueError):
         return -1, 0, 0
+    return (angle if 0 <= millimetres <= _LONGEST else -1), millimetres, error
 
 
 def _number(text: str) -> float:

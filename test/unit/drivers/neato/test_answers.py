@@ -73,6 +73,15 @@ def test_a_scan_that_was_cut_is_refused_and_one_without_some_lines_is_not() -> N
     assert np.isinf(answers.scan_of(lines).ranges[99:109]).all()
 
 
+@pytest.mark.parametrize("millimetres", ["9" * 400, "-1", "65536"])
+def test_a_range_that_no_lidar_tells_is_none(millimetres: str) -> None:
+    lines = scan_lines()
+    lines[91] = f"90,{millimetres},900,0"
+    scan = answers.scan_of(lines)
+    assert np.isinf(scan.ranges[90])
+    assert scan.ranges[88] == pytest.approx(1.088)
+
+
 @given(st.lists(st.text(max_size=30), max_size=20))
 def test_nonsense_is_refused_with_what_was_expected(lines: list[str]) -> None:
     for read in (
