@@ -67,7 +67,7 @@ def _limits(config: TrackingConfig, body: BodyConfig) -> Rows:
     """Return the limits of curves, a row of BENDING."""
     limits = np.zeros(1, BENDING)
     limits["off_corner"], limits["longest_blend"] = config.off_corner, config.longest_blend
-    limits["turning"] = config.corner_turning
+    limits["turning"] = min(config.corner_turning, config.turning_speed, body.max_angular_speed)
     limits["turning_acceleration"] = min(config.corner_acceleration, body.max_angular_acceleration)
     limits["turning_braking"] = min(config.corner_braking, body.max_angular_deceleration)
     limits["half_track"] = 0.5 * body.wheel_separation

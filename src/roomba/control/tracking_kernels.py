@@ -46,6 +46,8 @@ Row = Any
 
 _ROUNDS: Final = 2
 """Of looking for the curve's nearest place: each starts from where the one before ended."""
+_NO_TURN: Final = 1e-9
+"""rad/s; less is none."""
 _STRIDE: Final = 0.1
 """m; by so much it moves on a curve at most in each."""
 
@@ -165,7 +167,9 @@ def drive(
     reach = state.reach + state.reach_time * speed + abs(state.aside)
     back = -math.atan(state.aside / reach)
     turn = state.speed * curvature + state.gain * wrapped(error + back)
-    return speed, min(max(turn, -state.turning_speed), state.turning_speed)
+    # Where it cannot turn so fast it is slower, and keeps to its curve.
+    share = min(1.0, state.turning_speed / max(abs(turn), _NO_TURN))
+    return share * speed, share * turn
 
 
 @inner_part

@@ -142,6 +142,18 @@ def test_speeds_are_what_drive_and_brakes_can_do(legs: Legs) -> None:
     assert (faster <= most + 1e-6)[is_free[1:-1]].all()
 
 
+@pytest.mark.parametrize("limit", ["body", "tracking"])
+def test_bends_are_no_faster_than_the_robot_can_turn(limit: str) -> None:
+    body, config = BODY, CONFIG
+    if limit == "body":
+        body = BODY.model_copy(update={"max_angular_speed": 1.0})
+    else:
+        config = CONFIG.model_copy(update={"turning_speed": 1.0})
+    samples = curve(course_of(path((0.0, 1.0), (0.25, 1.0)), config, body))
+    turning = samples["speed"] * np.abs(samples["curvature"])
+    assert turning.max() == pytest.approx(1.0)
+
+
 def test_a_section_begins_as_fast_as_it_may_by_itself() -> None:
     # The one before it ends in a tight bend, and between both it turns on the spot.
     made = course((0.0, 0.3), (0.48, 0.01), (2.0, 0.3), (0.01, 0.3))

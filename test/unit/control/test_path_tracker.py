@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from roomba.configuration.body import BodyConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.control.path_tracker import PathTracker
 from roomba.geometry import Pose, Twist
@@ -26,6 +27,7 @@ ASIDE = 0.005
 """m; farther from its line it never is, beginning on it: twice 3 mm before a corner may add up."""
 BESIDE_A_WALL = 0.004
 """m; the same along walls, from which plans keep 5 mm."""
+ROUNDING = 1e-9
 FINE = 10
 """Steps of the body in a tick."""
 
@@ -46,8 +48,14 @@ def moved(pose: Pose, twist: Twist, seconds: float) -> Pose:
 class Drive:
     """A tracker, and the body that it drives; all twists, and poses in between."""
 
-    def __init__(self, points: Points, pose: Pose | None = None, limit: float = LIMIT) -> None:
-        self.tracker = PathTracker(points, TRACKING, BODY, TICK)
+    def __init__(
+        self,
+        points: Points,
+        pose: Pose | None = None,
+        limit: float = LIMIT,
+        body: BodyConfig = BODY,
+    ) -> None:
+        self.tracker = PathTracker(points, TRACKING, body, TICK)
         self.pose = pose or Pose(float(points[0, 0]), float(points[0, 1]), 0.0)
         self.limit = limit
         self.twists: list[Twist] = []
@@ -234,6 +242,18 @@ def test_a_drive_that_answers_late_keeps_to_bends_along_walls(
     is_between = (ways > 0.1) & (ways < path.length - 0.1)
     assert speeds[is_between].min() >= 0.9 * TRACKING.slowest_corner
     assert speeds[is_between].mean() > 0.6 * LIMIT
+
+
+@pytest.mark.parametrize("turning", [0.1, 0.3, 0.6, 1.0])
+@pytest.mark.parametrize("points", [AROUND_A_WALL, INTO_A_CORNER], ids=["around", "into"])
+def test_a_body_that_turns_slowly_is_slow_in_bends_and_keeps_to_them(
+    points: Points, turning: float
+) -> None:
+    drive = Drive(points, body=BODY.model_copy(update={"max_angular_speed": turning}))
+    drive.to_the_end()
+    assert max(abs(twist.angular) for twist in drive.twists) <= turning + ROUNDING
+    off = shapely.distance(shapely.LineString(points), shapely.points(drive.places))
+    assert off.max() < BESIDE_A_WALL
 
 
 def test_where_it_is_on_its_path_is_told() -> None:

@@ -123,6 +123,13 @@ class PathDriver:
         return self.tracker.left
 
     @property
+    def patience(self) -> float:
+        """How long it may come no farther, s: on the spot it may have to turn by a half turn."""
+        body, tracking = self._robot.body, self._robot.tracking
+        half_turn = math.pi / min(tracking.turning_speed, body.max_angular_speed)
+        return max(self._config.progress_timeout, 2.0 * half_turn)
+
+    @property
     def points_left(self) -> NDArray[np.float64]:
         """The corners of the path before the robot, and its end, float64 [n, 2], m.
 
@@ -264,7 +271,7 @@ class PathDriver:
     def _comes_no_farther(self, senses: Senses) -> bool:
         tracker = self.tracker
         since = mark_progress(self.progress, tracker.along, tracker.leg, senses.now)
-        return bool(since > self._config.progress_timeout)
+        return bool(since > self.patience)
 
     def _begin_recovery(self, senses: Senses) -> None:
         self.progress["recoveries"] += 1

@@ -44,6 +44,7 @@ class Rig:
         pose: Pose = HERE,
         discs: list[Disc] | None = None,
         plans_anew: Callable[[float, Floats], bool] = lambda now, rest: False,
+        robot: RobotConfig = CONFIG,
     ) -> None:
         self.pose, self.discs = pose, discs or []
         self.time, self.clock = 0.0, 0.0
@@ -58,7 +59,7 @@ class Rig:
             self.obstacles,
             Trail(),
             DRIVING,
-            CONFIG,
+            robot,
             self.senses(),
             plans_anew,
         )
@@ -190,6 +191,15 @@ def test_held_it_tries_to_get_free_and_then_says_that_it_is_stuck() -> None:
     assert rig.time > DRIVING.progress_timeout
     # So many tries, each some seconds, and a pause before each.
     assert rig.time < DRIVING.most_recoveries * (DRIVING.progress_timeout + 8.0)
+
+
+@pytest.mark.parametrize("limit", ["body", "tracking"])
+def test_one_that_turns_slowly_is_not_stuck_while_it_turns(limit: str) -> None:
+    """Its half turn on the spot takes some 16 s, more than three times what is no progress."""
+    slow = {"max_angular_speed" if limit == "body" else "turning_speed": 0.2}
+    rig = Rig(pose=Pose(0.6, 0.5, math.pi), robot=RobotConfig.model_validate({limit: slow}))
+    assert rig.run().state is DriveState.DONE
+    assert DriveState.RECOVERING not in rig.states
 
 
 def test_held_for_a_while_it_goes_on() -> None:
