@@ -25,6 +25,7 @@ from roomba.configuration.coverage import CoverageConfig
 from roomba.geometry import RoundObstacle
 from roomba.grid import OccupancyMap
 from roomba.planning.coverage.floor.floor import CoverageFloor
+from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.ground import Ground
 from roomba.planning.coverage.passes.sweep import unswept
 from roomba.planning.coverage.plan import CoveragePlan
@@ -114,7 +115,8 @@ class CoveragePlanner:
         if not edges_only:
             left = unswept(need, edge_pieces, radius) & ground.middles
             swath_pieces = [
-                _off_middles(line) for line in stages.swaths(left, ground.middles, radius, config)
+                _off_middles(line, ground.middles)
+                for line in stages.swaths(left, ground.middles, radius, config)
             ]
         pieces = stages.order(ground.net, edge_pieces + swath_pieces, first, last, config)
         line = stages.connection(ground.net, pieces, first, last)
@@ -155,17 +157,18 @@ class CoveragePlanner:
         return known, known.place_of(seed)
 
 
-def _off_middles(line: Line) -> Line:
+def _off_middles(line: Line, middles: Mask) -> Line:
     """Return a swath shifted a little, so that no seam between two lies on centres of cells.
 
-    Slanted ones overlap instead.
+    It is shifted to the side on which it fits, and not at all where there is none. Slanted ones
+    overlap instead.
     """
     along = np.abs(line[-1] - line[0])
     if along.all():
         return line
     aside = np.array([0.0, _OFF_MIDDLES]) if along[0] >= along[1] else np.array([_OFF_MIDDLES, 0.0])
-    moved: Line = line + aside
-    return moved
+    sides: tuple[Line, Line] = line + aside, line - aside
+    return next((moved for moved in sides if way_fits(middles, *moved.ravel().tolist())), line)
 
 
 def _end_on(ground: Ground, end: Point) -> Line:

@@ -307,3 +307,31 @@ def test_swaths_along_the_axes_are_shifted_off_the_middles_of_cells_and_slanted_
     for line, in_cells, slanted in zip(swaths, laid, is_slanted, strict=True):
         shift = np.round((line - corner) / 0.01 - 0.5 - in_cells, 6) % 1.0
         assert sorted(shift[0]) == pytest.approx([0.0, 0.0] if slanted else [0.0, 0.2])
+
+
+@pytest.mark.parametrize("is_upright", [False, True])
+@pytest.mark.parametrize(("side", "shifts"), [(1.0, (0.2, -0.2)), (0.35, (0.0, 0.0))])
+def test_a_swath_at_the_rim_is_shifted_inwards_and_one_with_no_room_beside_it_is_not(
+    side: float, shifts: tuple[float, float], is_upright: bool
+) -> None:
+    laid: list[NDArray[np.float64]] = []
+
+    def at_the_rims(
+        left: Mask, middles: Mask, radius: float, config: CoverageConfig
+    ) -> list[NDArray[np.float64]]:
+        (top, first), (bottom, last) = np.argwhere(middles)[[0, -1]].astype(np.float64)
+        ends = [(first, top), (last, bottom)]
+        for x, y in ends:
+            flat, upright = [(first, y), (last, y)], [(x, top), (x, bottom)]
+            laid.append(np.array(upright if is_upright else flat))
+        return laid
+
+    stages = replace(OUR_STAGES, swaths=at_the_rims)
+    map = room(side, 2.0) if is_upright else room(2.0, side)
+    plan = CoveragePlanner(map, REACH, TOOL, SHARP, CONFIG, stages).plan((side / 2, side / 2))
+    corner = np.array((map.frame.origin_x, map.frame.origin_y))
+    for line, in_cells, shift in zip(plan.swaths, laid, shifts, strict=True):
+        moved = (line - corner) / CONFIG.cell - 0.5 - in_cells
+        apart = np.unique(np.round(moved - np.round(moved), 6), axis=0)
+        assert apart == pytest.approx(np.array([(shift, 0.0) if is_upright else (0.0, shift)]))
+    assert least_room(plan, map) > -TOLERANCE
