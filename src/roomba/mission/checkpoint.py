@@ -24,6 +24,7 @@ class Remembered:
     """A checkpoint's content; ``ledger`` is distance m, energy Wh and dirt g; ``duration`` s.
 
     ``times`` are those of a time ledger; ``open_edges`` and ``rough_way``, m, those of the job.
+    ``bin_full_at`` is what the bin's sensor read as it became full, g; None: that is not known.
     """
 
     state: MissionState
@@ -34,6 +35,7 @@ class Remembered:
     ledger: tuple[float, float, float]
     duration: float
     is_bin_full: bool
+    bin_full_at: float | None
     times: dict[str, float]
     open_edges: tuple[OpenEdge, ...]
     rough_way: float
@@ -56,6 +58,7 @@ def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Va
         "duration": job.duration(now),
         "times": job.times.values(),
         "bin_full": job.bin.is_full,
+        "bin_full_at": job.bin.full_at,
         "open_edges": [[edge.length, edge.x, edge.y, edge.reason.name] for edge in job.open_edges],
         "rough_way": job.rough_way,
     }
@@ -97,15 +100,16 @@ def _remembered(
     distance, energy, dirt = (float(value) for value in values["ledger"])
     duration = float(values["duration"])
     times = {str(name): float(value) for name, value in values["times"].items()}
-    # Older checkpoints have none.
+    # Older checkpoints have none of these.
+    full_at = None if values.get("bin_full_at") is None else float(values["bin_full_at"])
     rough_way = float(values.get("rough_way", 0.0))
     edges = tuple(
         OpenEdge(float(length), float(x), float(y), EdgeReason[reason])
         for length, x, y, reason in values.get("open_edges", [])
     )
     lengths = (value for edge in edges for value in (edge.length, edge.x, edge.y))
-    numbers = (distance, energy, dirt, duration, rough_way, *times.values(), *lengths)
-    if not all(math.isfinite(value) for value in numbers):
+    numbers = (distance, energy, dirt, duration, full_at or 0.0, rough_way)
+    if not all(math.isfinite(value) for value in (*numbers, *times.values(), *lengths)):
         raise CheckpointError("expected finite numbers")
     return Remembered(
         state,
@@ -116,6 +120,7 @@ def _remembered(
         (distance, energy, dirt),
         duration,
         bool(values["bin_full"]),
+        full_at,
         times,
         edges,
         rough_way,
@@ -130,7 +135,8 @@ def take_up(found: Remembered, job: Job, senses: Senses) -> None:
     job.open_edges, job.rough_way = found.open_edges, found.rough_way
     job.ledger.distance, job.ledger.energy, job.ledger.dirt = found.ledger
     if found.is_bin_full:
-        job.bin.fill(senses.in_bin)
+        # It may have been emptied while the program was not running.
+        job.bin.fill(senses.in_bin if found.bin_full_at is None else found.bin_full_at)
 
 
 def state_after(state: MissionState, *, is_docked: bool) -> MissionState:

@@ -354,16 +354,28 @@ def test_waiting_for_an_empty_bin_it_can_be_stopped(event: Event, phase: Phase) 
     assert result.outcome is CleanOutcome.STOPPED
 
 
-def test_killed_while_its_bin_is_full_it_still_knows() -> None:
-    """Also where the grains told, and no level sensor tells it anew."""
+@pytest.mark.parametrize("told", [{"bin_full_at": 0.0}, {}], ids=["grains", "older"])
+def test_killed_while_its_bin_is_full_it_still_knows(told: dict[str, float]) -> None:
+    """Where the grains told, and no level sensor tells it anew; and by an older checkpoint."""
+    rig = waiting_for_an_empty_bin()
+    values = rig.mission.checkpoint(rig.senses)
+    assert values is not None
+    del values["bin_full_at"]
+    again = Rig(replace(rig.senses, in_bin=0.0))
+    again.mission.restore({**values, **told}, again.senses)
+    again.tick(5)
+    assert again.phase is Phase.BIN_FULL
+    again.mission.command(Event.EMPTIED, again.senses)
+    again.tick(2)
+    assert again.phase is Phase.UNDOCKING
+
+
+def test_a_bin_that_was_emptied_while_the_program_was_not_running_is_empty() -> None:
     rig = waiting_for_an_empty_bin()
     values = rig.mission.checkpoint(rig.senses)
     assert values is not None
     again = Rig(replace(rig.senses, in_bin=0.0))
     again.mission.restore(values, again.senses)
-    again.tick(5)
-    assert again.phase is Phase.BIN_FULL
-    again.mission.command(Event.EMPTIED, again.senses)
     again.tick(2)
     assert again.phase is Phase.UNDOCKING
 

@@ -18,7 +18,7 @@ _REMEMBERED: Final = 4000
 
 
 class DustBin:
-    """Ticked while it sweeps; ``is_full`` until it is emptied.
+    """Ticked while it sweeps; ``is_full`` until it is emptied, ``full_at`` by its level sensor, g.
 
     A level sensor that reads more than nothing is trusted below ``nearly_full``. Where there is
     none the grains alone tell, if some came in before. They tell something only on floor on which
@@ -31,7 +31,7 @@ class DustBin:
         self.is_full = False
         self.rows = np.zeros(1, DUST)
         self.rows["least_grains"] = config.least_grains
-        self._full_at = 0.0
+        self.full_at = 0.0
         self._places: deque[tuple[float, float]] = deque(maxlen=_REMEMBERED)
 
     @property
@@ -45,7 +45,7 @@ class DustBin:
         Cells are of ``cell_area`` m2, with ``usual`` grains/m2 on the floor of this clean.
         """
         if self.is_full:
-            if in_bin < self._config.emptied * self._full_at:
+            if in_bin < self._config.emptied * self.full_at:
                 self.emptied()
             return False
         if in_bin >= self.full_from or self._is_silent(in_bin, cell_area, usual):
@@ -54,7 +54,7 @@ class DustBin:
 
     def fill(self, in_bin: float) -> None:
         """Mark the bin as full, with so much in it by its level sensor, g."""
-        self.is_full, self._full_at = True, in_bin
+        self.is_full, self.full_at = True, in_bin
 
     def emptied(self) -> None:
         """Mark the bin as empty."""
