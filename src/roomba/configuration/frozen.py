@@ -44,6 +44,8 @@ Duration = Annotated[float, Field(ge=0.001, le=86_400.0)]
 """s, up to a day."""
 Wait = Annotated[float, Field(ge=0.001, le=600.0)]
 """s that the robot may stand still for."""
+Patience = Annotated[float, Field(ge=1.0, le=86_400.0)]
+"""s; in less a robot that speeds up comes no farther, and would count as held."""
 WaitOrNone = Annotated[float, Field(ge=0.0, le=600.0)]
 Period = Annotated[float, Field(ge=0.001, le=10.0)]
 """s; of what is done again and again."""

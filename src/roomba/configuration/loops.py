@@ -15,6 +15,7 @@ from roomba.configuration.frozen import (
     Frozen,
     Length,
     NotNegative,
+    Patience,
     Positive,
     TurningSpeed,
     Wait,
@@ -46,7 +47,7 @@ class WalkConfig(Frozen):
     astray_timeout: Duration = 60.0
     arrival_tolerance: Length = 0.03
     bump_radius: Length = 0.06
-    progress_timeout: Duration = 6.0
+    progress_timeout: Patience = 6.0
     max_replans: Count = 12
     max_ways_around: Count = 60
     blocked_wait: Wait = 10.0
@@ -138,3 +139,5 @@ class TrackingConfig(Frozen):
     """Ticks; by so much the drive is expected to brake late."""
     slowest: Speed = 0.015
     """m/s and rad/s; slower than this drives do not turn reliably."""
+
+    in_order: ClassVar[tuple[str, ...]] = ("slowest <= slowest_corner",)

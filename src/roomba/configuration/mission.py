@@ -18,6 +18,7 @@ from roomba.configuration.frozen import (
     Frozen,
     Length,
     NotNegative,
+    Patience,
     Positive,
     Ratio,
     TurningSpeed,
@@ -106,12 +107,12 @@ class DrivingConfig(Frozen):
     speed: Speed = 0.30
     clearance: Clearance = 0.005
     way_clearance: Clearance = 0.04
-    look_ahead: Length = 0.15
+    look_ahead: Clearance = 0.15
     thing_clearance: Clearance = 0.004
     off_path: Length = 0.12
     backing_way: Length = 0.08
     backing_speed: Speed = 0.10
-    progress_timeout: Duration = 5.0
+    progress_timeout: Patience = 5.0
     most_recoveries: AtLeastOne = 6
     felt_memory: Duration = 180.0
     mean_speed: Annotated[float, Field(gt=0.0, le=1.0)] = 0.65

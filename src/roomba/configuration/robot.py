@@ -126,6 +126,15 @@ class RobotConfig(Frozen):
                 )
         return self
 
+    @model_validator(mode="after")
+    def _brush_fits(self) -> RobotConfig:
+        if self.brush.width > self.body.diameter:
+            raise ValueError(
+                f"expected brush.width of at most body.diameter ({self.body.diameter} m), got "
+                f"{self.brush.width} m: it cleans no floor beside the body"
+            )
+        return self
+
     @property
     def scan_stride(self) -> int:
         """Scans of the lidar from one that is looked at to the next."""

@@ -14,7 +14,7 @@ from roomba.configuration.bumping import BumpingConfig
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.frozen import Frozen, load_config, read_yaml, validated
 from roomba.configuration.localization import LocalizationConfig
-from roomba.configuration.loops import LookingAroundConfig, WalkConfig
+from roomba.configuration.loops import LookingAroundConfig, TrackingConfig, WalkConfig
 from roomba.configuration.mapping import WindowsConfig
 from roomba.configuration.rooms import RoomsConfig
 from roomba.configuration.seed import SeedParameters
@@ -120,6 +120,7 @@ def test_what_holds_no_keys_is_no_empty_file(tmp_path: Path, text: str) -> None:
         (LocalizationConfig, {"known_deviation": 1.0}),
         (LookingAroundConfig, {"shortest_leg": 1.6}),
         (LookingAroundConfig, {"tight_clearance": 0.1}),
+        (TrackingConfig, {"slowest": 0.5}),
         (WalkConfig, {"tight_clearance": 0.05}),
         (RoomsConfig, {"widest_door": 0.5}),
         (RoomsConfig, {"tightest_passage": 0.6}),

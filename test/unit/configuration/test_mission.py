@@ -54,6 +54,8 @@ def test_a_way_that_keeps_less_from_walls_than_a_swath_is_refused(
         ("coverage", "piece", "1.0e-9"),
         ("driving", "way_clearance", "1.0e+12"),
         ("driving", "progress_timeout", "1.0e+12"),
+        ("driving", "progress_timeout", "0.01"),
+        ("driving", "look_ahead", "10.0"),
         ("exploring", "stand_first", "1.0e+12"),
         ("bin", "full", "1.0e-9"),
         ("cleaning", "most_rounds", "1000000000"),

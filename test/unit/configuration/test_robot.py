@@ -77,6 +77,13 @@ def test_timeouts_with_which_it_would_stand_too_late_are_refused(
         load_robot_config(path)
 
 
+def test_a_brush_wider_than_the_body_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_text("brush: {width: 0.5}\n", encoding="utf-8")
+    with pytest.raises(ConfigError, match=r"brush\.width of at most body\.diameter .*got 0\.5 m"):
+        load_robot_config(path)
+
+
 def test_silence_braking_and_two_ticks_are_half_a_second() -> None:
     config = RobotConfig()
     assert config.longest_silence + config.body.braking_time + 0.1 == pytest.approx(0.5)
