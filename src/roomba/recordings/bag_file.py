@@ -20,7 +20,7 @@ from roomba.recordings.bag_format.index_sizes import has_wrong_sizes, mend_sizes
 from roomba.recordings.bag_format.mending import BagError, mend_bag, needs_mending
 from roomba.recordings.packed import Unpacked, plain_name
 from roomba.recordings.readings import LogError
-from roomba.recordings.times.stamps import clock_shifts
+from roomba.recordings.times.set_back import clock_shifts
 
 _SKIPPED: Final = 10**9
 """ns; after what cannot be read it goes on so much later."""

@@ -19,7 +19,7 @@ from roomba.recordings.carmen.lines import CarmenLine, Fan
 from roomba.recordings.carmen.text import MOUNT_PARAMETERS, CarmenText
 from roomba.recordings.log import Arrival, Channel, Frames, MountOf
 from roomba.recordings.readings import UNUSABLE_SCANS, Kind, LidarScan, Odometry, Refused, Value
-from roomba.recordings.times.stamps import gone_on
+from roomba.recordings.times.set_back import gone_on
 from roomba.recordings.times.untimed import spread_times, tell_nothing
 
 BASE: Final = "base_link"

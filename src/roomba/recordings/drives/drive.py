@@ -28,9 +28,18 @@ from roomba.recordings.readings import (
     Refused,
     Value,
 )
-from roomba.recordings.times.stamps import CLOCKS, StampCounts, delay_of, in_order, mended
+from roomba.recordings.times.clock_rate import growth_of, unit_of
+from roomba.recordings.times.stamps import (
+    StampCounts,
+    delay_of,
+    in_order,
+    is_of_another_clock,
+    mended,
+)
 from roomba.recordings.times.untimed import times_by_order
 
+_DRIFTED: Final = 0.1
+"""s; by so much more the delay of a channel grows than the odometry's if its clock is another."""
 _GAP: Final = 1.0
 """s between two logs from which it is told."""
 _ODOMETRY: Final = "odom"
@@ -229,6 +238,9 @@ class LoggedDrive:
         is_by_order = np.array([entry.is_by_order for entry in entries], np.bool_)
         for mask in self._not_told_apart(channels, own, stamps, arrivals):
             is_by_order[mask] = True
+        for at, channel in enumerate(channels):
+            self._take_units(channel, own == at, stamps, arrivals)
+        self._even_rates(channels, own, stamps, arrivals)
         delays = [delay_of(stamps[own == at], arrivals[own == at]) for at in range(len(channels))]
         reference = self._reference(channels, delays)
         times = np.empty(len(entries))
@@ -241,12 +253,37 @@ class LoggedDrive:
             else:
                 times[mask] = mended(stamps[mask], arrivals[mask], reference, self.counts)
             numbers[mask] = self._number(channel)
-            if delay is not None and abs(delay - reference) > CLOCKS:
+            if delay is not None and is_of_another_clock(delay, reference):
                 self._remarks.append(
                     f"the clock of {channel.name} is {reference - delay:+.1f} s off that of the "
                     "odometry: its times are shifted"
                 )
         return times, arrivals, numbers
+
+    def _take_units(self, channel: Channel, mask: Mask, stamps: Floats, arrivals: Floats) -> None:
+        """Take the stamps of a channel, in place, for what they are if they are no seconds."""
+        unit, name = unit_of(stamps[mask], arrivals[mask])
+        if unit != 1.0:
+            stamps[mask] /= unit
+            self._remarks.append(f"the stamps of {channel.name} are in {name}: taken so")
+
+    def _even_rates(
+        self, channels: Sequence[Channel], own: Ints64, stamps: Floats, arrivals: Floats
+    ) -> None:
+        """Let stamps, in place, go on as those of the odometry, by a clock that is fast or slow."""
+        growths = [growth_of(stamps[own == at], arrivals[own == at]) for at in range(len(channels))]
+        reference = self._reference(channels, growths)
+        spent = float(np.ptp(arrivals)) if len(arrivals) else 0.0
+        for at, (channel, growth) in enumerate(zip(channels, growths, strict=True)):
+            more = growth - reference
+            if abs(more) < _DRIFTED:
+                continue
+            mask = own == at
+            stamps[mask] += more * (arrivals[mask] - arrivals.min()) / spent
+            self._remarks.append(
+                f"the clock of {channel.name} is {'slow' if more > 0.0 else 'fast'} beside that of "
+                f"the odometry, by {abs(more):.1f} s in {spent:.0f} s: its times are evened out"
+            )
 
     def _not_told_apart(
         self, channels: Sequence[Channel], own: Ints64, stamps: Floats, arrivals: Floats

@@ -7,8 +7,6 @@ recorded by the clock of the recorder. Stamps are better as long as they go on a
 from __future__ import annotations
 
 import itertools
-import math
-from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, fields
 from typing import Final
 
@@ -18,6 +16,8 @@ from roomba.arrays import Floats, Ints64, Mask
 
 CLOCKS: Final = 1.0
 """s; delays between stamp and arrival that differ by more are of two clocks."""
+_EARLY: Final = 0.1
+"""s; so long before its stamp no message of one clock is recorded."""
 JUMP: Final = 0.4
 """s; a step between stamps that differs more from that between arrivals is a jump of the clock."""
 _COARSE: Final = 0.2
@@ -30,10 +30,6 @@ of messages that came late.
 """
 _SHORT_STEP, _LONG_STEP = 0.1, 0.9
 """Quantiles of the steps: drivers may send at once what came while they were busy."""
-_SET_BACK: Final = 1.0
-"""s; a recorder's clock that is set back by more begins another run."""
-_LASTING: Final = 10
-"""Messages; if so many are earlier than what was recorded before, the clock was set back."""
 _AT_ONCE: Final = 0.5
 """Share of the usual step; a message that comes sooner after another one was held up with it."""
 _INFORMATIVE: Final = 0.5
@@ -78,44 +74,13 @@ class StampCounts:
         return f"{self.messages} messages: {wrong or 'all in order'}"
 
 
-def gone_on(times: Floats, kinds: Sequence[Hashable]) -> Floats:
-    """Return times of recording, s, that go on where the clock of the recorder was set back.
-
-    They are of messages as :func:`clock_shifts` takes them.
-    """
-    return times + clock_shifts(times, kinds)
-
-
-def clock_shifts(times: Floats, kinds: Sequence[Hashable]) -> Floats:
-    """Return what to add to times of recording, s: they go on where the clock was set back.
-
-    The times are in the order of recording, of messages of some ``kinds``. Only beside others of
-    its own kind a message is an earlier one: some logs are written kind by kind. What is added
-    stays the same until the clock is set back again.
-    """
-    usual = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
-    told = times.tolist()
-    newest: dict[Hashable, float] = {}
-    shift = 0.0
-    shifts = np.zeros(len(told))
-    for first in range(len(told)):
-        next_ones = range(first, min(first + _LASTING, len(told)))
-        if len(next_ones) == _LASTING and all(
-            told[at] + shift < newest.get(kinds[at], -math.inf) - _SET_BACK for at in next_ones
-        ):
-            shift = max(newest.values()) + usual - told[first]
-        shifts[first] = shift
-        newest[kinds[first]] = max(newest.get(kinds[first], -math.inf), told[first] + shift)
-    return shifts
-
-
 def delay_of(stamps: Floats, arrivals: Floats) -> float | None:
-    """Return how long after its stamp a message is recorded, s, as a rule; None without stamps.
+    """Return how long after its stamp a message is recorded, s, as a rule.
 
-    It is the median of those that were not held up.
+    It is the median of those that were not held up; None without stamps, and of a coarse clock.
     """
-    valid = _valid(stamps)
-    if not valid.any():
+    valid = valid_stamps(stamps)
+    if not valid.any() or _is_coarse(stamps[valid], arrivals[valid]):
         return None
     return _usual_delay(stamps[valid], arrivals[valid])
 
@@ -126,16 +91,14 @@ def mended(stamps: Floats, arrivals: Floats, delay: float, counts: StampCounts) 
     ``delay`` is that of the channel whose clock counts; what was wrong is added to ``counts``.
     """
     counts.messages += len(stamps)
-    valid = _valid(stamps)
+    valid = valid_stamps(stamps)
     own = delay_of(stamps, arrivals)
     if own is None:
-        counts.without += len(stamps)
+        counts.coarse += int(np.count_nonzero(valid))
+        counts.without += int(np.count_nonzero(~valid))
         return arrivals - delay
-    shift = own - delay if abs(own - delay) > CLOCKS else 0.0
+    shift = own - delay if is_of_another_clock(own, delay) else 0.0
     times, expected = stamps + shift, arrivals - (own - shift)
-    if _is_coarse(stamps[valid], arrivals[valid]):
-        counts.coarse += len(stamps)
-        return expected
     counts.without += int(np.count_nonzero(~valid))
     times[~valid] = expected[~valid]
     if len(np.unique(arrivals)) > _INFORMATIVE * len(np.unique(stamps[valid])):
@@ -170,7 +133,17 @@ def _usual_delay(stamps: Floats, arrivals: Floats) -> float:
     return float(np.median(arrivals[is_last] - stamps[is_last]))
 
 
-def _valid(stamps: Floats) -> Mask:
+def is_of_another_clock(delay: float, reference: float) -> bool:
+    """Whether messages that come ``delay`` s after their stamps are stamped by another clock.
+
+    Those of the clock that counts come ``reference`` s after theirs. None comes before its stamp.
+    """
+    off = delay - reference
+    return abs(off) > CLOCKS or (delay < -_EARLY and off < -2.0 * _EARLY)
+
+
+def valid_stamps(stamps: Floats) -> Mask:
+    """Return which of some stamps, [n], s, tell a time at all."""
     return np.asarray(np.isfinite(stamps) & (stamps > 0.0))
 
 
