@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import json
 import os
 import sqlite3
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 from roomba.errors import RoombaError
 from roomba.files.atomic import make_private
 from roomba.files.journal import append_line, read_lines, write_lines
+from roomba.files.lock import locked
 from roomba.history.run import RunFigures, RunRecording
 from roomba.history.run_file import RunFileError, packed, unpacked
 from roomba.history.run_rows import (
@@ -36,7 +36,7 @@ LAST: Final = "last"
 _NAME: Final = "runs.sqlite"
 _JOURNAL: Final = "runs.journal"
 _BUSY: Final = 10.0
-"""s of wall time that a writer waits for another one."""
+"""s of wall time that one program waits for another one."""
 _MOST_RECORDINGS: Final = 200
 """Of the newest runs; of older ones only the figures are kept."""
 _LARGEST_NUMBER: Final = 2**63 - 1
@@ -190,9 +190,7 @@ class History:
     def _prepare(self) -> None:
         """Make the file, or bring it up to date; one process at a time."""
         make_private(self.path.parent)
-        flags = os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW
-        with open(os.open(self.path.with_suffix(".lock"), flags, 0o600), "r+b") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
+        with locked(self.path.with_suffix(".lock"), _BUSY):
             if not self._is_there():
                 self._make()
             try:

@@ -16,6 +16,7 @@ import pytest
 from roomba.client.household import TotalsView
 from roomba.client.protocol import MissedFloor
 from roomba.files.journal import read_lines, write_lines
+from roomba.files.lock import locked
 from roomba.history.database import History, HistoryError
 from roomba.history.run import RunFigures, RunRecording
 from roomba.history.run_rows import MIGRATIONS
@@ -72,6 +73,19 @@ def test_two_processes_that_write_at_the_same_time_lose_nothing(tmp_path: Path) 
         (run.figures.source.program, run.figures.source.seed) for run in History(tmp_path).runs()
     ]
     assert sorted(kept) == [(name, n) for name in ("one", "other") for n in range(25)]
+
+
+def test_a_program_that_holds_it_without_end_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("roomba.history.database._BUSY", 0.05)
+    history = History(tmp_path)
+    with (
+        locked(tmp_path / "runs.lock", 1.0),
+        pytest.raises(HistoryError, match=r"expected runs\.lock to be free within .* or end it"),
+    ):
+        history.runs()
+    assert history.runs() == []
 
 
 def test_only_the_owner_reads_it(tmp_path: Path, figures: RunFigures) -> None:

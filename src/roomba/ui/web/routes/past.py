@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import re
 from collections import OrderedDict
@@ -108,6 +109,8 @@ class Replays:
         """Open nothing yet; ``app_of`` makes the application for a recorded robot."""
         self._history, self._app_of = history, app_of
         self._open: OrderedDict[int, tuple[ASGIApp, contextlib.AsyncExitStack]] = OrderedDict()
+        # One run at a time is opened: none twice, and other work keeps its threads.
+        self._opening = asyncio.Lock()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on to the run that it names."""
@@ -129,15 +132,24 @@ class Replays:
 
     async def _opened(self, number: int) -> ASGIApp:
         if number not in self._open:
-            run = self._history.run(number)
-            robot = RecordedRobot(run.figures, self._history.recording(number))
-            app, life = self._app_of(robot), contextlib.AsyncExitStack()
-            await life.enter_async_context(app.router.lifespan_context(app))
-            self._open[number] = (app, life)
-            if len(self._open) > _MOST_OPEN:
-                _, (_, oldest) = self._open.popitem(last=False)
-                await oldest.aclose()
+            async with self._opening:
+                if number not in self._open:
+                    await self._open_one(number)
         return self._open[number][0]
+
+    async def _open_one(self, number: int) -> None:
+        # In a thread: the history may wait for a disk, or for another program.
+        app, life = await asyncio.to_thread(self._app, number), contextlib.AsyncExitStack()
+        await life.enter_async_context(app.router.lifespan_context(app))
+        self._open[number] = (app, life)
+        if len(self._open) > _MOST_OPEN:
+            _, (_, oldest) = self._open.popitem(last=False)
+            await oldest.aclose()
+
+    def _app(self, number: int) -> FastAPI:
+        """Return the application of a run; raises RoombaError for one that cannot be played."""
+        run = self._history.run(number)
+        return self._app_of(RecordedRobot(run.figures, self._history.recording(number)))
 
     async def end(self) -> None:
         """Close all."""

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 from unittest import mock
 
+import httpx
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from fixtures.households.written_robot import WrittenRobot
+from fixtures.waiting import wait_until
 from numpy.typing import NDArray
 from starlette.testclient import WebSocketTestSession
 from unit.history.made import made_figures, made_recording
 
+from roomba.files.lock import locked
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper
 from roomba.history.replay import RecordedRobot
 from roomba.history.run import RunSource
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard
+from roomba.ui.web.server import PageServer, listen
 
 HOST = {"Host": "127.0.0.1"}
 _MOST_MESSAGES = 300
@@ -131,6 +137,30 @@ def test_many_runs_can_be_opened_one_after_the_other(client: TestClient, history
         assert client.get(f"/replay/{number}/api/v1/state").status_code == 200
 
 
+def test_a_history_that_lets_wait_holds_up_nothing_else(history: History) -> None:
+    keeper = HistoryKeeper(history, RunSource("play", "box"), lambda _: None)
+    app = create_app(WrittenRobot(), Guard("token"), keeper)
+    server = PageServer(app, listen("127.0.0.1", 0, is_fixed=True))
+    token = {"Authorization": "Bearer token"}
+
+    def open_run() -> int:
+        return httpx.get(f"{server.address}replay/1/", timeout=60.0).status_code
+
+    with (
+        _served(server),
+        mock.patch.object(history, "recording", wraps=history.recording) as recording,
+        ThreadPoolExecutor() as threads,
+    ):
+        with locked(history.path.with_suffix(".lock"), 1.0):
+            opened = [threads.submit(open_run) for _ in range(2)]
+            wait_until(lambda: server.connections == 2, 10.0, "both viewers came")
+            stop = f"{server.address}api/v1/emergency_stop"
+            assert httpx.post(stop, json={}, headers=token, timeout=5.0).status_code == 200
+            assert not any(each.done() for each in opened)
+        assert [each.result() for each in opened] == [200, 200]
+    assert recording.call_count == 1
+
+
 def test_the_feed_starts_the_trail_anew_when_another_time_is_chosen() -> None:
     robot = RecordedRobot(made_figures(), made_recording())
     app = create_app(robot, Guard("token"))
@@ -142,6 +172,15 @@ def test_the_feed_starts_the_trail_anew_when_another_time_is_chosen() -> None:
         assert _next_whole(socket)[-1, 0] == pytest.approx(2.5)
         robot.seek(10.0)
         assert _next_whole(socket)[-1, 0] == pytest.approx(1.0)
+
+
+@contextlib.contextmanager
+def _served(server: PageServer) -> Iterator[None]:
+    server.start()
+    try:
+        yield
+    finally:
+        server.stop()
 
 
 def _next_whole(socket: WebSocketTestSession) -> NDArray[np.float64]:
