@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import re
-from collections import OrderedDict
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
 from fastapi import APIRouter, FastAPI, HTTPException, Query
@@ -30,7 +30,7 @@ REPORT_POLICY: Final = (
 """What a report may do: it has its style inside, pictures as data, and no scripts."""
 _MOST_RUNS: Final = 500
 _MOST_OPEN: Final = 4
-"""Runs that are played at the same time; of more the one that was opened first ends."""
+"""Runs that are played at the same time."""
 _NUMBERED: Final = re.compile(r"/([0-9]{1,19})(/|$)")
 _Value = TypeVar("_Value")
 
@@ -102,13 +102,26 @@ def _sentence(refusal: RoombaError, history: History) -> str:
     return told.replace(str(history.path.parent), "the history's folder")
 
 
+class _AllWatchedError(RoombaError):
+    """No further run can be opened: those that are open are all in use."""
+
+
+@dataclass(slots=True)
+class _OpenRun:
+    """A run that is played, and how many requests and viewers are at it now."""
+
+    app: ASGIApp
+    life: contextlib.AsyncExitStack
+    users: int = 0
+
+
 class Replays:
     """Serves ``/NUMBER/…``: the page over each run that is opened, as an application of its own."""
 
     def __init__(self, history: History, app_of: Callable[[ObservedRobot], FastAPI]) -> None:
         """Open nothing yet; ``app_of`` makes the application for a recorded robot."""
         self._history, self._app_of = history, app_of
-        self._open: OrderedDict[int, tuple[ASGIApp, contextlib.AsyncExitStack]] = OrderedDict()
+        self._open: dict[int, _OpenRun] = {}
         # One run at a time is opened: none twice, and other work keeps its threads.
         self._opening = asyncio.Lock()
 
@@ -122,37 +135,51 @@ class Replays:
             await RedirectResponse(f"{scope['path']}/")(scope, receive, send)
         else:
             try:
-                app = await self._opened(int(named[1]))
+                run = await self._opened(int(named[1]))
             except RoombaError as refusal:
-                await JSONResponse({"detail": _sentence(refusal, self._history)}, 404)(
-                    scope, receive, send
-                )
+                await self._refusal(refusal)(scope, receive, send)
                 return
-            await app({**scope, "root_path": f"{root}/{named[1]}"}, receive, send)
+            run.users += 1
+            try:
+                await run.app({**scope, "root_path": f"{root}/{named[1]}"}, receive, send)
+            finally:
+                run.users -= 1
 
-    async def _opened(self, number: int) -> ASGIApp:
+    def _refusal(self, refusal: RoombaError) -> JSONResponse:
+        status = 503 if isinstance(refusal, _AllWatchedError) else 404
+        return JSONResponse({"detail": _sentence(refusal, self._history)}, status)
+
+    async def _opened(self, number: int) -> _OpenRun:
         if number not in self._open:
             async with self._opening:
                 if number not in self._open:
-                    await self._open_one(number)
-        return self._open[number][0]
-
-    async def _open_one(self, number: int) -> None:
-        # In a thread: the history may wait for a disk, or for another program.
-        app, life = await asyncio.to_thread(self._app, number), contextlib.AsyncExitStack()
-        await life.enter_async_context(app.router.lifespan_context(app))
-        self._open[number] = (app, life)
-        if len(self._open) > _MOST_OPEN:
-            _, (_, oldest) = self._open.popitem(last=False)
-            await oldest.aclose()
+                    # In a thread: the history may wait for a disk, or for another program.
+                    app = await asyncio.to_thread(self._app, number)
+                    await self._make_room()
+                    life = contextlib.AsyncExitStack()
+                    await life.enter_async_context(app.router.lifespan_context(app))
+                    self._open[number] = _OpenRun(app, life)
+        return self._open[number]
 
     def _app(self, number: int) -> FastAPI:
         """Return the application of a run; raises RoombaError for one that cannot be played."""
         run = self._history.run(number)
         return self._app_of(RecordedRobot(run.figures, self._history.recording(number)))
 
+    async def _make_room(self) -> None:
+        """Close the run that was opened first of those not in use, unless there is room."""
+        if len(self._open) < _MOST_OPEN:
+            return
+        unused = next((number for number, run in self._open.items() if not run.users), None)
+        if unused is None:
+            raise _AllWatchedError(
+                f"expected at most {_MOST_OPEN} recorded runs that are watched at a time; close "
+                "the page of one of them, and try again"
+            )
+        await self._open.pop(unused).life.aclose()
+
     async def end(self) -> None:
         """Close all."""
-        for _, life in self._open.values():
-            await life.aclose()
+        for run in self._open.values():
+            await run.life.aclose()
         self._open.clear()

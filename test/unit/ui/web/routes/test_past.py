@@ -19,6 +19,7 @@ from fixtures.waiting import wait_until
 from numpy.typing import NDArray
 from starlette.testclient import WebSocketTestSession
 from unit.history.made import made_figures, made_recording
+from websockets.sync.client import ClientConnection, connect
 
 from roomba.files.lock import locked
 from roomba.history.database import History
@@ -30,6 +31,7 @@ from roomba.ui.web.guard import Guard
 from roomba.ui.web.server import PageServer, listen
 
 HOST = {"Host": "127.0.0.1"}
+TOKEN = {"Authorization": "Bearer token"}
 _MOST_MESSAGES = 300
 """Ten times a second there is one at least."""
 
@@ -64,11 +66,11 @@ def test_the_runs_are_told(client: TestClient) -> None:
 def test_what_is_asked_for_is_noted_and_forgotten_when_it_is_refused(history: History) -> None:
     noted: list[Any] = []
     keeper = HistoryKeeper(history, RunSource("play", "box"), lambda _: None)
-    robot, headers = WrittenRobot(), {"Authorization": "Bearer token"}
+    robot = WrittenRobot()
     with (
         mock.patch.object(keeper, "note", noted.append),
         TestClient(
-            create_app(robot, Guard("token"), keeper), base_url="http://127.0.0.1", headers=headers
+            create_app(robot, Guard("token"), keeper), base_url="http://127.0.0.1", headers=TOKEN
         ) as client,
     ):
         body = {"mode": "rooms", "rooms": ["hall"], "passes": 2}
@@ -118,11 +120,10 @@ def test_a_run_is_played_under_an_address_of_its_own(client: TestClient) -> None
     assert "<title>" in client.get("/replay/1/").text
     state = client.get("/replay/1/api/v1/state").json()
     assert state["pose"][:2] == [0.5, 1.5]
-    token = {"Authorization": "Bearer token"}
-    moved = client.post("/replay/1/api/v1/replay", json={"at": 20.0}, headers=token)
+    moved = client.post("/replay/1/api/v1/replay", json={"at": 20.0}, headers=TOKEN)
     assert moved.json()["at"] == 20.0
     assert client.get("/replay/1/api/v1/state").json()["pose"][0] == pytest.approx(1.5)
-    refused = client.post("/replay/1/api/v1/clean", json={}, headers=token)
+    refused = client.post("/replay/1/api/v1/clean", json={}, headers=TOKEN)
     assert refused.status_code == 409
     assert "nothing is driven" in refused.json()["detail"]
     assert client.post("/replay/1/api/v1/replay", json={"at": 1.0}).status_code == 401
@@ -137,17 +138,23 @@ def test_many_runs_can_be_opened_one_after_the_other(client: TestClient, history
         assert client.get(f"/replay/{number}/api/v1/state").status_code == 200
 
 
-def test_a_history_that_lets_wait_holds_up_nothing_else(history: History) -> None:
+@pytest.fixture
+def server(history: History) -> Iterator[PageServer]:
     keeper = HistoryKeeper(history, RunSource("play", "box"), lambda _: None)
     app = create_app(WrittenRobot(), Guard("token"), keeper)
     server = PageServer(app, listen("127.0.0.1", 0, is_fixed=True))
-    token = {"Authorization": "Bearer token"}
+    server.start()
+    yield server
+    server.stop()
 
+
+def test_a_history_that_lets_wait_holds_up_nothing_else(
+    server: PageServer, history: History
+) -> None:
     def open_run() -> int:
         return httpx.get(f"{server.address}replay/1/", timeout=60.0).status_code
 
     with (
-        _served(server),
         mock.patch.object(history, "recording", wraps=history.recording) as recording,
         ThreadPoolExecutor() as threads,
     ):
@@ -155,10 +162,37 @@ def test_a_history_that_lets_wait_holds_up_nothing_else(history: History) -> Non
             opened = [threads.submit(open_run) for _ in range(2)]
             wait_until(lambda: server.connections == 2, 10.0, "both viewers came")
             stop = f"{server.address}api/v1/emergency_stop"
-            assert httpx.post(stop, json={}, headers=token, timeout=5.0).status_code == 200
+            assert httpx.post(stop, json={}, headers=TOKEN, timeout=5.0).status_code == 200
             assert not any(each.done() for each in opened)
         assert [each.result() for each in opened] == [200, 200]
     assert recording.call_count == 1
+
+
+def test_a_run_that_is_watched_goes_on_however_many_others_are_opened(
+    server: PageServer, history: History
+) -> None:
+    others = [history.add(made_figures(), made_recording()) for _ in range(6)]
+    with _watching(server, 1) as viewer:
+        for number in others:
+            assert httpx.get(f"{server.address}replay/{number}/").status_code == 200
+        moved = f"{server.address}replay/1/api/v1/replay"
+        assert httpx.post(moved, json={"at": 20.0}, headers=TOKEN).status_code == 200
+        wait_until(lambda: _time_shown(viewer) == 20.0, 10.0, "the viewer sees what was chosen")
+
+
+def test_when_all_runs_are_watched_another_one_is_refused(
+    server: PageServer, history: History
+) -> None:
+    *others, one_more = [history.add(made_figures(), made_recording()) for _ in range(4)]
+    address = f"{server.address}replay/{one_more}/"
+    with contextlib.ExitStack() as viewers:
+        for number in others:
+            viewers.enter_context(_watching(server, number))
+        with _watching(server, 1):
+            refused = httpx.get(address)
+            assert refused.status_code == 503
+            assert "expected at most 4 recorded runs" in refused.json()["detail"]
+        wait_until(lambda: httpx.get(address).status_code == 200, 10.0, "there is room again")
 
 
 def test_the_feed_starts_the_trail_anew_when_another_time_is_chosen() -> None:
@@ -175,12 +209,17 @@ def test_the_feed_starts_the_trail_anew_when_another_time_is_chosen() -> None:
 
 
 @contextlib.contextmanager
-def _served(server: PageServer) -> Iterator[None]:
-    server.start()
-    try:
-        yield
-    finally:
-        server.stop()
+def _watching(server: PageServer, number: int) -> Iterator[ClientConnection]:
+    address = server.address.replace("http:", "ws:")
+    with connect(f"{address}replay/{number}/live", proxy=None) as viewer:
+        yield viewer
+
+
+def _time_shown(viewer: ClientConnection) -> float | None:
+    """Return the time of the recording that the next message shows, s, if it shows one."""
+    message = viewer.recv(10.0)
+    told = json.loads(message) if isinstance(message, str) else {}
+    return told["replay"]["at"] if told.get("type") == "state" and "replay" in told else None
 
 
 def _next_whole(socket: WebSocketTestSession) -> NDArray[np.float64]:
