@@ -7,6 +7,7 @@ from typing import Annotated, Final
 
 from fastapi import APIRouter, Header, HTTPException, Query
 from fastapi.responses import StreamingResponse
+from starlette.types import Receive, Scope, Send
 
 from roomba.ui.web.bounded.limits import MOST_LISTENERS
 from roomba.ui.web.streams.events import Events
@@ -34,21 +35,33 @@ The stream begins with what comes next, or after the number in `Last-Event-ID` (
 events are kept. Every 15 s of silence an empty line comes."""
 
 
+class _Listening(StreamingResponse):
+    """The stream of one listener, which is counted from before it begins until it is over."""
+
+    def __init__(self, stream: AsyncIterator[str], listeners: set[object]) -> None:
+        super().__init__(stream, media_type="text/event-stream")
+        self._listeners = listeners
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if len(self._listeners) >= MOST_LISTENERS:
+            raise HTTPException(503, f"expected at most {MOST_LISTENERS} listeners at a time")
+        self._listeners.add(self)
+        try:
+            await super().__call__(scope, receive, send)
+        finally:
+            self._listeners.discard(self)
+
+
 def events_api(events: Events) -> APIRouter:
     """Return the route of a robot's events."""
     api = APIRouter(prefix="/api/v1")
     listeners: set[object] = set()
 
     async def stream(after: int) -> AsyncIterator[str]:
-        me = object()
-        listeners.add(me)
-        try:
-            # At once, so that a program knows that it listens.
-            yield ":\n\n"
-            async for text in events.after(after):
-                yield text
-        finally:
-            listeners.discard(me)
+        # At once, so that a program knows that it listens.
+        yield ":\n\n"
+        async for text in events.after(after):
+            yield text
 
     @api.get(
         "/events",
@@ -61,12 +74,10 @@ def events_api(events: Events) -> APIRouter:
         after: Annotated[int | None, Query(ge=0, le=2**53)] = None,
         last_event_id: Annotated[int | None, Header(ge=0, le=2**53)] = None,
     ) -> StreamingResponse:
-        if len(listeners) >= MOST_LISTENERS:
-            raise HTTPException(503, f"expected at most {MOST_LISTENERS} listeners at a time")
         wanted = after if last_event_id is None else last_event_id
         # A number from before the server was started anew is none of its own.
         newest = events.newest
         start = newest if wanted is None else 0 if wanted > newest else wanted
-        return StreamingResponse(stream(start), media_type="text/event-stream")
+        return _Listening(stream(start), listeners)
 
     return api

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
+import socket
 import urllib.request
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -12,15 +15,29 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 from fixtures.households.written_robot import VIEW, WrittenRobot
+from starlette.requests import ClientDisconnect
+from starlette.types import Message, Scope
 
 from roomba.client.protocol import CleanReport, ErrandOutcome
 from roomba.client.view import RobotView
 from roomba.ui.web.app import create_app
+from roomba.ui.web.bounded.limits import MOST_LISTENERS
 from roomba.ui.web.guard import Guard
 from roomba.ui.web.server import PageServer, listen
 from roomba.ui.web.streams.events import MOST_KEPT, Events
 
 REPORT = CleanReport(ErrandOutcome.COMPLETED, "", 4.0, 4.0, 1.0, 9.0, 60.0, float("nan"))
+_REQUEST = b"GET /api/v1/events HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+_SCOPE: Scope = {
+    "type": "http",
+    "asgi": {"version": "3.0", "spec_version": "2.4"},
+    "http_version": "1.1",
+    "method": "GET",
+    "scheme": "http",
+    "path": "/api/v1/events",
+    "query_string": b"",
+    "headers": [(b"host", b"127.0.0.1")],
+}
 
 
 def seen(state: str, phase: str = "", **changes: Any) -> RobotView:
@@ -86,6 +103,11 @@ def test_a_listener_that_comes_late_hears_how_many_it_missed() -> None:
     assert first["id"] == missed["id"] + 1 == 51
 
 
+def _asking(server: PageServer) -> socket.socket:
+    host, port = server.address.removeprefix("http://").strip("/").split(":")
+    return socket.create_connection((host, int(port)), timeout=30.0)
+
+
 @pytest.fixture
 def robot() -> WrittenRobot:
     return WrittenRobot()
@@ -118,6 +140,35 @@ def test_programs_listen_over_http(server: PageServer, robot: WrittenRobot) -> N
     assert json.loads(data.removeprefix("data: "))["type"] == "state"
     # A number of a server from before is none of this one: it begins at the beginning.
     assert "id: 1" in [next(again) for again in [lines("999")] for _ in range(5)]
+
+
+def test_of_many_that_come_at_once_no_more_listen_than_are_allowed(server: PageServer) -> None:
+    with contextlib.ExitStack() as ends:
+        sockets = [ends.enter_context(_asking(server)) for _ in range(4 * MOST_LISTENERS)]
+        for each in sockets:
+            each.sendall(_REQUEST)
+        answers = Counter(each.recv(12).decode() for each in sockets)
+    assert answers == {"HTTP/1.1 200": MOST_LISTENERS, "HTTP/1.1 503": 3 * MOST_LISTENERS}
+
+
+def test_listeners_that_are_gone_before_it_begins_take_no_place(robot: WrittenRobot) -> None:
+    app = create_app(robot, Guard("t"))
+    begun: list[int] = []
+
+    async def receive() -> Message:
+        return {"type": "http.request", "body": b"", "more_body": False}
+
+    async def lose(message: Message) -> None:
+        begun.append(message["status"])
+        raise OSError("the program has gone")
+
+    async def come_and_go() -> None:
+        for _ in range(MOST_LISTENERS + 1):
+            with pytest.raises(ClientDisconnect):
+                await app({**_SCOPE}, receive, lose)
+
+    asyncio.run(come_and_go())
+    assert begun == [200] * (MOST_LISTENERS + 1)
 
 
 def test_wrong_numbers_are_refused(robot: WrittenRobot) -> None:
