@@ -24,6 +24,8 @@ from roomba.world.fleet import Fleet
 from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
 
 Flags = NDArray[np.bool_]
+Beginning = tuple[int, Pose]
+"""The seed of a robot's world, and where the robot stands at first."""
 
 CLEAN: Final = 0.99
 """0..1; with this share of the reachable dirt in the bin the task is done."""
@@ -58,6 +60,8 @@ class CleaningTask:
         """Make the worlds; :meth:`begin` every robot's episode before the first action."""
         self.task = task
         home = task.loaded_home()
+        # In it no time passes. All worlds begin like this, with any seed: it shows what fits there.
+        self._fresh = Fleet([home], task.robot)
         self.fleet = Fleet([home] * robots, task.robot, max_speed=task.max_speed, threads=threads)
         self.senses = Observer(self.fleet, task.max_speed)
         self.floor = FloorDistances.of(home, self.fleet.config)
@@ -74,21 +78,35 @@ class CleaningTask:
         self._at_start = {name: np.zeros(robots) for name in _COUNTED}
         self._paid = np.zeros(robots)
 
-    def begin(
-        self, robot: int, random: np.random.Generator, options: Mapping[str, Any] | None = None
-    ) -> None:
-        """Put a robot into its world as it is at first, at a place found by ``random``.
+    def start_of(self, options: Mapping[str, Any] | None) -> Pose | None:
+        """Return where robots are to start; None: anywhere.
 
         ``options`` may say ``start``, (x, y, theta), or ``at_station``, True. Raises ValueError for
-        other options, HomeError for a start where the robot does not fit. The next action of this
-        robot must be one of ``beginning``.
+        others, HomeError for a start where the robot does not fit.
         """
-        start, at_station = _start_of(options or {})
-        self.fleet.reset_world(robot, int(random.integers(2**31)))
+        start, at_station = _checked(options or {})
+        if at_station:
+            return self.fleet.config.body.docked_at(self._fresh.homes[0].station)
         if start is not None:
-            self.fleet.put(robot, start)
-        elif not at_station:
-            self._put_anywhere(robot, random)
+            self._fresh.put(0, start)
+        return start
+
+    def beginning_of(self, random: np.random.Generator, start: Pose | None) -> Beginning:
+        """Return how an episode begins: at ``start``, or at a free place found by ``random``.
+
+        Raises HomeError if no place is free.
+        """
+        seed = int(random.integers(2**31))
+        return seed, start or self._free_place(random)
+
+    def begin(self, robot: int, beginning: Beginning) -> None:
+        """Put a robot into its world as it is at first, where :meth:`beginning_of` says.
+
+        The next action of this robot must be one of ``beginning``.
+        """
+        seed, start = beginning
+        self.fleet.reset_world(robot, seed)
+        self.fleet.put(robot, start)
         self._coverage.forget(robot)
 
     def act(self, actions: NDArray[np.floating[Any]], beginning: Flags) -> Outcome:
@@ -143,28 +161,43 @@ class CleaningTask:
         truths["time"] = self._actions * self.task.action_time
         return truths
 
-    def _put_anywhere(self, robot: int, random: np.random.Generator) -> None:
+    def _free_place(self, random: np.random.Generator) -> Pose:
         for _ in range(_TRIES):
             x, y = self.floor.places[int(random.integers(len(self.floor.places)))].tolist()
+            place = Pose(x, y, float(random.uniform(-math.pi, math.pi)))
             try:
-                self.fleet.put(robot, Pose(x, y, float(random.uniform(-math.pi, math.pi))))
+                self._fresh.put(0, place)
             except HomeError:
                 continue
-            return
+            return place
         raise HomeError(
-            f"home {self.fleet.homes[robot].name}: expected a free place to start, found none in "
+            f"home {self._fresh.homes[0].name}: expected a free place to start, found none in "
             f"{_TRIES} tries; give the option start or at_station"
         )
 
 
-def _start_of(options: Mapping[str, Any]) -> tuple[Pose | None, bool]:
+def _checked(options: Mapping[str, Any]) -> tuple[Pose | None, bool]:
     unknown = set(options) - {"start", "at_station"}
     if unknown:
-        raise ValueError(f"expected the options start or at_station, got {sorted(unknown)}")
-    start = options.get("start")
+        raise ValueError(
+            f"expected the options start or at_station, got {sorted(unknown, key=str)}"
+        )
+    start, at_station = options.get("start"), options.get("at_station", False)
+    if not isinstance(at_station, bool | np.bool_):
+        raise ValueError(f"at_station: expected True or False, got {at_station!r}")
     if start is None:
-        return None, bool(options.get("at_station", False))
-    numbers = [float(number) for number in start]
-    if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
-        raise ValueError(f"start: expected finite (x, y, theta), m and rad, got {start}")
-    return Pose(*numbers), False
+        return None, bool(at_station)
+    if at_station:
+        raise ValueError(f"expected start or at_station, got both; start is {start}")
+    return _pose_of(start), False
+
+
+def _pose_of(start: Any) -> Pose:
+    try:
+        x, y, theta = map(float, start)
+    except (TypeError, ValueError, OverflowError):
+        x = y = theta = math.nan
+    pose = Pose(x, y, theta)
+    if not pose.is_finite:
+        raise ValueError(f"start: expected finite (x, y, theta), m and rad, got {start!r}")
+    return pose

@@ -68,9 +68,14 @@ class RoombaClean(gymnasium.Env[NDArray[Any], NDArray[Any]]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin an episode; the same seed and actions give the same observations."""
+        """Begin an episode; the same seed and actions give the same observations.
+
+        Raises ValueError for other options, HomeError for a start where the robot does not fit. The
+        present episode then goes on.
+        """
+        start = self._cleaning.start_of(options)
         super().reset(seed=seed)
-        self._cleaning.begin(0, self.np_random, options)
+        self._cleaning.begin(0, self._cleaning.beginning_of(self.np_random, start))
         outcome = self._cleaning.act(np.zeros((1, 2)), beginning=np.ones(1, np.bool_))
         return outcome.observations[0], _truths(outcome)
 

@@ -12,7 +12,8 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from roomba.arrays import Floats
-from roomba.gym.cleaning import CleaningTask, Flags, Outcome
+from roomba.geometry import Pose
+from roomba.gym.cleaning import Beginning, CleaningTask, Flags, Outcome
 from roomba.gym.single import RENDER_MODES, action_space, metadata_of
 from roomba.gym.task import Task
 
@@ -71,14 +72,14 @@ class RoombaCleanVector(VectorEnv[Observations, Actions, NDArray[Any]]):
         """Begin all episodes; ``options`` as those of RoombaClean, for every robot.
 
         ``seed``: one for each, or the first of ``num_envs`` in a row; None goes on at random.
-        Raises ValueError for another number of seeds.
+        Raises ValueError for another number of seeds, and what RoombaClean does. All present
+        episodes then go on.
         """
+        start = self._cleaning.start_of(options)
+        self._randoms = self._randoms_by(self._seeds(seed))
         super().reset(seed=seed if isinstance(seed, int) else None)
-        for robot, own in enumerate(self._seeds(seed)):
-            if own is not None or self._randoms[robot] is None:
-                self._randoms[robot] = seeding.np_random(own)[0]
         everyone = np.ones(self.num_envs, np.bool_)
-        self._begin(everyone, options)
+        self._begin(everyone, start)
         outcome = self._cleaning.act(np.zeros((self.num_envs, 2)), beginning=everyone)
         self._has_ended[:] = False
         return outcome.observations, _infos(outcome)
@@ -113,12 +114,24 @@ class RoombaCleanVector(VectorEnv[Observations, Actions, NDArray[Any]]):
         """End the threads."""
         self._cleaning.fleet.close()
 
-    def _begin(self, robots: Flags, options: dict[str, Any] | None = None) -> None:
-        for robot in np.flatnonzero(robots).tolist():
-            random = self._randoms[robot]
-            if random is None:
-                raise RuntimeError("expected reset() before the first step()")
-            self._cleaning.begin(robot, random, options)
+    def _begin(self, robots: Flags, start: Pose | None = None) -> None:
+        """Begin episodes; if one cannot, none does."""
+        numbers = np.flatnonzero(robots).tolist()
+        beginnings = [self._beginning_of(robot, start) for robot in numbers]
+        for robot, beginning in zip(numbers, beginnings, strict=True):
+            self._cleaning.begin(robot, beginning)
+
+    def _beginning_of(self, robot: int, start: Pose | None) -> Beginning:
+        random = self._randoms[robot]
+        if random is None:
+            raise RuntimeError("expected reset() before the first step()")
+        return self._cleaning.beginning_of(random, start)
+
+    def _randoms_by(self, seeds: Sequence[int | None]) -> list[np.random.Generator | None]:
+        return [
+            random if own is None and random is not None else seeding.np_random(own)[0]
+            for own, random in zip(seeds, self._randoms, strict=True)
+        ]
 
     def _seeds(self, seed: int | Sequence[int | None] | None) -> Sequence[int | None]:
         if seed is None:

@@ -96,6 +96,52 @@ def test_what_cannot_be_meant_is_refused_with_the_reason() -> None:
 
 
 @pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"stort": (1.0, 1.0, 0.0)}, "expected the options start or at_station, got ['stort']"),
+        ({"start": 5}, "start: expected finite (x, y, theta), m and rad, got 5"),
+        ({"start": [None, 1, 1]}, "start: expected finite (x, y, theta)"),
+        ({"start": (1.0, 1.0)}, "start: expected finite (x, y, theta)"),
+        ({"start": (1.0, 1.0, math.nan)}, "start: expected finite (x, y, theta)"),
+        ({"start": (10**400, 1.0, 0.0)}, "start: expected finite (x, y, theta)"),
+        ({"start": "xyz"}, "start: expected finite (x, y, theta)"),
+        ({"at_station": "no"}, "at_station: expected True or False, got 'no'"),
+        ({"at_station": 1}, "at_station: expected True or False, got 1"),
+        ({"start": (1.0, 1.0, 0.0), "at_station": True}, "expected start or at_station, got both"),
+    ],
+)
+def test_options_that_cannot_be_meant_are_refused_with_the_reason(
+    options: dict[str, Any], said: str
+) -> None:
+    with pytest.raises(ValueError, match=re.escape(said)):
+        RoombaClean(home=dirty_room()).reset(options=options)
+
+
+def test_options_may_say_nothing() -> None:
+    environment = RoombaClean(home=dirty_room())
+    expected, _ = environment.reset(seed=1)
+    seen, _ = environment.reset(seed=1, options={"start": None, "at_station": False})
+    assert np.array_equal(seen, expected)
+
+
+@pytest.mark.parametrize("options", [{"start": (99.0, 99.0, 0.0)}, {"start": (1.0, 1.0)}])
+def test_after_a_refused_reset_the_episode_goes_on(options: dict[str, Any]) -> None:
+    environment, untouched = (RoombaClean(home=dirty_room()) for _ in range(2))
+    for each in (environment, untouched):
+        each.reset(seed=1, options=EAST_WARD)
+        for _ in range(20):
+            each.step(AHEAD)
+    with pytest.raises((HomeError, ValueError)):
+        environment.reset(seed=9, options=options)
+    seen, reward, _, _, info = environment.step(AHEAD)
+    expected, expected_reward, _, _, expected_info = untouched.step(AHEAD)
+    assert np.array_equal(seen, expected)
+    assert reward == expected_reward
+    assert repr(info) == repr(expected_info)
+    assert np.array_equal(environment.reset()[0], untouched.reset()[0]), "nor was it seeded"
+
+
+@pytest.mark.parametrize(
     ("name", "value"),
     [
         ("dt", 0.0),

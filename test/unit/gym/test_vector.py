@@ -8,6 +8,7 @@ from fixtures.homes.rooms import room_home
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 import roomba.gym
+from roomba.errors import HomeError
 from roomba.gym import RoombaClean, RoombaCleanVector
 from roomba.gym.observation import SIZE
 from roomba.world.home.home import DirtSource
@@ -155,6 +156,24 @@ def test_an_action_that_is_not_finite_is_told_with_its_robot() -> None:
     robots.reset(seed=1)
     with pytest.raises(ValueError, match=r"finite numbers, got \[0.0, inf\] for robot 1"):
         robots.step(np.array([(0.0, 0.0), (0.0, np.inf)], np.float32))
+
+
+def test_after_a_refused_reset_all_episodes_go_on() -> None:
+    robots, untouched = (RoombaCleanVector(3, **TASK) for _ in range(2))
+    actions = np.ones((3, 2), np.float32)
+    for each in (robots, untouched):
+        each.reset(seed=1)
+        for _ in range(5):
+            each.step(actions)
+    with pytest.raises(HomeError, match="does not fit"):
+        robots.reset(seed=9, options={"start": (99.0, 99.0, 0.0)})
+    with pytest.raises(ValueError, match="3 seeds"):
+        robots.reset(seed=[1, 2])
+    # Past the end of these episodes: the next ones are those of the first seeds too.
+    for _ in range(8):
+        seen, expected = robots.step(actions), untouched.step(actions)
+        assert np.array_equal(seen[0], expected[0])
+        assert np.array_equal(seen[1], expected[1])
 
 
 def test_at_least_one_robot_is_expected() -> None:
