@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.angles import wrap_angles
 from roomba.arrays import Floats
 from roomba.errors import HomeError
 from roomba.geometry import Pose
@@ -25,7 +26,7 @@ from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
 
 Flags = NDArray[np.bool_]
 Beginning = tuple[int, Pose]
-"""The seed of a robot's world, and where the robot stands at first."""
+"""The seed of a robot's world, and where the robot stands at first, in the home's own axes."""
 
 CLEAN: Final = 0.99
 """0..1; with this share of the reachable dirt in the bin the task is done."""
@@ -59,7 +60,7 @@ class CleaningTask:
     def __init__(self, task: Task, robots: int, threads: int | None = None) -> None:
         """Make the worlds; :meth:`begin` every robot's episode before the first action."""
         self.task = task
-        home = task.loaded_home()
+        self.home = home = task.loaded_home()
         # In it no time passes. All worlds begin like this, with any seed: it shows what fits there.
         self._fresh = Fleet([home], task.robot)
         self.fleet = Fleet([home] * robots, task.robot, max_speed=task.max_speed, threads=threads)
@@ -79,17 +80,26 @@ class CleaningTask:
         self._paid = np.zeros(robots)
 
     def start_of(self, options: Mapping[str, Any] | None) -> Pose | None:
-        """Return where robots are to start; None: anywhere.
+        """Return where robots are to start, in the home's own axes; None: anywhere.
 
-        ``options`` may say ``start``, (x, y, theta), or ``at_station``, True. Raises ValueError for
-        others, HomeError for a start where the robot does not fit.
+        ``options`` may say ``start``, (x, y, theta), map frame, or ``at_station``, True. Raises
+        ValueError for others, HomeError for a start where the robot does not fit.
         """
         start, at_station = _checked(options or {})
+        body = self.fleet.config.body
         if at_station:
-            return self.fleet.config.body.docked_at(self._fresh.homes[0].station)
-        if start is not None:
-            self._fresh.put(0, start)
-        return start
+            return body.docked_at(self.home.exact.station)
+        if start is None:
+            return None
+        own = self.home.own(start)
+        try:
+            self._fresh.put(0, own)
+        except HomeError:
+            raise HomeError(
+                f"start: the robot does not fit at ({start.x:.2f}, {start.y:.2f}); expected free "
+                f"floor for a body of {body.diameter} m"
+            ) from None
+        return own
 
     def beginning_of(self, random: np.random.Generator, start: Pose | None) -> Beginning:
         """Return how an episode begins: at ``start``, or at a free place found by ``random``.
@@ -152,7 +162,7 @@ class CleaningTask:
 
     def _truths(self, beginning: Flags) -> dict[str, Floats]:
         robots = self.fleet.robots
-        truths = {"pose": self.fleet.poses.copy(), "covered": self._coverage.shares}
+        truths = {"pose": self._told(self.fleet.poses), "covered": self._coverage.shares}
         for name, (field, unit) in _COUNTED.items():
             total = robots[field] * unit
             at_start = self._at_start[name]
@@ -160,6 +170,13 @@ class CleaningTask:
             truths[name] = total - at_start
         truths["time"] = self._actions * self.task.action_time
         return truths
+
+    def _told(self, poses: Floats) -> Floats:
+        """Return poses of the home's own axes in the map frame."""
+        axes = self.home.axes
+        told = axes.transform(poses)
+        told[:, 2] = wrap_angles(told[:, 2] + axes.theta)
+        return told
 
     def _free_place(self, random: np.random.Generator) -> Pose:
         for _ in range(_TRIES):
@@ -171,7 +188,7 @@ class CleaningTask:
                 continue
             return place
         raise HomeError(
-            f"home {self._fresh.homes[0].name}: expected a free place to start, found none in "
+            f"home {self.home.name}: expected a free place to start, found none in "
             f"{_TRIES} tries; give the option start or at_station"
         )
 

@@ -22,12 +22,15 @@ _STANDS_WITHIN = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FloorDistances:
-    """What can be reached from the station; make it with :meth:`of`."""
+    """What can be reached from the station; make it with :meth:`of`.
+
+    Of a home that was turned it is told in the home's own axes, as the fleet's dirt and poses are.
+    """
 
     frame: GridFrame
     """Of the dirt's grid."""
     places: NDArray[np.float64]
-    """[places, 2]: x, y, m, where the robot's middle can stand and get to, in the map frame."""
+    """[places, 2]: x, y, m, where the robot's middle can stand and get to."""
     reachable: NDArray[np.bool_]
     """[rows, columns]: cells whose middles are within ``reach`` of a place."""
     reach: float
@@ -38,13 +41,14 @@ class FloorDistances:
     @staticmethod
     def of(home: Home, config: RobotConfig) -> FloorDistances:
         """Return the floor of a home; raises HomeError where the robot can stand nowhere."""
-        frame, blocked = home.frame, home.solid | home.drop
+        exact = home.exact
+        frame, blocked = exact.frame, exact.blocked
         # A wall's face is half a cell nearer than its cell's middle.
         away = distance_to_nearest(np.pad(blocked, 1, constant_values=True))[1:-1, 1:-1] - 0.5
         regions = numbered_regions(away * frame.resolution >= config.body.radius)
         rows, columns = np.nonzero(regions)
         x, y = frame.centres(rows, columns)
-        from_station = np.hypot(x - home.station.x, y - home.station.y)
+        from_station = np.hypot(x - exact.station.x, y - exact.station.y)
         if not len(rows) or from_station.min() > max(_STANDS_WITHIN, 2.0 * frame.resolution):
             raise HomeError(
                 f"home {home.name}: expected floor to stand on within {_STANDS_WITHIN} m of the "
@@ -53,7 +57,7 @@ class FloorDistances:
             )
         nearest = int(np.argmin(from_station))
         region = regions == regions[rows[nearest], columns[nearest]]
-        dirt = DirtField.of(home)
+        dirt = DirtField.of(exact)
         fineness = dirt.frame.rows // frame.rows
         reach = min(0.5 * config.brush.width, 0.99 * config.body.radius)
         cells = reach / dirt.frame.resolution
@@ -99,7 +103,7 @@ class Coverage:
         self._covered[robot] = 0
 
     def add(self, poses: NDArray[np.float64]) -> None:
-        """Cover what the brushes reach at poses, float64 [robots, 3], map frame."""
+        """Cover what the brushes reach at poses, float64 [robots, 3], of the floor's frame."""
         frame = self._frame
         x = (poses[:, :1] - frame.origin_x) / frame.resolution - 0.5
         y = (poses[:, 1:2] - frame.origin_y) / frame.resolution - 0.5

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from fixtures.homes.free_walls import home_with, straight_wall
 from fixtures.homes.rooms import room_home
 
 from roomba.configuration.simulation import SimulatedRobotConfig
@@ -8,6 +9,7 @@ from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
 from roomba.gym.floor import Coverage, FloorDistances
 from roomba.world.fleet import Fleet
+from roomba.world.home.turned import turned_home
 from roomba.world.layers.layer import load_home
 
 CONFIG = SimulatedRobotConfig()
@@ -28,6 +30,15 @@ def test_what_lies_behind_a_wall_is_not_reached() -> None:
     assert FloorDistances.of(parted, CONFIG).places[:, 0].max() < 2.0
     gap = room_home(blocks=[(2.0, 0.0, 2.1, 3.5)])
     assert FloorDistances.of(gap, CONFIG).places[:, 0].max() > 4.5
+
+
+def test_what_lies_behind_a_wall_free_of_the_grid_is_not_reached_in_a_turned_home_either() -> None:
+    parted = home_with([straight_wall([(2.4, -0.1), (2.6, 4.1)])])
+    floor = FloorDistances.of(parted, CONFIG)
+    assert 2.0 < floor.places[:, 0].max() < 2.6
+    turned = FloorDistances.of(turned_home(parted.exact, 0.5), CONFIG)
+    assert np.array_equal(turned.places, floor.places)
+    assert np.array_equal(turned.reachable, floor.reachable)
 
 
 def test_a_station_without_floor_before_it_is_refused() -> None:
