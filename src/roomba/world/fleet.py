@@ -11,7 +11,6 @@ import itertools
 import math
 import os
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +28,7 @@ from roomba.world.engine.state.random_kernels import normal_quantiles
 from roomba.world.engine.step_kernels import advance
 from roomba.world.home.dirt import DirtField
 from roomba.world.home.home import Home
+from roomba.world.workers import Workers
 
 _CHUNKS_PER_THREAD = 4
 """Parts of the worlds for each thread: several, since some take longer than others."""
@@ -84,7 +84,7 @@ class Fleet:
             max_speed,
         )
         self._buffers: list[ScanBuffers] = []
-        self._pool: ThreadPoolExecutor | None = None
+        self._workers = Workers(self.threads)
         self._place(starts, robots_per_home)
 
     @property
@@ -265,9 +265,7 @@ class Fleet:
 
     def close(self) -> None:
         """End the threads, if there are any; the fleet may still be used."""
-        if self._pool is not None:
-            self._pool.shutdown()
-            self._pool = None
+        self._workers.close()
 
     def inject(self, robot: int, fault: Fault, value: float) -> None:
         """Set a fault of a robot; raises ValueError for a value that is not of 0..1."""
@@ -339,8 +337,6 @@ class Fleet:
         if threads == 1:
             self._work(0, count, self._buffers[0], dt, steps)
             return
-        if self._pool is None:
-            self._pool = ThreadPoolExecutor(self.threads)
         chunks = np.linspace(0, count, threads * _CHUNKS_PER_THREAD + 1).astype(int).tolist()
         waiting = list(itertools.pairwise(chunks))
 
@@ -352,8 +348,7 @@ class Fleet:
                     return
                 self._work(first, last, buffers, dt, steps)
 
-        for done in [self._pool.submit(work, self._buffers[i]) for i in range(threads)]:
-            done.result()
+        self._workers.run(work, self._buffers[:threads])
 
     def _work(self, first: int, last: int, buffers: ScanBuffers, dt: float, steps: int) -> None:
         advance(self._state, first, last, self._numbers, self._quantiles, buffers, dt, steps)

@@ -1,3 +1,4 @@
+import copy
 import re
 from typing import Any
 
@@ -123,6 +124,20 @@ def test_only_what_has_ended_begins_anew() -> None:
     infos = robots.step(actions)[4]
     assert infos["time"][0] == 0.0
     assert infos["time"][1] == pytest.approx(0.2 * (number + 2))
+
+
+def test_a_copy_goes_on_as_the_original_does() -> None:
+    robots = RoombaCleanVector(ROBOTS, threads=2, **TASK)
+    robots.reset(seed=3)
+    actions = np.ones((ROBOTS, 2), np.float32)
+    robots.step(actions)
+    other = copy.deepcopy(robots)
+    for _ in range(12):
+        seen, expected = other.step(actions), robots.step(actions)
+        assert np.array_equal(seen[0], expected[0])
+        assert np.array_equal(seen[1], expected[1])
+    robots.close()
+    other.close()
 
 
 def test_seeds_are_one_for_each_or_the_first_in_a_row() -> None:
