@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
+
+from roomba.arrays import Floats
 from roomba.configuration.simulation import SimulatedStation
 
 
@@ -32,6 +37,17 @@ class EmptyingStation:
     def replace_bag(self) -> None:
         """Put an empty bag in."""
         self.in_bag = 0.0
+
+    def save(self) -> Floats:
+        """Return all that can change, float64 [4], as :meth:`restore` takes it."""
+        left = math.nan if self._left is None else self._left
+        return np.array([self.in_bag, self.is_wanted, left, self._is_done], np.float64)
+
+    def restore(self, saved: Floats) -> None:
+        """Bring back what :meth:`save` returned."""
+        self.in_bag, is_wanted, left, is_done = saved.tolist()
+        self.is_wanted, self._is_done = is_wanted > 0.0, is_done > 0.0
+        self._left = None if math.isnan(left) else left
 
     def pass_time(self, seconds: float, in_bin: float, *, is_docked: bool) -> float:
         """Let time pass; return what was taken out of the bin, in which is ``in_bin`` g.

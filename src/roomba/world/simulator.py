@@ -9,7 +9,9 @@ fleet of one, so the same compiled code runs a robot alone and a thousand.
 
 from __future__ import annotations
 
+import hashlib
 import math
+from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
@@ -31,6 +33,8 @@ _CHAIR: Final = 0.40
 """m; between the middles of a chair's legs."""
 _LEG: Final = 0.02
 """m; radius of a leg."""
+_EMPTYING: Final = "emptying"
+"""What is saved of a station that empties the bin."""
 
 
 class Simulator:
@@ -295,12 +299,25 @@ class Simulator:
 
     def save(self) -> dict[str, NDArray[np.generic]]:
         """Return a copy of all that can change."""
-        return self._fleet.save()
+        saved = self._fleet.save()
+        return saved if self.emptying is None else {**saved, _EMPTYING: self.emptying.save()}
 
-    def restore(self, saved: dict[str, NDArray[np.generic]]) -> None:
+    def restore(self, saved: Mapping[str, NDArray[np.generic]]) -> None:
         """Bring back what :meth:`save` returned, of the same home; ValueError for another's."""
+        if (_EMPTYING in saved) != (self.emptying is not None):
+            does = "does not empty" if self.emptying is None else "empties"
+            raise ValueError(
+                f"expected what was saved with a station that {does} the bin; restore it with the "
+                "same configuration"
+            )
         self._fleet.restore(saved)
+        if self.emptying is not None:
+            self.emptying.restore(saved[_EMPTYING].astype(np.float64))
 
     def digest(self) -> str:
         """Return a SHA-256 over everything that can change, hexadecimal."""
-        return self._fleet.digest()
+        if self.emptying is None:
+            return self._fleet.digest()
+        hashed = hashlib.sha256(self._fleet.digest().encode())
+        hashed.update(self.emptying.save().tobytes())
+        return hashed.hexdigest()

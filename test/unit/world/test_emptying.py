@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from roomba.configuration.simulation import SimulatedStation
 from roomba.world.emptying import EmptyingStation
 
@@ -50,3 +52,17 @@ def test_the_bag_takes_what_it_has_room_for_and_a_full_one_begins_nothing() -> N
     assert (station.bag, station.is_at_work) == (1.0, False)
     station.replace_bag()
     assert passed(station, 20.0, 15.0) == 10.0
+
+
+def test_what_was_saved_goes_on_as_it_would_have() -> None:
+    station, other = EmptyingStation(CONFIG), EmptyingStation(CONFIG)
+    station.is_wanted = True
+    for seconds in (0.0, 0.5 * CONFIG.emptying_time, CONFIG.emptying_time + 1.0):
+        passed(station, seconds, 4.0)
+        saved = station.save()
+        other.restore(saved)
+        assert np.array_equal(other.save(), saved, equal_nan=True)
+        assert (other.in_bag, other.is_at_work) == (station.in_bag, station.is_at_work)
+        other.restore(saved)
+        assert passed(other, 7.0, 4.0) == passed(station, 7.0, 4.0)
+        station.restore(saved)

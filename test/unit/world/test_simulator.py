@@ -5,7 +5,7 @@ import sys
 
 import pytest
 from fixtures.homes.rooms import room_home
-from fixtures.homes.worlds import IDEAL, drive_around, simulator
+from fixtures.homes.worlds import IDEAL, drive, drive_around, simulator
 from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -102,6 +102,50 @@ def test_ideal_odometry_begins_at_zero_and_tells_the_way_since(
         seen = world.step(Twist(linear, angular), 0.025)
     believed = start.compose(seen.odometry)
     assert math.hypot(believed.x - seen.pose.x, believed.y - seen.pose.y) < 1e-9
+
+
+def at_emptying_station(seed: int = 0) -> Simulator:
+    """A robot that stands there with dirt in its bin, which is being taken out."""
+    sources = (DirtSource("crumbs", 1.0, 0.5, 0.1, 10.0, 0.0),)
+    world = Simulator(room_home(sources=sources), IDEAL.with_emptying_station(), seed=seed)
+    drive(world, 0.3, 0.0, 4.0)
+    world.put(world.start)
+    assert world.emptying is not None
+    world.emptying.is_wanted = True
+    drive(world, 0.0, 0.0, 3.0)
+    assert world.emptying.is_at_work
+    return world
+
+
+def test_what_a_station_empties_is_saved_with_the_world_and_restored() -> None:
+    world, other = at_emptying_station(), at_emptying_station(1)
+    saved, then = world.save(), world.digest()
+    drive(world, 0.0, 0.0, 6.0)
+    later, in_bag = world.digest(), world.emptying and world.emptying.in_bag
+    assert in_bag
+    for restored in (world, other):
+        restored.restore(saved)
+        assert restored.digest() == then
+        drive(restored, 0.0, 0.0, 6.0)
+        assert restored.emptying
+        assert restored.emptying.in_bag == in_bag
+        assert restored.digest() == later
+    assert other.emptying
+    other.emptying.replace_bag()
+    assert other.digest() != later
+
+
+def test_a_station_that_empties_is_not_restored_from_one_that_does_not() -> None:
+    emptying = at_emptying_station()
+    plain = Simulator(emptying.home, IDEAL)
+    for world, other, said in (
+        (emptying, plain, "a station that empties the bin"),
+        (plain, emptying, "a station that does not empty the bin"),
+    ):
+        before = world.digest()
+        with pytest.raises(ValueError, match=said):
+            world.restore(other.save())
+        assert world.digest() == before
 
 
 @pytest.mark.parametrize("dt", [0.0, -0.1, math.nan, math.inf])
