@@ -102,7 +102,7 @@ def _replay(
         files = [stack.enter_context(file) for file in _files(options, drive)]
         for number, reading in enumerate(drive.readings()):
             if number % _SHOWN == 0:
-                show(number / len(drive), f"{tally.seconds:.0f} s, {replay.scans} scans")
+                show(min(1.0, number / len(drive)), f"{tally.seconds:.0f} s, {replay.scans} scans")
             if isinstance(reading.value, OwnPose):
                 tally.hear_own_pose(reading.stamp, reading.value.pose)
             row = replay.hear(reading)

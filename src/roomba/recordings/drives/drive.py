@@ -14,6 +14,7 @@ import numpy as np
 from roomba.arrays import Floats, Ints64, Mask
 from roomba.perception.matching.mounts import Mount
 from roomba.recordings.drives.choice import Chosen, Wanted, chosen
+from roomba.recordings.drives.filled import filled
 from roomba.recordings.drives.fixed_beams import UnhiddenScans
 from roomba.recordings.drives.mounting import BODIES, Mounting
 from roomba.recordings.drives.opening import open_log
@@ -161,11 +162,17 @@ class LoggedDrive:
         }
 
     def __len__(self) -> int:
-        """How many readings there are at most: some may be refused."""
+        """How many readings were recorded: some may be refused, and odometry be added."""
         return len(self._order)
 
     def readings(self) -> Iterator[Reading]:
-        """Yield what was measured, in the order of time; of a time odometry before scans."""
+        """Yield what was measured, in the order of time; of a time odometry before scans.
+
+        Where odometry is rarer than scans there is more of it: see :func:`filled`.
+        """
+        return filled(self._measured())
+
+    def _measured(self) -> Iterator[Reading]:
         self.refused.clear()
         swept = None if self._sweep is None else SweptScans(self._sweep)
         wanted = np.zeros(len(self._times), np.bool_)

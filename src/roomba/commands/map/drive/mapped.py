@@ -121,7 +121,7 @@ def _replayed(
         else:
             replay.hear(stamp, value)
         if number % _SHOWN == 0:
-            show(number / len(drive), f"{replay.elapsed:.0f} s, {replay.scans} scans")
+            show(min(1.0, number / len(drive)), f"{replay.elapsed:.0f} s, {replay.scans} scans")
     replay.end()
     return replay, np.array(true).reshape(-1, 3)
 
