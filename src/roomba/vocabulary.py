@@ -174,6 +174,20 @@ def is_readable(text: str) -> bool:
     )
 
 
+def cleaned_name(text: str) -> str:
+    """Return a name that is made of any text, as other programs have it; "" if nothing is left.
+
+    White space of any kind is one space, what cannot be seen is left out, and the end is cut off.
+    """
+    seen = (
+        letter for letter in text if letter.isprintable() or letter.isspace() or letter in _JOINERS
+    )
+    name = " ".join("".join(seen).split())[:LONGEST_NAME].rstrip()
+    if is_readable(name):
+        return name
+    return cleaned_name("".join(letter for letter in name if letter not in _JOINERS))
+
+
 def places_told(count: int) -> str:
     """Return how many places, as a person says it."""
     return f"{count} place" if count == 1 else f"{count} places"

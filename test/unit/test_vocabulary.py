@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.vocabulary import AT_REST, HELD, Phase, fault_of_name, places_told
+from roomba.vocabulary import AT_REST, HELD, Phase, cleaned_name, fault_of_name, places_told
 
 JOINERS = ("\u200c", "\u200d")
 LETTERS = st.characters(categories=("L", "M", "N", "P", "S"))
@@ -34,6 +34,30 @@ def test_what_is_invisible_or_turns_the_text_is_in_no_name(
     one: str, letter: str, other: str
 ) -> None:
     assert "printable" in fault_of_name(f"{one}{letter}{other}")
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("Kids\u00a0room", "Kids room"),
+        (" Kids\t\r\n room\u2028", "Kids room"),
+        ("Kü\u202eche\x00\ud800", "Küche"),
+        ("👨\u200d👩\u200d👧 Zimmer", "👨\u200d👩\u200d👧 Zimmer"),
+        ("a\u200d \u200db", "a b"),
+        ("a" * 5000, "a" * 80),
+        (f"{'a' * 79} b", "a" * 79),
+        (" \u200b\u200d\n", ""),
+    ],
+)
+def test_a_name_of_another_program_is_made_one(text: str, name: str) -> None:
+    assert cleaned_name(text) == name
+
+
+@given(st.text())
+def test_what_is_left_of_any_text_is_a_name_and_stays_one(text: str) -> None:
+    name = cleaned_name(text)
+    assert not name or fault_of_name(name) == ""
+    assert cleaned_name(name) == name
 
 
 def test_one_place_is_no_places() -> None:

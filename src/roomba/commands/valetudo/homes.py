@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import tempfile
 from pathlib import Path
 from typing import Any, Final
 
@@ -14,6 +16,7 @@ from roomba.commands.trials.homes import rooms_of
 from roomba.commands.trials.unreached import Unreached, unreached_of
 from roomba.commands.trials.zones import ZONES_NAME, zones_of_home
 from roomba.configuration.body import BodyConfig
+from roomba.errors import HomeError
 from roomba.files.atomic import write_whole
 from roomba.files.home_layer import LAYER_NAME, MAP_NAME
 from roomba.files.occupancy_map import save_map
@@ -39,25 +42,22 @@ _COMMENT = "# Imported from a map of Valetudo. Lengths in m, map frame, directio
 
 
 def write_home(found: ValetudoHome, folder: Path) -> Home:
-    """Write a home's folder, and return the home.
+    """Write a home's folder, and return the home; nothing is left of one that is refused.
 
     Raises OSError when the disk refuses, HomeError where no robot can stand on the station, and
     ZonesError for a zone that is none.
     """
-    zones = _zones_of(found)
-    folder.mkdir(parents=True, exist_ok=True)
-    save_map(found.occupancy, folder / MAP_NAME)
-    body = BodyConfig()
-    layer = yaml.safe_dump(
-        _layer_of(found, zones, body),
-        sort_keys=False,
-        allow_unicode=True,
-        default_flow_style=None,
-        width=110,
-    )
-    write_whole(folder / LAYER_NAME, f"{_COMMENT}{layer}".encode())
-    save_zones(zones, map_digest(found.occupancy), folder / ZONES_NAME)
-    return load_home(str(folder), HOMES, body)
+    # On the same disk, so that files can be moved; the folder may be the one that can be written.
+    beside = next(each for each in (folder, *folder.parents) if each.is_dir())
+    with tempfile.TemporaryDirectory(prefix=".import_", dir=beside) as temporary:
+        made = Path(temporary) / folder.resolve().name
+        _write_files(found, made)
+        home = _loaded(made)
+        folder.mkdir(parents=True, exist_ok=True)
+        # The map last: by it a folder is a home.
+        for file in sorted(made.iterdir(), key=lambda each: each.name == MAP_NAME):
+            os.replace(file, folder / file.name)
+    return home
 
 
 def unreached_in(home: Home, found: ValetudoHome) -> Unreached:
@@ -77,6 +77,30 @@ def read_home(name: str) -> ValetudoHome:
         tuple(zone.points for zone in zones if zone.kind is ZoneKind.NO_GO),
         tuple(zone.points for zone in zones if zone.kind is ZoneKind.WALL),
     )
+
+
+def _write_files(found: ValetudoHome, folder: Path) -> None:
+    zones = _zones_of(found)
+    folder.mkdir(exist_ok=True)
+    save_map(found.occupancy, folder / MAP_NAME)
+    layer = yaml.safe_dump(
+        _layer_of(found, zones, BodyConfig()),
+        sort_keys=False,
+        allow_unicode=True,
+        default_flow_style=None,
+        width=110,
+    )
+    write_whole(folder / LAYER_NAME, f"{_COMMENT}{layer}".encode())
+    save_zones(zones, map_digest(found.occupancy), folder / ZONES_NAME)
+
+
+def _loaded(folder: Path) -> Home:
+    """Return a home that was written; raises HomeError that names no file: it will be removed."""
+    try:
+        return load_home(str(folder), HOMES, BodyConfig())
+    except HomeError as error:
+        reason = str(error).removeprefix(str(folder)).partition(": ")[2]
+        raise HomeError(reason) from error
 
 
 def _layer_of(found: ValetudoHome, zones: Zones, body: BodyConfig) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from roomba.files.valetudo.home import CM, VERSION, Points, ValetudoError, Valet
 from roomba.geometry import Pose
 from roomba.grid import FREE, MOST_CELLS, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.raster.seams import without_seams
+from roomba.vocabulary import another_name, cleaned_name
 
 _MARGIN: Final = 2
 """Cells around what a map shows."""
@@ -165,17 +166,16 @@ def _runs(layer: _Layer) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[
 
 
 def _named(layers: list[tuple[_Layer, Mask]]) -> list[tuple[str, Mask]]:
-    """Return rooms by names that differ; those without one are numbered."""
+    """Return rooms by names that differ, as names are here; those without one are numbered."""
     rooms: list[tuple[str, Mask]] = []
     for number, (layer, mask) in enumerate(
         ((layer, mask) for layer, mask in layers if layer.type == "segment"), start=1
     ):
-        given = (layer.metaData.name or "").strip()
-        segment = number if layer.metaData.segmentId is None else layer.metaData.segmentId
-        name, again = given or f"Room {segment}", 2
-        while name in [other for other, _ in rooms]:
-            name, again = f"{given or f'Room {segment}'} {again}", again + 1
-        rooms.append((name, mask))
+        meta = layer.metaData
+        segment = number if meta.segmentId is None else meta.segmentId
+        name = cleaned_name(meta.name or "") or cleaned_name(f"Room {segment}")
+        taken = [other for other, _ in rooms]
+        rooms.append((another_name(name, taken) if name in taken else name, mask))
     return rooms
 
 

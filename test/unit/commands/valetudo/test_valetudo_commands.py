@@ -189,6 +189,39 @@ def test_what_is_no_map_is_refused_in_a_line(
     assert not (tmp_path / "home").exists()
 
 
+def test_of_a_map_that_is_refused_nothing_is_left_and_the_next_one_is_taken(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, folder = foreign(tmp_path / "map.json"), tmp_path / "made" / "home"
+    whole = file.read_text("utf-8")
+    told = json.loads(whole)
+    told["layers"] = [{"type": "floor", "pixels": [40, 40, 41, 40]}]
+    words = ["valetudo", str(file), "--out", str(folder)]
+    file.write_text(json.dumps(told), "utf-8")
+    assert bring(words) == 2
+    refused = capsys.readouterr().err
+    assert f"{file}: expected" in refused
+    assert "home.yaml" not in refused
+    assert list(tmp_path.iterdir()) == [file]
+    file.write_text(whole, "utf-8")
+    assert bring(words) == 0
+    assert {each.name for each in folder.iterdir()} == {
+        "home.yaml",
+        "map.pgm",
+        "map.yaml",
+        "zones.yaml",
+    }
+
+
+def test_a_home_goes_into_a_folder_that_is_there(tmp_path: Path) -> None:
+    file, folder = foreign(tmp_path / "map.json"), tmp_path / "home"
+    folder.mkdir()
+    (folder / "notes.txt").write_text("mine")
+    assert bring(["valetudo", str(file), "--out", str(folder)]) == 0
+    assert (folder / "notes.txt").read_text() == "mine"
+    assert load_home(str(folder), HOMES).name == "home"
+
+
 def test_a_home_that_is_there_is_not_written_over(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -72,6 +72,23 @@ def test_rooms_of_one_name_are_told_apart() -> None:
     assert [name for name, _ in home.rooms] == ["Bad", "Bad 2"]
 
 
+def test_names_of_rooms_are_cleaned_and_rooms_stay_apart() -> None:
+    told: list[tuple[str | None, str | None]] = [
+        ("Kids\u00a0room", None),
+        ("Kids\troom", None),
+        ("\u200b", "8\n"),
+        ("a" * 99, None),
+        ("a" * 98, None),
+        (None, "\u200b"),
+    ]
+    layers = [
+        {**FOREIGN["layers"][1], "metaData": {"name": name, "segmentId": segment}}
+        for name, segment in told
+    ]
+    names = [name for name, _ in parse(changed(layers=layers)).rooms]
+    assert names == ["Kids room", "Kids room 2", "Room 8", "a" * 80, f"{'a' * 78} 2", "Room"]
+
+
 SEAMS = """
 WWWWWWWWWWWWWWWWWWWW
 Waaa-bbbb--ccccccccW
