@@ -13,7 +13,6 @@ import yaml
 
 from roomba.arrays import Mask
 from roomba.commands.trials.homes import rooms_of
-from roomba.commands.trials.unreached import Unreached, unreached_of
 from roomba.commands.trials.zones import ZONES_NAME, zones_of_home
 from roomba.configuration.body import BodyConfig
 from roomba.errors import HomeError
@@ -25,7 +24,7 @@ from roomba.files.valetudo.home import ValetudoHome
 from roomba.geometry import Pose
 from roomba.grid import OccupancyMap
 from roomba.perception.rooms.outlines import outline_of
-from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+from roomba.perception.rooms.zones import ZoneKind, Zones
 from roomba.storage.map_bound import map_digest
 from roomba.storage.zones import save_zones
 from roomba.world.home.home import Home
@@ -41,28 +40,22 @@ _BY_CHARGER: Final = 0.5
 _COMMENT = "# Imported from a map of Valetudo. Lengths in m, map frame, directions in rad.\n"
 
 
-def write_home(found: ValetudoHome, folder: Path) -> Home:
+def write_home(found: ValetudoHome, zones: Zones, folder: Path) -> Home:
     """Write a home's folder, and return the home; nothing is left of one that is refused.
 
-    Raises OSError when the disk refuses, HomeError where no robot can stand on the station, and
-    ZonesError for a zone that is none.
+    Raises OSError when the disk refuses, and HomeError where no robot can stand on the station.
     """
     # On the same disk, so that files can be moved; the folder may be the one that can be written.
     beside = next(each for each in (folder, *folder.parents) if each.is_dir())
     with tempfile.TemporaryDirectory(prefix=".import_", dir=beside) as temporary:
         made = Path(temporary) / folder.resolve().name
-        _write_files(found, made)
+        _write_files(found, zones, made)
         home = _loaded(made)
         folder.mkdir(parents=True, exist_ok=True)
         # The map last: by it a folder is a home.
         for file in sorted(made.iterdir(), key=lambda each: each.name == MAP_NAME):
             os.replace(file, folder / file.name)
     return home
-
-
-def unreached_in(home: Home, found: ValetudoHome) -> Unreached:
-    """Return the floor of an imported home to which no way leads from its station."""
-    return unreached_of(home, _zones_of(found))
 
 
 def read_home(name: str) -> ValetudoHome:
@@ -79,8 +72,7 @@ def read_home(name: str) -> ValetudoHome:
     )
 
 
-def _write_files(found: ValetudoHome, folder: Path) -> None:
-    zones = _zones_of(found)
+def _write_files(found: ValetudoHome, zones: Zones, folder: Path) -> None:
     folder.mkdir(exist_ok=True)
     save_map(found.occupancy, folder / MAP_NAME)
     layer = yaml.safe_dump(
@@ -154,15 +146,3 @@ def _solid(floor: OccupancyMap, zones: Zones) -> Mask:
     """Return where no body may be, zones among it, bool [rows, columns]."""
     barred = [zone.cells(floor.frame) for zone in zones.barred]
     return np.asarray(np.logical_or.reduce([floor.solid, *barred]))
-
-
-def _zones_of(found: ValetudoHome) -> Zones:
-    areas = [
-        Zone(f"no-go {number}", ZoneKind.NO_GO, points)
-        for number, points in enumerate(found.no_go, start=1)
-    ]
-    walls = [
-        Zone(f"wall {number}", ZoneKind.WALL, points)
-        for number, points in enumerate(found.walls, start=1)
-    ]
-    return Zones((*areas, *walls))

@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Final
 
 from roomba.commands.program_name import spelled
-from roomba.commands.valetudo.homes import unreached_in, write_home
+from roomba.commands.trials.unreached import unreached_of
+from roomba.commands.valetudo.homes import write_home
 from roomba.commands.valetudo.options import parser_of, reason_of
+from roomba.commands.valetudo.zones import taken_zones
 from roomba.errors import RoombaError
 from roomba.files.bounded import read_text
 from roomba.files.home_layer import MAP_NAME
@@ -30,17 +32,17 @@ def main(arguments: list[str] | None = None) -> int:
         parser.error(f"--out: expected a folder without a home, got {folder}; choose another")
     try:
         found = parse(read_text(given.file))
-        home = write_home(found, folder)
+        taken = taken_zones(found)
+        home = write_home(found, taken.zones, folder)
     except (RoombaError, OSError, UnicodeDecodeError) as error:
         print(f"{PROGRAM}: {given.file}: {reason_of(error)}", file=sys.stderr)
         return 2
-    zones = len(found.no_go) + len(found.walls)
     put = "" if found.station is not None else ", where it was put: the map has no charger on it"
     print(
-        f"{folder}: {home.map.free_area:.1f} m² of floor, {len(home.rooms)} rooms, {zones} zones, "
+        f"{folder}: {home.map.free_area:.1f} m² of floor, {len(home.rooms)} rooms, {taken.words}, "
         f"station at ({home.station.x:.2f}, {home.station.y:.2f}){put}"
     )
-    if words := unreached_in(home, found).words:
+    if words := unreached_of(home, taken.zones).words:
         print(words)
     print(f"to clean it: {spelled('sim')} --home {folder}")
     return 0

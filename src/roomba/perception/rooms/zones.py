@@ -20,7 +20,7 @@ WALL_WIDTH: Final = 0.05
 """m; of a virtual wall: as thick as a cell, so that nothing slips through."""
 _LEAST_SHARE: Final = 1e-6
 """Of a cell; less is rounding."""
-_LEAST_AREA: Final = 0.01
+LEAST_AREA: Final = 0.01
 """m2; a smaller area is a slip of the finger."""
 
 Corners = tuple[tuple[float, float], ...]
@@ -72,9 +72,9 @@ class Zone:
         if not shape.is_valid:
             reason = shapely.is_valid_reason(shape)
             raise ZonesError(f"zone {self.name!r}: expected a simple outline, got {reason}")
-        if self.kind.is_area and shape.area < _LEAST_AREA:
+        if self.kind.is_area and shape.area < LEAST_AREA:
             raise ZonesError(
-                f"zone {self.name!r}: expected {_LEAST_AREA} m2 or more, got {shape.area:.4f} m2"
+                f"zone {self.name!r}: expected {LEAST_AREA} m2 or more, got {shape.area:.4f} m2"
             )
 
     @property

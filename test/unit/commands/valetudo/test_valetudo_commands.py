@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from roomba.commands.trials.trial import Trial
 from roomba.commands.valetudo.export_command import main as export
 from roomba.commands.valetudo.homes import read_home, write_home
 from roomba.commands.valetudo.import_command import main as bring
+from roomba.commands.valetudo.zones import taken_zones
 from roomba.configuration.body import BodyConfig
 from roomba.files.shipped import HOMES
 from roomba.files.valetudo.home import ValetudoHome
@@ -139,7 +141,7 @@ def test_a_home_comes_back_as_it_was_exported(tmp_path: Path) -> None:
 
 def test_a_home_with_zones_comes_back_with_them(tmp_path: Path) -> None:
     found = parse(foreign(tmp_path / "map.json").read_text(encoding="utf-8"))
-    home = write_home(found, tmp_path / "one")
+    home = write_home(found, taken_zones(found).zones, tmp_path / "one")
     file = tmp_path / "again.json"
     assert export(["valetudo", str(tmp_path / "one"), "--out", str(file)]) == 0
     again = parse(file.read_text(encoding="utf-8"))
@@ -147,7 +149,7 @@ def test_a_home_with_zones_comes_back_with_them(tmp_path: Path) -> None:
     assert np.allclose(again.no_go, found.no_go)
     assert again.station is not None
     assert again.station.distance_to(home.station.x, home.station.y) < 0.01
-    write_home(again, tmp_path / "two")
+    write_home(again, taken_zones(again).zones, tmp_path / "two")
     assert_same(read_home(str(tmp_path / "one")), read_home(str(tmp_path / "two")))
 
 
@@ -187,6 +189,62 @@ def test_what_is_no_map_is_refused_in_a_line(
     assert reason in told
     assert told.count("\n") == 1
     assert not (tmp_path / "home").exists()
+
+
+@pytest.mark.parametrize(
+    ("entity", "points", "told"),
+    [
+        # Corners crosswise, a wall of one point, an area of a line, and of one point.
+        ("no_go_area", [100, 100, 200, 200, 200, 100, 100, 200], "2 zones, "),
+        ("virtual_wall", [100, 90, 100, 90], "1 zones (1 of no size left out: wall 1)"),
+        ("no_go_area", [100, 90, 200, 90, 200, 90, 100, 90], "left out: no-go 2)"),
+        ("no_go_area", 4 * [100, 90], "left out: no-go 2)"),
+    ],
+)
+def test_odd_zones_refuse_no_map(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    entity: str,
+    points: list[int],
+    told: str,
+) -> None:
+    file, folder = foreign(tmp_path / "map.json"), tmp_path / "home"
+    with_entity(file, entity, points)
+    assert bring(["valetudo", str(file), "--out", str(folder)]) == 0
+    assert told in capsys.readouterr().out
+
+
+def with_entity(file: Path, entity: str, points: list[int], times: int = 1) -> None:
+    values = json.loads(file.read_text("utf-8"))
+    values["entities"] += times * [{"type": entity, "points": points}]
+    file.write_text(json.dumps(values), "utf-8")
+
+
+def test_an_area_whose_corners_are_told_crosswise_is_the_whole_rectangle(tmp_path: Path) -> None:
+    file = foreign(tmp_path / "map.json")
+    with_entity(file, "no_go_area", [100, 100, 200, 250, 200, 100, 100, 250])
+    zones = taken_zones(parse(file.read_text("utf-8"))).zones
+    assert zones.all[1].shape.area == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize(
+    ("points", "times", "reason"),
+    [
+        ([0, 0, 90, 90, 0, 90, 90, 0, 40, 70], 1, "zone 'no-go 2': .*; delete it in Valetudo"),
+        ([0, 0, 90, 0, 90, 90], 1000, "most 1000 zones, got 1001; delete some in Valetudo"),
+    ],
+)
+def test_zones_that_cannot_be_taken_are_refused_with_what_to_do(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    points: list[int],
+    times: int,
+    reason: str,
+) -> None:
+    file = foreign(tmp_path / "map.json")
+    with_entity(file, "no_go_area", points, times)
+    assert bring(["valetudo", str(file), "--out", str(tmp_path / "home")]) == 2
+    assert re.search(reason, capsys.readouterr().err)
 
 
 def test_of_a_map_that_is_refused_nothing_is_left_and_the_next_one_is_taken(
