@@ -54,7 +54,8 @@ class CarmenText:
     def _read(self, path: Path) -> list[CarmenLine]:
         file = Unpacked(path)
         try:
-            with file.path.open(encoding="utf-8", errors="replace") as text:
+            # Some editors put a mark before the first line, which is no part of its first word.
+            with file.path.open(encoding="utf-8-sig", errors="replace") as text:
                 lines = (self._parse(number, each.split()) for number, each in enumerate(text, 1))
                 return [line for line in lines if line is not None]
         finally:

@@ -34,6 +34,12 @@ def test_lines_and_parameters_are_told_from_all_else(tmp_path: Path) -> None:
     assert text.notes == []
 
 
+def test_a_mark_before_the_first_line_is_no_part_of_it(tmp_path: Path) -> None:
+    text = text_of(tmp_path, "\ufeffPARAM robot_frontlaser_offset 0.2 nohost 0", FLASER)
+    assert text.parameters == {"robot_frontlaser_offset": 0.2}
+    assert text.other == {}
+
+
 def test_of_lines_that_cannot_be_read_the_first_is_told(tmp_path: Path) -> None:
     text = text_of(tmp_path, "PARAM robot_frontlaser_offset", FLASER, "FLASER x")
     assert text.notes == [
