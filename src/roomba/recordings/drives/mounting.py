@@ -13,6 +13,8 @@ from roomba.recordings.readings import Kind
 
 BODIES: Final = ("base_link", "base_footprint", "base")
 """Frames of a robot's body that lie on each other as seen from above."""
+_FARTHEST: Final = 10.0
+"""m; a lidar is not farther from the middle of its robot, as `--laser` has it, too."""
 
 
 class Mounting:
@@ -27,13 +29,13 @@ class Mounting:
             self._mounts.add(log.transforms())
         self._found: dict[tuple[str, Kind], Mount] = {}
         self._remarks: list[str] = []
-        self._untold: list[str] = []
+        self._untold: dict[str, str] = {}
         self._shown: Mount | None = None
 
     @property
     def notes(self) -> list[str]:
         """What is worth knowing of the lidars that were asked for so far."""
-        return [*self._remarks, *(self._words_of_untold(frame) for frame in self._untold)]
+        return [*self._remarks, *map(self._words_of_untold, self._untold.values())]
 
     @property
     def is_told(self) -> bool:
@@ -57,24 +59,31 @@ class Mounting:
         return Mount(self._laser, mount.is_upside_down if hangs is None else hangs)
 
     def _searched(self, frame: str, kind: Kind) -> Mount:
-        mount = self._mounts.mount(self._body, frame)
-        if mount is not None:
-            return mount
         is_asked = kind is Kind.SCAN and self._laser is None
-        for body in BODIES if self._body in BODIES else ():
+        for body in (self._body, *(BODIES if self._body in BODIES else ())):
             mount = self._mounts.mount(body, frame)
-            if mount is not None:
-                if is_asked:
-                    self._remarks.append(
-                        f"{frame!r} is where it is on {body!r}, not on {self._body!r}"
-                    )
-                return mount
+            if mount is None:
+                continue
+            away = math.hypot(mount.pose.x, mount.pose.y)
+            if is_asked and away > _FARTHEST:
+                return self._taken(
+                    frame,
+                    f"{frame!r} was recorded to be {away:.0f} m from {body!r}, as if that were in "
+                    "mm",
+                )
+            if is_asked and body != self._body:
+                self._remarks.append(f"{frame!r} is where it is on {body!r}, not on {self._body!r}")
+            return mount
         if not is_asked:
             return Mount()
-        self._untold.append(frame)
+        return self._taken(frame, f"no transform from {self._body!r} to {frame!r} was recorded")
+
+    def _taken(self, frame: str, why: str) -> Mount:
+        """Return where a lidar is taken to be, and note why nothing tells."""
+        self._untold[frame] = why
         return self._shown or Mount()
 
-    def _words_of_untold(self, frame: str) -> str:
+    def _words_of_untold(self, why: str) -> str:
         looks = "to look ahead"
         if self._shown is not None:
             yaw = self._shown.pose.theta
@@ -82,9 +91,8 @@ class Mounting:
             looks += " and to hang upside down" if self._shown.is_upside_down else ""
             looks += ", as its scans show against the odometry"
         return (
-            f"no transform from {self._body!r} to {frame!r} was recorded: the lidar is taken to be "
-            f"in the middle of the robot, and {looks}; --laser X,Y,YAW[,upside-down] says where it "
-            "is"
+            f"{why}: the lidar is taken to be in the middle of the robot, and {looks}; --laser "
+            "X,Y,YAW[,upside-down] says where it is"
         )
 
 

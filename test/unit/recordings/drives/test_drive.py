@@ -210,6 +210,22 @@ def test_without_transforms_the_lidar_is_in_the_middle_and_that_is_told(tmp_path
     assert recorded.notes == []
 
 
+def test_a_lidar_that_was_recorded_to_be_too_far_away_is_untold(tmp_path: Path) -> None:
+    path = tmp_path / "made.log"
+    lines = ["PARAM robot_frontlaser_offset 145 nohost 0"]
+    lines += [f"FLASER 3 1.0 2.0 1.5 {x} 0 0 {x} 0 0 {10 + x} nohost {10 + x}" for x in range(9)]
+    path.write_text("\n".join(lines))
+    readings, recorded = read([path])
+    assert mount_of(readings) == [0.0, 0.0, 0.0]
+    assert not recorded.is_mount_told
+    [note] = recorded.notes
+    assert note.startswith("'FLASER' was recorded to be 145 m from 'base_link', as if that were in")
+    assert "taken to be in the middle" in note
+    told, recorded = read([path], Wanted(laser=Pose(0.145)))
+    assert mount_of(told) == [0.145, 0.0, 0.0]
+    assert recorded.notes == []
+
+
 def lidar_of(readings: Sequence[Reading]) -> LidarModel:
     return next(value.lidar for _, value, _ in readings if isinstance(value, LidarScan))
 
