@@ -100,8 +100,12 @@ def transforms_in(message: Any) -> Iterator[tuple[float, FrameTransform]]:
 
 
 def _told_ranges(message: Any) -> tuple[float, float]:
-    """Return from and to which range, m, a scan counts; a driver that tells 0 as the last, none."""
-    return float(message.range_min), float(message.range_max) or math.inf
+    """Return from and to which range, m, a scan counts.
+
+    A driver that tells none has NaN as the first, or 0 as the last.
+    """
+    nearest = float(message.range_min)
+    return 0.0 if math.isnan(nearest) else nearest, float(message.range_max) or math.inf
 
 
 def _scan(message: Any, lidars: LidarBook) -> Value | Refused:

@@ -115,19 +115,20 @@ def test_ranges_that_are_cut_met_nothing_there(tmp_path: Path) -> None:
     log.close()
 
 
-def test_of_a_driver_that_tells_no_farthest_range_all_ranges_count(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("bound", "told"), [("NEAREST", math.nan), ("FARTHEST", 0.0)])
+def test_of_a_driver_that_tells_no_bound_of_ranges_all_of_them_count(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, bound: str, told: float
 ) -> None:
-    monkeypatch.setattr(made_logs, "FARTHEST", 0.0)
+    monkeypatch.setattr(made_logs, bound, told)
     items = drive(2.0)
     ranges = [each.value for each in items if isinstance(each.value, np.ndarray)]
     log = BagLog(write_bag(tmp_path / "made.bag", items))
     [channel] = [each for each in log.channels if each.kind is Kind.SCAN]
     scans = [value for _, value in read(log, channel)]
     assert len(scans) == len(ranges)
-    for scan, told in zip(scans, ranges, strict=True):
+    for scan, expected in zip(scans, ranges, strict=True):
         assert isinstance(scan, LidarScan)
-        assert len(scan.lidar.view(scan.ranges)) == len(told)
+        assert len(scan.lidar.view(scan.ranges)) == len(expected)
     log.close()
 
 
