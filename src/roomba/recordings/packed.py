@@ -1,7 +1,8 @@
-"""Files that are packed by gzip or xz."""
+"""Files that are packed by gzip, xz or bzip2."""
 
 from __future__ import annotations
 
+import bz2
 import gzip
 import lzma
 import shutil
@@ -13,8 +14,7 @@ from typing import BinaryIO, Final, TypeAlias, cast
 
 from roomba.recordings.readings import LogError
 
-_GZIP, _XZ = b"\x1f\x8b", b"\xfd7zXZ\x00"
-_SUFFIXES: Final = (".gz", ".xz")
+_SUFFIXES: Final = (".gz", ".xz", ".bz2")
 _Opener: TypeAlias = Callable[[Path], BinaryIO]
 _BROKEN: Final = (EOFError, OSError, lzma.LZMAError, zlib.error)
 
@@ -76,14 +76,12 @@ def _opener(path: Path) -> _Opener | None:
         return None
     try:
         with path.open("rb") as file:
-            head = file.read(len(_XZ))
+            head = file.read(max(map(len, _OPENERS)))
     except FileNotFoundError:
         raise LogError(f"{path}: no such file; expected a bag or a log") from None
     except OSError as error:
         raise LogError(f"{path}: cannot be read: {error.strerror}") from None
-    if head.startswith(_GZIP):
-        return _open_gzip
-    return _open_xz if head.startswith(_XZ) else None
+    return next((opener for magic, opener in _OPENERS.items() if head.startswith(magic)), None)
 
 
 def _open_gzip(path: Path) -> BinaryIO:
@@ -94,5 +92,17 @@ def _open_xz(path: Path) -> BinaryIO:
     return cast(BinaryIO, lzma.open(path, "rb"))
 
 
+def _open_bzip2(path: Path) -> BinaryIO:
+    return cast(BinaryIO, bz2.open(path, "rb"))
+
+
 def _open_plain(path: Path) -> BinaryIO:
     return path.open("rb")
+
+
+_OPENERS: Final[dict[bytes, _Opener]] = {
+    b"\x1f\x8b": _open_gzip,
+    b"\xfd7zXZ\x00": _open_xz,
+    b"BZh": _open_bzip2,
+}
+"""What opens a packed file, by how it begins."""

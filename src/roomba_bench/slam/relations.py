@@ -26,7 +26,7 @@ _FARTHEST: Final = 1.0
 """s; a relation counts if the trajectory has a pose so near to each of its times."""
 _ROUNDED: Final = 1e-3
 """s; to which times in files are rounded."""
-_PACKED: Final = ("", ".xz", ".gz")
+_PACKED: Final = ("", ".xz", ".gz", ".bz2")
 
 
 @dataclass(frozen=True, slots=True)

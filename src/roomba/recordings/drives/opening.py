@@ -18,6 +18,8 @@ _MAGIC: Final = {b"#ROSBAG V": ".bag", b"\x89MCAP": ".mcap", b"SQLite format 3":
 """How bags begin, and what their names must end with."""
 _OLD: Final = (b"#ROSRECORD V", b"#ROSBAG V1.")
 """How bags begin that are older than version 2.0: those of before 2010."""
+_ARCHIVES: Final = {b"PK\x03\x04": ("zip", "unzip"), b"\x28\xb5\x2f\xfd": ("zstd", "unzstd")}
+"""How files begin that are not unpacked here: which program packed them, and which unpacks them."""
 _RELATION: Final = 8
 """Numbers in a line of a file of relations."""
 
@@ -42,6 +44,12 @@ def open_log(path: Path) -> Log:
             if not plain_name(path).endswith(suffix):
                 raise LogError(f"{path}: expected a name that ends with {suffix}; rename it")
             return _bag(path)
+    for magic, (packer, unpacker) in _ARCHIVES.items():
+        if head.startswith(magic):
+            raise LogError(
+                f"{path}: expected a bag or a log, got a file that {packer} packed; unpack it: "
+                f"{unpacker} {shlex.quote(str(path))}"
+            )
     if b"\0" in head:
         raise LogError(f"{path}: expected a bag of ROS 1 or 2, or a CARMEN log, got something else")
     if is_relations(head):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bz2
 import gzip
 import lzma
 from collections.abc import Callable
@@ -19,7 +20,8 @@ RELATION = "976052857.3 976052890.1 1.5 -0.25 0.0 0.0 0.0 0.31\n"
 
 
 @pytest.mark.parametrize(
-    ("suffix", "packed"), [(".gz", gzip.compress), (".xz", lzma.compress), ("", bytes)]
+    ("suffix", "packed"),
+    [(".gz", gzip.compress), (".xz", lzma.compress), (".bz2", bz2.compress), ("", bytes)],
 )
 @pytest.mark.parametrize("name", ["made.bag", "made.log", "made.clf"])
 def test_logs_are_read_packed_or_not(
@@ -71,6 +73,9 @@ def test_relations_are_known_by_their_eight_numbers() -> None:
         ("made.mcap", b"#ROSBAG V2.0\n", "expected a name that ends with .bag"),
         ("picture.png", b"\x89PNG\r\n\x1a\n\0\0", "expected a bag of ROS 1 or 2, or a CARMEN log"),
         ("cut.log.xz", lzma.compress(b"FLASER 1 2\n" * 9000)[:-30], "cannot be"),
+        ("cut.log.bz2", bz2.compress(b"FLASER 1 2\n" * 9000)[:-30], "cannot be"),
+        ("a log.zip", b"PK\x03\x04\x14\0", "that zip packed; unpack it: unzip '.*a log.zip'"),
+        ("made.log.zst", b"\x28\xb5\x2f\xfd\0", "that zstd packed; unpack it: unzstd .*.zst"),
         ("old.bag", b"#ROSBAG V1.2\n", r"an old one of version 1\.2; `rosbag filter .*old.bag new"),
         ("old.bag", b"#ROSRECORD V1.2\n\0\0", r"version 1\.2; .*`rosbag fix`"),
         ("new.bag", b"#ROSBAG V3.0\n", "version 300 is not supported"),
