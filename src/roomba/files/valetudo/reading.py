@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from roomba.arrays import Mask
 from roomba.files.plain_json import load_json
@@ -17,6 +17,8 @@ from roomba.grid import FREE, MOST_CELLS, OCCUPIED, UNKNOWN, GridFrame, Occupanc
 from roomba.raster.seams import without_seams
 from roomba.vocabulary import another_name, cleaned_name
 
+_KINDS: Final = ("floor", "segment", "wall")
+"""Layers that are read, walls last: some robots tell floor below them."""
 _MARGIN: Final = 2
 """Cells around what a map shows."""
 _MOST_LAYERS: Final = 100
@@ -40,16 +42,20 @@ class _Size(_Part):
     y: Annotated[int, Field(gt=0, le=_FARTHEST)]
 
 
+def _empty_for_none(told: object) -> object:
+    return {} if told is None else told
+
+
 class _LayerMeta(_Part):
     segmentId: str | int | None = None  # noqa: N815
     name: str | None = None
 
 
 class _Layer(_Part):
-    type: Literal["floor", "wall", "segment"]
+    type: str
     pixels: list[_Pixel] = []
     compressedPixels: list[_Pixel] = []  # noqa: N815
-    metaData: _LayerMeta = _LayerMeta()  # noqa: N815
+    metaData: Annotated[_LayerMeta, BeforeValidator(_empty_for_none)] = _LayerMeta()  # noqa: N815
 
 
 class _EntityMeta(_Part):
@@ -59,7 +65,7 @@ class _EntityMeta(_Part):
 class _Entity(_Part):
     type: str
     points: list[_Place] = []
-    metaData: _EntityMeta = _EntityMeta()  # noqa: N815
+    metaData: Annotated[_EntityMeta, BeforeValidator(_empty_for_none)] = _EntityMeta()  # noqa: N815
 
 
 class _Meta(_Part):
@@ -84,19 +90,19 @@ def parse(text: str) -> ValetudoHome:
             f"size: expected 1 to {MOST_CELLS} pixels of {found.pixelSize} cm, got "
             f"{found.size.x} x {found.size.y} cm"
         )
-    layers = [_mask(layer, number, rows, columns) for number, layer in enumerate(found.layers)]
+    layers = [
+        (layer, _mask(layer, number, rows, columns))
+        for number, layer in enumerate(found.layers)
+        if layer.type in _KINDS
+    ]
     values = np.full((rows, columns), UNKNOWN, np.int8)
-    # Walls last: some robots tell floor below them.
-    for kind in ("floor", "segment", "wall"):
-        for layer, mask in zip(found.layers, layers, strict=True):
+    for kind in _KINDS:
+        for layer, mask in layers:
             if layer.type == kind:
                 values[mask] = OCCUPIED if kind == "wall" else FREE
     if not (values == FREE).any():
         raise ValetudoError("layers: expected floor or segments, got none; map the home first")
-    rooms = [
-        (name, mask & (values == FREE))
-        for name, mask in _named(list(zip(found.layers, layers, strict=True)))
-    ]
+    rooms = [(name, mask & (values == FREE)) for name, mask in _named(layers)]
     if found.metaData.origin is None:
         values, rooms = _without_seams(values, rooms, found.pixelSize * CM)
     return _placed(found, values, rooms)

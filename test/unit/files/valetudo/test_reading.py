@@ -58,6 +58,16 @@ def test_a_map_of_another_program_begins_at_its_station() -> None:
     assert np.allclose(home.walls[0], [(-0.25, 0.05), (-0.25, -0.05)])
 
 
+def test_layers_of_unknown_kinds_are_left_out_and_null_tells_nothing() -> None:
+    layers = [{**layer, "metaData": layer["metaData"] or None} for layer in FOREIGN["layers"]]
+    layers.append({"type": "carpet", "metaData": {"name": "Rug"}, "pixels": [999, 0]})
+    entities = [{**FOREIGN["entities"][0], "metaData": None}, *FOREIGN["entities"][1:]]
+    home = parse(changed(layers=layers, entities=entities))
+    whole = parse(json.dumps(FOREIGN))
+    assert np.array_equal(home.occupancy.values, whole.occupancy.values)
+    assert [name for name, _ in home.rooms] == ["Room 17", "Bad"]
+
+
 @pytest.mark.parametrize("points", [[1_000_000, 500], [500, -501]])
 def test_a_charger_off_the_map_is_none(points: list[int]) -> None:
     far = {"__class": "PointMapEntity", "type": "charger_location", "points": points}
@@ -140,7 +150,7 @@ def changed(**changes: Any) -> str:
         (changed(metaData={"version": 3}), "version: expected 1 or 2, got 3"),
         (changed(size={"x": 1000000, "y": 1000000}), "size: expected 1 to 20000000"),
         (changed(layers=[]), "expected floor or segments"),
-        (changed(layers=[{"type": "attic"}]), "layers.0.type"),
+        (changed(layers=[{"type": "attic"}]), "expected floor or segments"),
         (changed(layers=[{"type": "floor", "compressedPixels": [1, 2]}]), "layers.0: .*three"),
         (changed(layers=[{"type": "floor", "compressedPixels": [1, 2, 0]}]), "counts from 1"),
         (changed(layers=[{"type": "floor", "compressedPixels": [190, 2, 11]}]), "200 x 200"),
