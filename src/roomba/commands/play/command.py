@@ -133,7 +133,9 @@ def _repeat(arguments: list[str] | None) -> str:
 
 
 def _warn(text: str) -> None:
-    print(f"{PROGRAM}: {text}", file=sys.stderr, flush=True)
+    # A terminal that is gone must not end what tells: a thread, or how the robot is given back.
+    with contextlib.suppress(OSError):
+        print(f"{PROGRAM}: {text}", file=sys.stderr, flush=True)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -9,7 +9,7 @@ import pytest
 
 from roomba.commands.play.told_to_end import ToldToEnd
 
-NUMBERS = (signal.SIGINT, signal.SIGTERM)
+NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 @pytest.fixture(autouse=True)
@@ -27,3 +27,10 @@ def test_a_signal_raises_and_is_remembered(number: signal.Signals) -> None:
     with pytest.raises(KeyboardInterrupt):
         signal.raise_signal(number)
     assert ending.is_told
+
+
+def test_a_lost_terminal_is_passed_over_where_it_was_before() -> None:
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    ending = ToldToEnd()
+    signal.raise_signal(signal.SIGHUP)
+    assert not ending.is_told
