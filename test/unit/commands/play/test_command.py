@@ -28,6 +28,8 @@ DEADLINE = 30.0
 """s of wall time."""
 AWAY = Pose(-0.6, 0.0, 0.0)
 """From the station, as the robot on it sees it."""
+IMPATIENT = 0.005
+"""s between two presses of Ctrl-C."""
 
 
 class Played:
@@ -114,6 +116,20 @@ def household(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def played(tmp_path: Path, household: Path) -> Iterator[Played]:
     with contextlib.closing(Played(tmp_path)) as made:
         yield made
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_told_again_and_again_it_gives_the_robot_back(
+    played: Played, number: signal.Signals
+) -> None:
+    played.play()
+
+    def is_given_back() -> bool:
+        played.tell(number)
+        return played.robot.mode is OpenMode.OFF
+
+    wait_until(is_given_back, DEADLINE, "it is given back", pause=IMPATIENT)
+    played.ends()
 
 
 def test_when_its_terminal_is_lost_it_gives_the_robot_back(played: Played) -> None:
