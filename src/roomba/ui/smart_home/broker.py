@@ -24,7 +24,7 @@ from paho.mqtt.subscribeoptions import SubscribeOptions
 from roomba.client.told_once import ToldOnce
 from roomba.errors import RoombaError
 from roomba.ui.smart_home.settings import MqttConfig, TlsConfig
-from roomba.ui.smart_home.topics import OFFLINE, MqttTopics
+from roomba.ui.smart_home.topics import OFFLINE, ONLINE, MqttTopics
 
 MOST_WAITING: Final = 20
 """Commands that wait; more are dropped, and counted."""
@@ -182,6 +182,11 @@ class Broker:
             self._tell(f"the broker refuses the robot: {reason}")
             return
         wanted = [(topic, SubscribeOptions(qos=1)) for topic in self._topics.heard]
+        # What others say of this robot from now on.
+        others = SubscribeOptions(
+            qos=1, noLocal=True, retainHandling=SubscribeOptions.RETAIN_DO_NOT_SEND
+        )
+        wanted.append((self._topics.available, others))
         self._client.subscribe(wanted)
         self._on_the_way.clear()
         self.hold_again()
@@ -198,6 +203,9 @@ class Broker:
     def _came(self, _: Any, __: Any, message: mqtt.MQTTMessage) -> None:
         """Queue what is short, and no command of before; too many wait at the broker."""
         self._wait_for_budget()
+        if message.topic == self._topics.available:
+            self._correct(message.payload)
+            return
         is_old = message.retain and message.topic != self._topics.birth
         if is_old or len(message.payload) > LONGEST_COMMAND:
             self.dropped += 1
@@ -208,6 +216,17 @@ class Broker:
             self.dropped += 1
             return
         self._wake()
+
+    def _correct(self, told: bytes | bytearray) -> None:
+        """Tell again that the robot is there, if its topic says otherwise meanwhile.
+
+        The broker publishes the last will of a connection that was cut when it notices that, which
+        can be long after the next one began. Another program with the robot's name may end, too.
+        """
+        topic = self._topics.available
+        with self._lock:
+            if told == OFFLINE.encode() and self._wanted.get(topic) == ONLINE.encode():
+                self._to_send[topic] = None
 
     def _wait_for_budget(self) -> None:
         now = time.monotonic()

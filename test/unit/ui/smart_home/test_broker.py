@@ -81,6 +81,32 @@ def test_commands_come_and_those_of_before_do_not(broker: Mosquitto, home: HomeS
     home.say(TOPICS.command, "", retain=True)
 
 
+def test_a_last_will_that_comes_late_is_corrected(broker: Mosquitto, home: HomeSide) -> None:
+    link = linked(broker.port, [])
+    link.hold(TOPICS.available, "online")
+    wait_until(lambda: home.text(TOPICS.available) == "online", 10.0)
+    before = home.count[TOPICS.available]
+    home.say(TOPICS.available, "offline", retain=True)
+    wait_until(lambda: home.count[TOPICS.available] == before + 2, 10.0, lambda: str(home.count))
+    assert home.text(TOPICS.available) == "online"
+    link.stop()
+    wait_until(lambda: home.text(TOPICS.available) == "offline", 10.0)
+
+
+def test_of_two_programs_with_one_name_the_one_that_stays_is_told(
+    broker: Mosquitto, home: HomeSide
+) -> None:
+    old, new = linked(broker.port, []), linked(broker.port, [])
+    for link in (old, new):
+        link.hold(TOPICS.available, "online")
+    wait_until(lambda: old.is_connected and new.is_connected, 10.0)
+    wait_until(lambda: home.text(TOPICS.available) == "online", 10.0)
+    old.stop()
+    wait_until(lambda: home.text(TOPICS.available) == "online", 10.0)
+    assert unchanged(lambda: home.text(TOPICS.available), 0.3)
+    new.stop()
+
+
 def test_password_and_tls(guarded: Mosquitto) -> None:
     told: list[str] = []
     secret = SecretStr(PASSWORD)
