@@ -29,6 +29,8 @@ from roomba.world.simulator import Simulator
 _SIDE_BRUSH, _VACUUM, _MAIN_BRUSH = 1, 2, 4
 """Bits of the command MOTORS."""
 _MOST_DUTY: Final = 127
+_MOST_BODY: Final = 255
+"""Bytes between a frame's length and its checksum."""
 _GREETING: Final = b"bl-start\r\nmade-up Create 2\r\n"
 """What it says when it begins anew; a real one tells its firmware."""
 _OBEYING: Final = frozenset({OpenMode.SAFE, OpenMode.FULL})
@@ -217,7 +219,7 @@ class Create2Robot:
         return b""
 
     def _stream(self, data: bytes) -> bytes:
-        self.streamed = bytes(packet for packet in data[1:] if is_known(packet))
+        self.streamed = _fitting(packet for packet in data[1:] if is_known(packet))
         self.is_streaming = bool(self.streamed)
         return b""
 
@@ -262,6 +264,17 @@ class Create2Robot:
         if Packet.ANGLE in asked:
             self._turn -= math.radians(told[Packet.ANGLE])
         return told
+
+
+def _fitting(numbers: Iterable[int]) -> bytes:
+    """Return the first packets, as many as a frame has room for: one byte tells its length."""
+    kept, size = bytearray(), 0
+    for number in numbers:
+        size += 1 + format_of(number).size
+        if size > _MOST_BODY:
+            break
+        kept.append(number)
+    return bytes(kept)
 
 
 def _packed(number: int, told: Mapping[int, int]) -> bytes:

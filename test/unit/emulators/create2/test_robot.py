@@ -108,6 +108,14 @@ def test_a_frame_of_the_stream_is_that_of_the_specification(robot: Create2Robot)
     assert ask(robot, Packet.STREAM_PACKETS) == 2
 
 
+def test_a_frame_is_as_long_as_its_length_can_tell(robot: Create2Robot) -> None:
+    say(robot, Opcode.START, Opcode.STREAM, 4, 100, 100, 100, 100)
+    frame = robot.frame()
+    assert frame[1] == len(frame) - 3 == 3 * (1 + 80)
+    assert sum(frame) % 256 == 0
+    assert ask(robot, Packet.STREAM_PACKETS) == 3
+
+
 def test_passive_mode_moves_nothing(robot: Create2Robot) -> None:
     say(robot, Opcode.START)
     drive(robot, 200, 200)
