@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import socket
-import sys
 from typing import Final
 
 from roomba.client.household import Household
@@ -95,8 +94,7 @@ def _tell(bound: socket.socket, guard: Guard, told: str) -> None:
     if others:
         print("\nFrom other machines of the network:\n")
         print("\n".join(f"    {other}" for other in others))
-    print("\nCtrl-C ends it.")
-    sys.stdout.flush()
+    print("\nCtrl-C ends it.", flush=True)
 
 
 def _host(text: str) -> str:

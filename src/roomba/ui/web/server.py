@@ -69,6 +69,8 @@ class PageServer:
                 app,
                 http=GuardedConnection,
                 ws=GuardedSocket,
+                # Its own set-up asks the standard output for its terminal, and that may be closed.
+                log_config=None,
                 # Not of each request that is none, nor of addresses with tokens in them.
                 log_level="error",
                 access_log=False,

@@ -124,6 +124,16 @@ def test_in_the_background_of_a_shell_it_hears_that_it_is_to_end(bound: socket.s
     expect_no_page()
 
 
+def test_it_serves_without_a_standard_output(
+    bound: socket.socket, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.stdout", None)  # as a shell closes it by >&-
+    ending = ToldToEnd()
+    threading.Timer(0.3, tell, [signal.SIGINT]).start()
+    serve(bound, ending)
+    expect_no_page()
+
+
 def test_a_server_that_breaks_is_told(
     bound: socket.socket, monkeypatch: pytest.MonkeyPatch
 ) -> None:

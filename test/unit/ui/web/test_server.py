@@ -66,3 +66,11 @@ def test_it_answers_at_its_address_until_it_is_stopped() -> None:
 def test_an_address_of_another_machine_is_refused() -> None:
     with pytest.raises(ServerError, match="an address of this machine, got 203"):
         listen("203.0.113.9", 0, is_fixed=True)
+
+
+def test_it_serves_without_a_standard_output(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdout", None)  # as a shell closes it by >&-
+    with listen("127.0.0.1", 0, is_fixed=True) as bound:
+        server = PageServer(FastAPI(), bound)
+        server.start()
+        server.stop()
