@@ -39,6 +39,8 @@ def fork(function: Callable[[], object]) -> int:
         os.setpgid(0, 0)
         for number in _ENDING:
             signal.signal(number, signal.default_int_handler)
+        if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
+            signal.signal(signal.SIGHUP, signal.SIG_DFL)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, _ENDING)
         function()
         status = 0

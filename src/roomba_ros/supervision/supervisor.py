@@ -52,7 +52,7 @@ class Supervisor:
         self._told: dict[str, str] = {}
         self._face: tuple[int, int] | None = None
         self._status: int | None = None
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in _told_by():
             signal.signal(number, lambda *_: self._end(0))
 
     @property
@@ -105,7 +105,7 @@ class Supervisor:
 
     def end_all(self) -> None:
         """End all processes: the last that was added first, the first one, the master, last."""
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in _told_by():
             signal.signal(number, signal.SIG_IGN)
         nodes, first = self._processes[1:], self._processes[:1]
         for processes in (nodes, first):
@@ -213,5 +213,14 @@ class Supervisor:
         return not process.watch.is_running
 
 
+def _told_by() -> tuple[signal.Signals, ...]:
+    """Return the signals that tell it to end; a lost terminal does not under ``nohup``."""
+    told = (signal.SIGINT, signal.SIGTERM)
+    is_kept = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    return told if is_kept else (*told, signal.SIGHUP)
+
+
 def _say(line: str) -> None:
-    print(f"[supervisor] {line}", file=sys.stderr, flush=True)
+    # A terminal that is lost takes no more lines, and ends nothing.
+    with contextlib.suppress(OSError):
+        print(f"[supervisor] {line}", file=sys.stderr, flush=True)

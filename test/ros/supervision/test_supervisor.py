@@ -138,7 +138,7 @@ def test_all_end_with_a_required_one_and_with_its_status(run: Run) -> None:
     assert not is_running(robot.pids("one")[0])
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_told_to_end_all_end_and_the_stubborn_are_killed(run: Run, number: signal.Signals) -> None:
     robot = run("supervisor.add('one', live)", "supervisor.add('two', stubborn)")
     pids = [robot.starts("one", 1), robot.starts("two", 1)]
@@ -149,6 +149,17 @@ def test_told_to_end_all_end_and_the_stubborn_are_killed(run: Run, number: signa
     assert "two has not ended yet: SIGKILL" in robot.program.output
     assert "one has not ended yet" not in robot.program.output
     assert not any(map(is_running, pids))
+
+
+def test_under_nohup_it_goes_on_when_its_terminal_is_lost(run: Run) -> None:
+    ignores = "(signal.signal(signal.SIGHUP, signal.SIG_IGN), Supervisor(SupervisionConfig()))[1]"
+    robot = run(f"supervisor = {ignores}", "supervisor.add('one', live)")
+    pid = robot.starts("one", 1)
+    robot.program.send_to_leader(signal.SIGHUP)
+    os.kill(pid, signal.SIGKILL)
+    robot.starts("one", 2)
+    robot.program.send_to_leader(signal.SIGTERM)
+    assert robot.program.ends(20.0) == 0
 
 
 def test_all_end_when_the_supervisor_is_killed(run: Run) -> None:
