@@ -96,15 +96,30 @@ def before_of(path: Path) -> Path:
 def write_kept(path: Path, content: bytes, version: int = 1, *, most: int = MOST_BYTES) -> None:
     """Write a file that the robot keeps, atomically.
 
-    The one from before is kept beside it, unless it is damaged. Raises OSError, and writes nothing,
-    when the disk refuses, and for more than the ``most`` bytes that are read again.
+    The one from before is kept beside it, unless it is damaged; what cannot be read, or is of a
+    newer program, is set aside. Raises OSError, and writes nothing, when the disk refuses, and for
+    more than the ``most`` bytes that are read again.
     """
     whole = sealed(content, version)
     if len(whole) > most:
         raise OSError(errno.EFBIG, f"expected at most {most} bytes, got {len(whole)}", str(path))
-    if _is_whole(path, most):
-        _link(path, before_of(path), path.name, most)
+    _keep_now(path, version, most)
     write_whole(path, whole)
+
+
+def _keep_now(path: Path, version: int, most: int) -> None:
+    """Let what is at a path now not be lost when another file takes its place."""
+    try:
+        content, seal = _parted(read_bytes(path, most))
+    except FileNotFoundError:
+        return
+    except OSError:
+        set_aside(path)
+        return
+    if seal is not None and int(seal.group(1)) > version:
+        set_aside(path)
+    elif _is_whole(content, seal, before_of(path)):
+        _link(path, before_of(path), path.name, most)
 
 
 def read_kept(
@@ -181,10 +196,16 @@ def _put_back(path: Path, most: int) -> str:
     """
     aside = aside_of(path)
     try:
-        _link(path, aside, path.name, most)
-        _link(before_of(path), path, path.name, most)
+        if path.is_file():
+            _link(path, aside, path.name, most)
+        else:
+            path.replace(aside)
     except OSError as cause:
         return f"it cannot be set aside: {cause}"
+    try:
+        _link(before_of(path), path, path.name, most)
+    except OSError as cause:
+        return f"{aside.name} is a copy of it, and it stays: {cause}"
     return f"it is set aside as {aside.name}"
 
 
@@ -207,14 +228,10 @@ def _place(content: bytes) -> int:
     return len(_PGM) if content.startswith(_PGM) else 0
 
 
-def _is_whole(path: Path, most: int) -> bool:
+def _is_whole(content: bytes, seal: re.Match[bytes] | None, before: Path) -> bool:
     """Whether a file is as it was sealed; one without a seal counts while there is none before."""
-    try:
-        content, seal = _parted(read_bytes(path, most))
-    except OSError:
-        return False
     if seal is None:
-        return bool(content) and not before_of(path).exists()
+        return bool(content) and not before.exists()
     return hashlib.sha256(content).hexdigest() == seal.group(2).decode()
 
 

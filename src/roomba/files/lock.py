@@ -25,7 +25,7 @@ def locked(path: Path, within: float) -> Iterator[None]:
     flags = os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW
     with open(os.open(path, flags, _MODE), "r+b") as lock:
         end = time.monotonic() + within
-        while not _is_taken(lock.fileno()):
+        while not _try_to_take(lock.fileno()):
             if time.monotonic() >= end:
                 raise TimeoutError(
                     f"expected {path.name} to be free within {within:g} s, another program holds "
@@ -35,7 +35,7 @@ def locked(path: Path, within: float) -> Iterator[None]:
         yield
 
 
-def _is_taken(lock: int) -> bool:
+def _try_to_take(lock: int) -> bool:
     """Take a lock; return whether it was free."""
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -22,7 +22,7 @@ class EndedErrands:
         self._is_first = True
 
     def news(self, view: RobotView | None) -> CleanReport | None:
-        """Return how the errand ended that did since what was taken; None if none did."""
+        """Return how the errand ended that has ended since the last ``take``; None if none has."""
         last = None if view is None else view.last
         return None if self._is_first or last is self._last else last
 

@@ -43,7 +43,7 @@ class MapMemory:
         self._kept = (-1, False)
         self._saved = self._saved_wall = -math.inf
         self._bytes = 0
-        self._taken_up = 0
+        self._taken_up = self._times_kept = 0
         self._since = time.monotonic()
 
     def start(self, maps: Path) -> None:
@@ -96,6 +96,7 @@ class MapMemory:
         self._kept = state.version, state.is_lost
         if wall - self._since >= self._config.goes_well:
             self._taken_up = 0
+        self._times_kept += 1
         kept = KeptMap(state, self._run, station, station_from_start, self._taken_up)
         self._background.do(
             "the map that is being made is not remembered",
@@ -122,17 +123,19 @@ class MapMemory:
 
     def keep_whole(self, stored: StoredMap) -> None:
         """Remember a whole map that has no name, soon, instead of the one that was being made."""
+        times_kept = self._times_kept
         self._background.do(
             "the map that was made is not remembered",
-            lambda: self._replace_by(stored),
+            lambda: self._replace_by(stored, times_kept),
             subject=_WHOLE,
         )
 
-    def _replace_by(self, stored: StoredMap) -> None:
+    def _replace_by(self, stored: StoredMap, times_kept: int) -> None:
         """If the disk refuses, the one that was being made is still there."""
         if self._run:
             self._whole.save(self._run, stored)
-        self.forget()
+        if times_kept == self._times_kept:  # no other map is being made by now
+            self.forget()
 
     def forget_whole(self) -> None:
         """Forget the whole map, soon: another one is begun, or it has a name by now."""

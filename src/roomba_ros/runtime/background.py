@@ -112,14 +112,21 @@ class Background:
         except OSError as error:
             self._refused(subject, work, error)
         except (RoombaError, ValueError, rospy.ROSException) as error:
+            self._given_up(subject)
             rospy.logwarn("%s: %s", work.name, error)
         except Exception:
             # A fault of the program, or no memory: the next work is done all the same.
+            self._given_up(subject)
             rospy.logerr("%s: %s", work.name, traceback.format_exc())
         finally:
             with self._news:
                 self._is_at_work = False
                 self._news.notify_all()
+
+    def _given_up(self, subject: str) -> None:
+        """Try no work of a subject again: neither this nor what was refused before it."""
+        with self._news:
+            self._failed.pop(subject, None)
 
     def _succeeded(self, subject: str) -> None:
         with self._news:

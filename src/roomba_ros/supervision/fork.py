@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import gc
 import os
@@ -9,7 +10,7 @@ import signal
 import sys
 import traceback
 from collections.abc import Callable
-from typing import Final
+from typing import Final, NoReturn
 
 _PR_SET_PDEATHSIG: Final = 1
 """Of prctl(2): the signal that a process gets when its parent ends."""
@@ -49,10 +50,25 @@ def fork(function: Callable[[], object]) -> int:
     except KeyboardInterrupt:
         pass
     except BaseException:
+        _tell_fault()
+    finally:
+        _leave(status)
+
+
+def _tell_fault() -> None:
+    # A terminal that is lost takes no more lines.
+    with contextlib.suppress(OSError):
         traceback.print_exc()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(status)
+
+
+def _leave(status: int) -> NoReturn:
+    """End this process, and never go on with what its parent does."""
+    try:
+        for stream in (sys.stdout, sys.stderr):
+            with contextlib.suppress(OSError, ValueError):
+                stream.flush()
+    finally:
+        os._exit(status)
 
 
 def end_with(parent: int, number: signal.Signals) -> None:

@@ -111,6 +111,24 @@ def test_what_is_forgotten_does_not_come_back_when_there_is_room(lines: list[str
     assert disk.kept == []
 
 
+@pytest.mark.parametrize("error", [MemoryError, ValueError])
+def test_work_that_was_refused_and_then_fails_is_given_up(
+    lines: list[str], error: type[Exception]
+) -> None:
+    tries = list[Exception]([FULL, error("no such thing")])
+
+    def work() -> None:
+        raise tries.pop(0)
+
+    background = Background()
+    background.start()
+    background.do("no map is kept", work)
+    wait_until(lambda: not tries, 10.0, "it is tried again")
+    wait_until(lambda: background.trouble == "", 10.0, "it is given up")
+    assert background.wait(10.0)
+    assert len(lines) == 2
+
+
 @pytest.mark.parametrize("error", [MemoryError, ZeroDivisionError])
 def test_a_fault_of_the_program_is_told_and_ends_no_other_work(
     lines: list[str], error: type[Exception]

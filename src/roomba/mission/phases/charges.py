@@ -16,5 +16,5 @@ def when_low(job: Job, drives: Drives, senses: Senses) -> PhaseStep | None:
     """
     if not job.ledger.must_go_home(senses, drives.distance_home):
         return None
-    is_over = job.is_charged_in_vain(drives.context.occupancy.free_area)
+    is_over = job.note_charge(drives.context.occupancy.free_area)
     return PhaseStep(event=Event.FINISHED if is_over else Event.LOW)

@@ -20,7 +20,7 @@ class ChargeGains:
         self._reached: tuple[float, ...] = ()
         self._in_vain = 0
 
-    def is_in_vain(self, *reached: float) -> bool:
+    def note_charge(self, *reached: float) -> bool:
         """Note what is reached when it goes home to charge, m2, each more where there was progress.
 
         Return whether some charges brought nothing.
@@ -89,8 +89,9 @@ class EnergyLedger:
         return senses.battery.energy <= self._ample(senses.battery)
 
     def _ample(self, battery: Battery) -> float:
-        """Return with more than which energy, Wh, no way home is too far."""
-        longest = self._config.margin * self._config.per_metre * self.longest_way_home
+        """Return an energy, Wh, that is enough for any way home, by what a metre takes so far."""
+        per_metre = max(self._config.per_metre, self.per_metre)
+        longest = self._config.margin * per_metre * self.longest_way_home
         reserve = self._config.reserve * battery.capacity
         return reserve + max(self._config.ample * battery.capacity, longest)
 

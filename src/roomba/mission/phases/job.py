@@ -148,13 +148,13 @@ class Job:
         if self.bin.look(senses.in_bin, cell, self.dirt.usual) and self.cleaning is not None:
             self.cleaning.ledger.coverage.take_back(self.bin.swept_in_vain())
 
-    def is_charged_in_vain(self, known: float) -> bool:
+    def note_charge(self, known: float) -> bool:
         """Note that it goes home to charge, with ``known`` m2 of floor on the map; return whether
         charges take it no further: what is left is too far from the station.
         """
         done = 0.0 if self.cleaning is None else self.cleaning.ledger.clean_area
         left = 0.0 if self.cleaning is None else self.cleaning.ledger.left
-        self._is_too_far = self._gains.is_in_vain(done, -left, known)
+        self._is_too_far = self._gains.note_charge(done, -left, known)
         return self._is_too_far
 
     def needed_energy(self, tool_width: float) -> float:

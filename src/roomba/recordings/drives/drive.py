@@ -29,7 +29,7 @@ from roomba.recordings.readings import (
     Refused,
     Value,
 )
-from roomba.recordings.times.clock_rate import growth_of, unit_of
+from roomba.recordings.times.clock_rate import drift_of, unit_of
 from roomba.recordings.times.stamps import (
     StampCounts,
     delay_of,
@@ -278,18 +278,18 @@ class LoggedDrive:
         self, channels: Sequence[Channel], own: Ints64, stamps: Floats, arrivals: Floats
     ) -> None:
         """Let stamps, in place, go on as those of the odometry, by a clock that is fast or slow."""
-        growths = [growth_of(stamps[own == at], arrivals[own == at]) for at in range(len(channels))]
-        reference = self._reference(channels, growths)
+        drifts = [drift_of(stamps[own == at], arrivals[own == at]) for at in range(len(channels))]
+        reference = self._reference(channels, drifts)
         spent = float(np.ptp(arrivals)) if len(arrivals) else 0.0
-        for at, (channel, growth) in enumerate(zip(channels, growths, strict=True)):
-            more = growth - reference
-            if abs(more) < _DRIFTED:
+        for at, (channel, drift) in enumerate(zip(channels, drifts, strict=True)):
+            more = drift - reference
+            if abs(more) * spent < _DRIFTED:
                 continue
             mask = own == at
-            stamps[mask] += more * (arrivals[mask] - arrivals.min()) / spent
+            stamps[mask] += more * (arrivals[mask] - arrivals.min())
             self._remarks.append(
                 f"the clock of {channel.name} is {'slow' if more > 0.0 else 'fast'} beside that of "
-                f"the odometry, by {abs(more):.1f} s in {spent:.0f} s: its times are evened out"
+                f"the odometry, by {100.0 * abs(more):.2g} %: its times are evened out"
             )
 
     def _not_told_apart(

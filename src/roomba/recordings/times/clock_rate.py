@@ -41,18 +41,18 @@ def unit_of(stamps: Floats, arrivals: Floats) -> tuple[float, str]:
     return 1.0, "s"
 
 
-def growth_of(stamps: Floats, arrivals: Floats) -> float:
-    """Return by how much the delay of a channel's messages grows evenly, s; 0 if it does not.
+def drift_of(stamps: Floats, arrivals: Floats) -> float:
+    """Return by how much the delay of a channel's messages grows evenly, s in a second; else 0.
 
     ``stamps`` and ``arrivals`` are [n], s, in the order of recording.
     """
     ends = _ends(stamps, arrivals)
     if ends is None or delay_of(stamps, arrivals) is None:
         return 0.0
-    delays, spent = ends[1] - ends[0], ends[1][2] - ends[1][0]
+    delays, spent = ends[1] - ends[0], float(ends[1][2] - ends[1][0])
     grown = float(delays[2] - delays[0])
     is_even = abs(float(delays[1] - 0.5 * (delays[0] + delays[2]))) < _EVEN * abs(grown)
-    return grown if is_even and abs(grown) < _FASTEST * spent else 0.0
+    return grown / spent if is_even and abs(grown) < _FASTEST * spent else 0.0
 
 
 def _ends(stamps: Floats, arrivals: Floats) -> tuple[Floats, Floats] | None:

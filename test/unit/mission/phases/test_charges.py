@@ -15,9 +15,9 @@ def asked(*, is_low: bool, is_in_vain: bool = False) -> Event | None:
     """What comes of it."""
     job: Any = Mock()
     job.ledger.must_go_home.return_value = is_low
-    job.is_charged_in_vain.return_value = is_in_vain
+    job.note_charge.return_value = is_in_vain
     step = when_low(job, Mock(), Mock())
-    assert job.is_charged_in_vain.called == is_low
+    assert job.note_charge.called == is_low
     return None if step is None else step.event
 
 

@@ -123,12 +123,12 @@ def test_where_the_way_home_may_be_long_it_looks_earlier() -> None:
 
 def test_charges_are_in_vain_when_two_in_a_row_bring_nothing() -> None:
     gains = ChargeGains(CONFIG)
-    assert [gains.is_in_vain(area) for area in (0.0, 2.0, 2.0, 2.5, 2.51, 2.52, 2.53)] == [
+    assert [gains.note_charge(area) for area in (0.0, 2.0, 2.0, 2.5, 2.51, 2.52, 2.53)] == [
         False, False, False, False, False, True, True,
     ]  # fmt: skip
     # What grows in any way is progress.
     both = ChargeGains(CONFIG)
-    assert not any(both.is_in_vain(3.0, 0.1 * charge) for charge in range(9))
+    assert not any(both.note_charge(3.0, 0.1 * charge) for charge in range(9))
 
 
 def test_it_looks_every_few_seconds_whatever_the_clock_does() -> None:
