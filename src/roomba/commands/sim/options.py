@@ -91,7 +91,7 @@ def options_of(arguments: list[str] | None) -> SimOptions:
 
 
 def repeating(words: list[str]) -> str:
-    """Return the command that repeats one of many runs, asked for by ``words``, but for its seed."""
+    """Return the command that repeats one of many runs, of these ``words``, but for its seed."""
     of_many = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     for option in ("--homes", "--seed"):
         of_many.add_argument(option)
