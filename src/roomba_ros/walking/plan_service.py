@@ -79,7 +79,7 @@ class PlanService:
         if self._planner is None:
             raise RoombaError("the robot does not know its map yet; wait for it")
         with self.lock:
-            return Walk(self._planner, self._config.walk, self._obstacles, goal, senses)
+            return Walk(self._planner, self._config, self._obstacles, goal, senses)
 
     def require_allowed(self, x: float, y: float) -> None:
         """Raise RoombaError for a place, m, to which the limits do not let the robot go."""

@@ -124,10 +124,9 @@ class PathDriver:
 
     @property
     def patience(self) -> float:
-        """How long it may come no farther, s: on the spot it may have to turn by a half turn."""
-        body, tracking = self._robot.body, self._robot.tracking
-        half_turn = math.pi / min(tracking.turning_speed, body.max_angular_speed)
-        return max(self._config.progress_timeout, 2.0 * half_turn)
+        """How long it may come no farther, s."""
+        timeout, tracking = self._config.progress_timeout, self._robot.tracking
+        return self._robot.body.patience(timeout, tracking.turning_speed)
 
     @property
     def points_left(self) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ from enum import Enum
 import numpy as np
 
 from roomba.clock import LONGEST_TICK, ClockJumps
-from roomba.configuration.loops import WalkConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.way_ahead import LEAVING, WayAhead
 from roomba.mission.inputs.senses import Senses
@@ -59,14 +59,16 @@ class Walk:
     def __init__(
         self,
         planner: PathPlanner,
-        config: WalkConfig,
+        robot: RobotConfig,
         obstacles: Obstacles,
         goal: Point,
         senses: Senses,
     ) -> None:
         """Plan the way; raises NoPathError when there is none, ValueError for a goal not finite."""
         self.goal = goal
-        self._planner, self._config, self._obstacles = planner, config, obstacles
+        self._planner, self._config, self._obstacles = planner, robot.walk, obstacles
+        timeout, turning_speed = robot.walk.progress_timeout, robot.control.turning_speed
+        self._patience = robot.body.patience(timeout, turning_speed)
         self._started = senses.now
         self._jumps = ClockJumps(last=senses.now, longest=LONGEST_TICK)
         self._replans = self._ways_around = 0
@@ -163,7 +165,7 @@ class Walk:
         if is_nearer or self._blocked_since is not None:
             self._least_left = min(self._least_left, self._follower.left)
             self._progressed = senses.now
-        if senses.now - self._progressed > self._config.progress_timeout:
+        if senses.now - self._progressed > self._patience:
             return f"the robot comes no nearer {where}"
         return ""
 

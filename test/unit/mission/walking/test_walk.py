@@ -136,13 +136,13 @@ def test_a_goal_beside_the_stairs_is_reached_without_a_wheel_over_the_edge() -> 
     assert record.poses[:, 1].max() < 6.5
 
 
-def stuck_walk() -> tuple[Walk, Senses]:
+def stuck_walk(robot: RobotConfig = CONFIG) -> tuple[Walk, Senses]:
     home = room_home()
     planner = PathPlanner(home.map, CONFIG.body.radius, 0.04, 0.01)
     senses = Senses(100.0, Pose(1.0, 1.0, 0.0))
     things = ThingLayer(SurfaceField.of(home.map))
     obstacles = Obstacles(things, CONFIG.walk, CONFIG.body, MissionConfig().driving)
-    return Walk(planner, CONFIG.walk, obstacles, (4.0, 3.0), senses), senses
+    return Walk(planner, robot, obstacles, (4.0, 3.0), senses), senses
 
 
 def test_where_it_stands_it_has_arrived_though_no_way_leads_there() -> None:
@@ -154,10 +154,10 @@ def test_where_it_stands_it_has_arrived_though_no_way_leads_there() -> None:
     goal = (beside.pose.x + 0.01, beside.pose.y)
     with pytest.raises(NoPathError):
         planner.plan((0.5, 1.0), goal)
-    walk = Walk(planner, CONFIG.walk, obstacles, goal, beside)
+    walk = Walk(planner, CONFIG, obstacles, goal, beside)
     assert walk.tick(beside, 0.5).state is WalkState.ARRIVED
     with pytest.raises(NoPathError):
-        Walk(planner, CONFIG.walk, obstacles, (goal[0] + 0.1, goal[1]), beside)
+        Walk(planner, CONFIG, obstacles, (goal[0] + 0.1, goal[1]), beside)
 
 
 def test_a_robot_that_does_not_move_gives_up_with_the_reason() -> None:
@@ -170,6 +170,21 @@ def test_a_robot_that_does_not_move_gives_up_with_the_reason() -> None:
     assert "comes no nearer" in step.reason
     expected = CONFIG.walk.progress_timeout * (CONFIG.walk.max_replans + 1)
     assert walk.time_spent(100.0 + 0.05 * tick) == pytest.approx(expected, abs=2.0)
+
+
+@pytest.mark.parametrize("limit", ["body", "control"])
+def test_one_that_turns_slowly_keeps_its_path_while_it_turns(limit: str) -> None:
+    """Its half turn on the spot takes some 16 s, more than twice what is no progress."""
+    slow = {"max_angular_speed" if limit == "body" else "turning_speed": 0.2}
+    walk, senses = stuck_walk(RobotConfig.model_validate({limit: slow}))
+    path, half_turn = walk.path, math.pi / 0.2
+    for time in np.arange(0.05, half_turn, 0.05):
+        turned = replace(senses.pose, theta=0.2 * time)
+        walk.tick(Senses(100.0 + time, turned), 0.5)
+        assert walk.path is path
+    for time in np.arange(half_turn, 2.0 * half_turn + 0.2, 0.05):
+        walk.tick(Senses(100.0 + time, turned), 0.5)
+    assert walk.path is not path, "it is held"
 
 
 def test_a_robot_that_was_carried_away_plans_anew() -> None:
@@ -218,7 +233,7 @@ def test_a_walk_waits_for_its_place_to_be_found_but_not_for_ever() -> None:
     robot = furnished()
     at = Pose(0.5, 0.5, 0.0)
     senses = Senses(0.0, at)
-    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (4.5, 3.5), senses)
+    walk = Walk(planner_of(robot), CONFIG, robot.mission.obstacles, (4.5, 3.5), senses)
     astray = replace(senses, knowledge=Knowledge.SEARCHING, trouble="it was carried")
     steps = [walk.tick(replace(astray, now=0.05 * tick), 0.5) for tick in range(1, 1400)]
     assert steps[0].state is WalkState.ASTRAY
@@ -230,7 +245,7 @@ def test_a_walk_waits_for_its_place_to_be_found_but_not_for_ever() -> None:
 def test_a_walk_goes_on_from_where_the_robot_was_found() -> None:
     robot = furnished()
     senses = Senses(0.0, Pose(0.5, 0.5))
-    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (4.5, 3.5), senses)
+    walk = Walk(planner_of(robot), CONFIG, robot.mission.obstacles, (4.5, 3.5), senses)
     walk.tick(replace(senses, now=0.05, knowledge=Knowledge.SEARCHING), 0.5)
     found = replace(senses, now=0.1, pose=Pose(4.5, 0.5, 0.0))
     assert walk.tick(found, 0.5).state is WalkState.WALKING
@@ -240,14 +255,14 @@ def test_a_walk_goes_on_from_where_the_robot_was_found() -> None:
 def test_a_robot_that_knows_its_place_but_roughly_walks_slowly() -> None:
     robot = furnished()
     senses = Senses(0.0, Pose(0.5, 0.5), knowledge=Knowledge.ROUGH)
-    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (0.5, 3.5), senses)
+    walk = Walk(planner_of(robot), CONFIG, robot.mission.obstacles, (0.5, 3.5), senses)
     assert walk.tick(replace(senses, now=0.05), 0.5).cruise_speed <= CONFIG.walk.careful_speed
 
 
 def test_a_lost_robot_gives_its_walk_up() -> None:
     robot = furnished()
     senses = Senses(0.0, Pose(0.5, 0.5))
-    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (0.5, 3.5), senses)
+    walk = Walk(planner_of(robot), CONFIG, robot.mission.obstacles, (0.5, 3.5), senses)
     lost = replace(senses, now=0.05, knowledge=Knowledge.LOST, trouble="several places fit")
     step = walk.tick(lost, 0.5)
     assert step.state is WalkState.FAILED
