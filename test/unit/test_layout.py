@@ -114,7 +114,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/errors": ("unit/world/test_simulator.py", VALUES),
     "roomba/drivers/create2/body": ("realtime/test_create2_body.py", "in real time"),
     "roomba/drivers/driver": ("system/owned/test_line_faults.py", "an interface"),
-    "roomba/drivers/line_body": ("system/owned/test_line_faults.py", "in real time"),
     "roomba/drivers/reopened_line": (
         "system/owned/test_line_faults.py",
         "unplugged, plugged in",

@@ -7,8 +7,10 @@ fault of the driver: the thread lives as long as the body.
 
 from __future__ import annotations
 
+import logging
 import threading
 import time
+import traceback
 from typing import Final, Protocol
 
 from roomba.drivers.body_clock import BodyClock
@@ -18,8 +20,9 @@ from roomba.errors import RoombaError
 from roomba.robot.command import Command
 from roomba.robot.readings import Readings, ScanReading
 
+_LOG: Final = logging.getLogger(__name__)
 _AGAIN: Final = 0.5
-"""s of wall time between two attempts to open a line that is gone."""
+"""s of wall time between two attempts to open a line that is gone, and after a fault."""
 _FIRST_SCAN: Final = 15.0
 """s of wall time; a lidar needs some to come up to its speed."""
 _LOOK: Final = 0.05
@@ -62,6 +65,8 @@ class LineBody:
         self._is_over = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="robot's line", daemon=True)
         self._due = 0.0
+        self._faults: set[str] = set()
+        """The kinds and places of those that are in the log already."""
 
     def start(self, first_scan: float = _FIRST_SCAN, *, has_lidar: bool = True) -> None:
         """Take the robot over, and return when its lidar told a scan, if it has one.
@@ -133,25 +138,37 @@ class LineBody:
             try:
                 self._driver.serve()
             except Exception as error:
-                self._take_over_again(_as_line_error(error))
+                self._take_over_again(error)
 
-    def _take_over_again(self, error: LineError) -> None:
+    def _take_over_again(self, error: Exception) -> None:
         """Try until the robot answers again, or all ends; meanwhile its clock stands."""
         self._clock.stand()
+        self._note(error)
+        # A line that is only garbled is whole again at once; a fault may come each time.
+        pause = 0.0 if isinstance(error, LineError) else _AGAIN
         is_open = True
-        while not self._is_over.is_set():
-            self._trouble = _told(error)
+        while not self._is_over.wait(pause):
             try:
                 if not is_open:
                     self._line.reopen()
                 self._driver.begin()
             except Exception as newer:
-                error, is_open = _as_line_error(newer), False
-                self._is_over.wait(_AGAIN)
+                self._note(newer)
+                is_open, pause = False, _AGAIN
                 continue
             self._clock.go_on()
             self._trouble = ""
             return
+
+    def _note(self, error: Exception) -> None:
+        """Tell why the robot cannot be reached; the log gets each fault with its place, once."""
+        self._trouble = _told(_as_line_error(error))
+        if isinstance(error, LineError):
+            return
+        fault = "".join([type(error).__name__, *traceback.format_tb(error.__traceback__)])
+        if fault not in self._faults:
+            self._faults.add(fault)
+            _LOG.error("A fault of the robot's driver", exc_info=error)
 
 
 def _as_line_error(error: Exception) -> LineError:

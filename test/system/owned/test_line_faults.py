@@ -12,12 +12,10 @@ from fixtures.robots.faulty_end import FaultyEnd
 from fixtures.robots.neato_rig import NeatoEnd, neato_world
 from fixtures.waiting import wait_until
 
-from roomba.drivers.body_clock import BodyClock
 from roomba.drivers.line_body import LineBody, NoScanError
 from roomba.drivers.robots.table import ROBOTS
 from roomba.geometry import Twist
 from roomba.robot.command import Command
-from roomba.robot.readings import Readings, ScanReading
 
 PROMISE = 0.5
 """s; so long after the last command that it heard the robot stands."""
@@ -131,58 +129,3 @@ def test_a_lidar_that_does_not_turn_is_told(neato: NeatoEnd, tmp_path: Path) -> 
     with pytest.raises(NoScanError, match="expected a scan of the lidar"):
         body.start(first_scan=0.0)
     assert not neato.robot.is_testing
-
-
-class FaultyDriver:
-    """A driver with a fault: its methods on the line raise these, the first one first."""
-
-    def __init__(self, served: list[Exception], begun: list[Exception]) -> None:
-        self.served, self.begun = served, begun
-        self.begins = 0
-
-    def read(self) -> Readings:
-        raise NotImplementedError
-
-    def newest_scan(self) -> ScanReading | None:
-        return None
-
-    def act(self, command: Command) -> None:
-        """Do nothing."""
-
-    def locate(self) -> None:
-        """Do nothing."""
-
-    def begin(self) -> None:
-        self.begins += 1
-        if self.begins > 1 and self.begun:
-            raise self.begun.pop(0)
-
-    def serve(self) -> None:
-        time.sleep(0.001)
-        if self.served:
-            raise self.served.pop(0)
-
-    def end(self) -> None:
-        """Do nothing."""
-
-
-class UntouchedLine:
-    """A line that is always there."""
-
-    def reopen(self) -> None:
-        """Do nothing."""
-
-    def close(self) -> None:
-        """Do nothing."""
-
-
-def test_a_fault_of_the_driver_is_told_and_the_robot_taken_over_anew() -> None:
-    driver = FaultyDriver([OverflowError("too large")], [KeyError("LSIDEBIT")] * 2)
-    body = LineBody(driver, UntouchedLine(), BodyClock(time.monotonic), 0.01)
-    body.start(has_lidar=False)
-    wait_until(lambda: "OverflowError: too large. Please report" in body.trouble, 5.0, "it is told")
-    wait_until(lambda: "KeyError: 'LSIDEBIT'. Please report" in body.trouble, 5.0, "the next one")
-    wait_until(lambda: driver.begins == 4 and not body.trouble, 5.0, "it goes on by itself")
-    driver.served.append(ZeroDivisionError("division by zero"))
-    wait_until(lambda: driver.begins == 5 and not body.trouble, 5.0, "and so it does again")
-    body.stop()
