@@ -36,6 +36,9 @@ Length = Annotated[float, Field(ge=1e-9, le=10_000.0)]
 """m; of ways, ranges and tolerances."""
 Clearance = Annotated[float, Field(ge=1e-4, le=1.0)]
 """m; between the body and what stands: a home has no more room."""
+ShortWay = Annotated[float, Field(ge=1e-4, le=1.0)]
+"""m of a path, around one place of it: a longer one reaches across a room, so that what stands
+anywhere in it is in the way, and bends are no more where they were planned."""
 Side = Annotated[float, Field(ge=0.01, le=2.0)]
 """m; of the robot and its parts."""
 Cell = Annotated[float, Field(ge=0.01, le=0.5)]

@@ -17,6 +17,7 @@ from roomba.configuration.frozen import (
     NotNegative,
     Patience,
     Positive,
+    ShortWay,
     TurningSpeed,
     Wait,
 )
@@ -126,7 +127,7 @@ class TrackingConfig(Frozen):
     """rad/s2; by which it falls, in bends."""
     slowest_corner: Speed = 0.08
     """m/s; in the tightest bends."""
-    longest_blend: Clearance = 0.05
+    longest_blend: ShortWay = 0.05
     """m; each point of the curve is a mean over at most this way to each side."""
     aimed: Angle = 0.02
     """rad; what is left of a turn on the spot as it begins to drive."""

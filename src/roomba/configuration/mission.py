@@ -21,6 +21,7 @@ from roomba.configuration.frozen import (
     Patience,
     Positive,
     Ratio,
+    ShortWay,
     TurningSpeed,
     Wait,
     WaitOrNone,
@@ -107,7 +108,7 @@ class DrivingConfig(Frozen):
     speed: Speed = 0.30
     clearance: Clearance = 0.005
     way_clearance: Clearance = 0.04
-    look_ahead: Clearance = 0.15
+    look_ahead: ShortWay = 0.15
     thing_clearance: Clearance = 0.004
     off_path: Length = 0.12
     backing_way: Length = 0.08
