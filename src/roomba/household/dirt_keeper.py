@@ -19,22 +19,23 @@ class DirtKeeper:
         self._kept, self._config = kept, config
         self._records = self._written = kept.read(DirtRecords())
 
-    def note(self, report: CleanReport, at: dt.datetime) -> bool:
-        """Learn from a clean that ended; return whether it told anything. Raises OSError."""
-        return self.keep(learned(self._records, report.rooms, at, self._config))
+    def note(self, report: CleanReport | None, at: dt.datetime) -> None:
+        """Learn from a clean if one ended, and keep what is not kept yet; raises OSError."""
+        records = self._records
+        if report is not None:
+            records = learned(records, report.rooms, at, self._config)
+        self.keep(records)
 
     def renamed(self, names: Mapping[str, str], rooms: Collection[str]) -> DirtRecords:
         """Return what was learned with other names of ``rooms``, by the old ones."""
         return self._records.with_room_names(names, rooms)
 
-    def keep(self, records: DirtRecords) -> bool:
-        """Go on with records; return whether they are others than before. Raises OSError."""
-        is_news = records != self._records
+    def keep(self, records: DirtRecords) -> None:
+        """Go on with records; raises OSError, and goes on with them all the same."""
         self._records = records
         if records != self._written:
             self._kept.write(records)
             self._written = records
-        return is_news
 
     def needs(self, rooms: Sequence[str], now: dt.datetime, period: float) -> tuple[RoomNeed, ...]:
         """Return what rooms need now, if the next time is ``period`` days later."""

@@ -71,15 +71,15 @@ class PlanKeeper:
         return quiet_until(household.quiet, household.clock, self._now()) is not None
 
     def look(self, view: RobotView | None) -> None:
-        """Take a step; ``view`` is None while the robot does not answer. Raises OSError."""
+        """Take a step; ``view`` is None while the robot does not answer. Raises OSError.
+
+        What goes wrong with the rooms' names or their dirt does not hold up the plans.
+        """
         with self._lock:
             try:
                 self._rooms.follow()
-            except OSError:
-                # What the disk refused of the rooms' names does not hold up the plans.
-                self._step(view)
-                raise
-            self._step(view)
+            finally:
+                self._learn_and_step(view)
 
     def follow_rooms(self) -> None:
         """Let plans, presets and what is learned go by the rooms' names as they are now.
@@ -89,22 +89,23 @@ class PlanKeeper:
         with self._lock:
             self._rooms.follow()
 
-    def _step(self, view: RobotView | None) -> None:
+    def _learn_and_step(self, view: RobotView | None) -> None:
+        """Learn of the rooms' dirt, which plans may go by, before a step; raises OSError."""
+        now, ended = self._now(), self._ended.news(view)
+        try:
+            self._dirt.note(ended, now)
+        finally:
+            self._step(view, ended, now)
+
+    def _step(self, view: RobotView | None, ended: CleanReport | None, now: dt.datetime) -> None:
         """Let the scheduler take a step, and the robot what it wants; raises OSError."""
-        now = self._now()
         scheduler = Scheduler(self._household, self._config)
-        ended = self._ended.news(view)
-        has_learned = self._learn(ended, now)
-        self._ended.take(view)
         situation = situation_of(view, ended, self._config.least_battery)
         self._memory, act = scheduler.step(self._memory, now, situation)
         if act is not None:
             self._memory = self._carried_out(scheduler, act, now)
-        self._keep_memory(is_changed=has_learned)
-
-    def _learn(self, ended: CleanReport | None, now: dt.datetime) -> bool:
-        """Learn of the rooms' dirt from a clean that ended; raises OSError."""
-        return ended is not None and self._dirt.note(ended, now)
+        # What ended may have told of dirt.
+        self._keep_memory(is_changed=ended is not None)
 
     @contextlib.contextmanager
     def _by_other_names(self, change: Change, why: str) -> Iterator[None]:

@@ -22,14 +22,12 @@ class EndedErrands:
         self._is_first = True
 
     def news(self, view: RobotView | None) -> CleanReport | None:
-        """Return how the errand ended that has ended since the last ``take``; None if none has."""
-        last = None if view is None else view.last
-        return None if self._is_first or last is self._last else last
-
-    def take(self, view: RobotView | None) -> None:
-        """Let what ended up to this look be no news any more."""
-        if view is not None:
-            self._last, self._is_first = view.last, False
+        """Return how the errand ended that did since the look before; None if none did."""
+        if view is None:
+            return None
+        is_news = not self._is_first and view.last is not self._last
+        self._last, self._is_first = view.last, False
+        return view.last if is_news else None
 
 
 def situation_of(

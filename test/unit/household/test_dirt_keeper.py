@@ -159,6 +159,41 @@ def test_names_that_changed_places_are_followed_once_whatever_the_disk_refuses(
     assert (after["den"], after["kitchen"]) == (before["kitchen"], before["den"])
 
 
+def test_plans_go_on_while_the_disk_refuses_what_is_learned(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    living = Living(tmp_path)
+    living.day(kitchen=5000.0, den=5000.0)
+    write = KeptValues.write
+
+    def refuse(kept: KeptValues, values: Frozen) -> None:
+        if kept._path.name == "dirt.json":
+            raise OSError("No space left on device")
+        write(kept, values)
+
+    before = (tmp_path / "dirt.json").read_bytes()
+    with monkeypatch.context() as full:
+        full.setattr(KeptValues, "write", refuse)
+        living.now = living.now.replace(hour=9, minute=1)
+        living.keeper.look(DOCKED)
+        living.keeper.look(VIEW)
+        living.now += dt.timedelta(hours=1)
+        report = CleanReport(ErrandOutcome.COMPLETED, "", 8.0, 8.0, 1.0, 30.0, 60.0, 1.0)
+        found = replace(report, rooms=(RoomDirt("kitchen", 1.0, 1000.0),))
+        last = replace(DOCKED, last=found)
+        for _ in range(2):
+            with pytest.raises(OSError, match="No space left"):
+                living.keeper.look(last)
+        assert living.keeper.view().running == ""
+        living.now += dt.timedelta(days=1)
+        with pytest.raises(OSError, match="No space left"):
+            living.keeper.look(last)
+        assert living.keeper.view().running == "daily"
+    assert (tmp_path / "dirt.json").read_bytes() == before
+    living.keeper.look(last)
+    assert rates(tmp_path)["kitchen"] > 0.0
+
+
 def rates(folder: Path) -> dict[str, float]:
     """Return how fast rooms become dirty, as it was kept."""
     records = KeptValues(folder / "dirt.json", print).read(DirtRecords())

@@ -159,6 +159,26 @@ def test_what_was_missed_meanwhile_is_tried_when_it_runs_again(living: Living) -
     assert living.keeper.view().notes[0].text.startswith("missed")
 
 
+@pytest.mark.parametrize("fault", [OSError("not kept"), ZeroDivisionError("a fault")])
+def test_plans_go_on_if_nothing_can_be_learned_of_dirt(
+    living: Living, monkeypatch: pytest.MonkeyPatch, fault: Exception
+) -> None:
+    def fail(*_: object) -> None:
+        raise fault
+
+    living.look(DOCKED, 60)
+    living.look(VIEW, 1)
+    monkeypatch.setattr("roomba.household.dirt_keeper.learned", fail)
+    last = ended(ErrandOutcome.COMPLETED)
+    with pytest.raises(type(fault)):
+        living.look(last, 20)
+    assert (living.keeper.view().running, living.last_note()) == ("", "done: 5.0 of 6.0 m²")
+    # What ended is no news any more.
+    living.look(last, 23 * 60)
+    living.look(last, 60)
+    assert [name for name, _ in living.robot.told] == ["clean"] * 2
+
+
 def test_a_robot_that_does_not_obey_is_told_of(living: Living) -> None:
     living.look(DOCKED, 60)
     living.keeper.change(lambda all_: all_.model_copy(update={"is_person_home": True}))

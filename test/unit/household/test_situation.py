@@ -40,17 +40,15 @@ def test_how_an_errand_ended_is_told_with_what_is_known(
     assert (situation.ended, situation.message) == (end, message)
 
 
-def test_an_end_is_news_until_it_is_taken_and_that_of_another_program_never() -> None:
+def test_an_end_is_news_once_and_that_of_another_program_never() -> None:
     errands, other = EndedErrands(), replace(DOCKED, last=REPORT)
+    assert errands.news(None) is None
     assert errands.news(other) is None
-    errands.take(other)
-    errands.take(None)
+    assert errands.news(None) is None
     assert errands.news(other) is None
     ended = replace(DOCKED, last=UNTOLD)
     assert errands.news(None) is None
     assert errands.news(ended) is UNTOLD
-    assert errands.news(ended) is UNTOLD
-    errands.take(ended)
     assert errands.news(ended) is None
 
 
