@@ -185,11 +185,13 @@ class Scheduler:
             memory, running = self._left_to_people(memory, running, now)
         if situation.ended is not None:
             return self._finish(memory, running, now, situation), None
-        if situation.is_working or situation.is_paused or situation.is_held:
-            if running.unanswered:
-                memory = self._noting_begin(memory, running)
-            works = running.model_copy(update={"rests_since": None, "unanswered": ""})
-            return self._hold(_running(memory, works), works, now, situation)
+        is_under_way = situation.is_working or situation.is_paused
+        if is_under_way and running.unanswered:
+            memory = self._noting_begin(memory, running)
+            running = running.model_copy(update={"unanswered": ""})
+        if is_under_way or situation.is_held:
+            lasts = running.model_copy(update={"rests_since": None})
+            return self._hold(_running(memory, lasts), lasts, now, situation)
         since = running.rests_since or now
         if now - since >= _ENDED_WITHOUT_WORD:
             why = running.unanswered or "the robot was switched off meanwhile"

@@ -140,6 +140,34 @@ def test_one_that_did_not_begin_is_tried_again_and_why_is_told(living: Living) -
     assert len(heard) == 2
 
 
+def test_the_emergency_stop_does_not_tell_that_a_clean_without_an_answer_began(
+    living: Living,
+) -> None:
+    heard = silent(living)
+    living.look(DOCKED, 60)
+    living.look(replace(DOCKED, held="a cat"), 0.5)
+    living.look(DOCKED, 0.1)
+    living.look(DOCKED, 1)
+    texts = [note.text for note in living.keeper.view().notes]
+    assert texts == ["left to you: the emergency stop was pressed", f"ended: {SILENCE}"]
+    living.look(DOCKED, 60)
+    assert len(heard) == 1
+
+
+def test_one_that_is_seen_to_work_before_the_emergency_stop_began(living: Living) -> None:
+    silent(living)
+    living.look(DOCKED, 60)
+    living.look(VIEW, 0.1)
+    living.look(replace(DOCKED, held="a cat"), 0.5)
+    living.look(DOCKED, 0.1)
+    living.look(DOCKED, 1)
+    assert [note.text for note in living.keeper.view().notes] == [
+        "began",
+        "left to you: the emergency stop was pressed",
+        "ended: the robot was switched off meanwhile",
+    ]
+
+
 def test_a_program_that_begins_anew_knows_what_was_under_way(living: Living) -> None:
     living.look(DOCKED, 60)
     living.again()
