@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+import errno
 from pathlib import Path
 from typing import Final
 
 _END: Final = ".damaged"
+_NO_FILE: Final = (errno.EFBIG, errno.EINVAL, errno.EISDIR, errno.ELOOP)
+
+
+def is_no_file(error: OSError) -> bool:
+    """Whether the disk tells of something else in a file's place, or of one that is too large.
+
+    What it refuses otherwise may be whole, and be read later.
+    """
+    return error.errno in _NO_FILE
 
 
 def aside_of(path: Path) -> Path:

@@ -22,15 +22,13 @@ from typing import Final, TypeVar
 from roomba.errors import RoombaError
 from roomba.files.atomic import UNREADABLE, unfinished_name, write_whole
 from roomba.files.bounded import MOST_BYTES, read_bytes
-from roomba.files.damaged import aside_of, set_aside
+from roomba.files.damaged import aside_of, is_no_file, set_aside
 
 _SEAL: Final = re.compile(rb"# kept (\d{1,9}) sha256 ([0-9a-f]{64})\n")
 _LONGEST_SEAL: Final = 128
 _PGM: Final = b"P5\n"
 _ZIP: Final = b"PK\x03\x04"
 _BEFORE: Final = ".before"
-_NO_FILE: Final = (errno.EFBIG, errno.EINVAL, errno.EISDIR, errno.ELOOP)
-"""Of the disk's errors those that tell of something else in a file's place."""
 
 Content = TypeVar("Content")
 
@@ -160,7 +158,7 @@ def _content(path: Path, parse: Callable[[bytes], Content], version: int, most: 
     except FileNotFoundError:
         raise
     except OSError as error:
-        if error.errno in _NO_FILE:
+        if is_no_file(error):
             raise _DamagedError(_reason(error)) from error
         raise UnreadFileError(
             f"{path}: expected a file that can be read: {_to_do(error)}"

@@ -24,7 +24,7 @@ import numpy as np
 from roomba.arrays import Floats32
 from roomba.client.protocol import ErrandOutcome
 from roomba.files.atomic import make_private
-from roomba.files.damaged import set_aside
+from roomba.files.damaged import is_no_file, set_aside
 from roomba.files.journal import append_line, read_lines
 from roomba.history.run import (
     CELL_LAYERS,
@@ -43,6 +43,7 @@ from roomba.history.run_file import figures_from, plain_of
 INTERRUPTED: Final = ErrandOutcome.INTERRUPTED.value
 """The outcome of a run whose program ended in the middle of it."""
 WHY: Final = "the program that kept this run ended in the middle of it"
+_LEFT: Final = "it is left as it is, and the next start tries again"
 _EVERY: Final = 0.5
 """s of wall time between two writes of what was seen."""
 _LAYERS_EVERY: Final = 10.0
@@ -209,7 +210,8 @@ def interrupted_runs(
     """Return the runs of programs that are no more, the newest first, each with its file.
 
     The files are held meanwhile; each is to be removed once its run is kept. Those that tell of no
-    run are removed here. One that cannot be read is set aside, and told.
+    run are removed here. Something else in a file's place is set aside, and told; one that the disk
+    refuses is told, and left to a later start.
     """
     with contextlib.ExitStack() as held:
         found = []
@@ -225,7 +227,8 @@ def interrupted_runs(
             except FileNotFoundError:
                 continue  # another program was quicker
             except OSError as error:
-                tell(f"a run that was interrupted cannot be read: {error}; {set_aside(path)}")
+                done = set_aside(path) if is_no_file(error) else _LEFT
+                tell(f"a run that was interrupted cannot be read: {error}; {done}")
         yield sorted(found, key=lambda each: -each[1].wall)
 
 

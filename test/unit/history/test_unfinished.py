@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import pytest
@@ -302,6 +304,36 @@ def test_a_file_that_cannot_be_read_is_set_aside_and_the_others_are_kept(
     assert kept(tmp_path)[0].outcome == INTERRUPTED
     assert [path.name for path in tmp_path.glob("unfinished-*")] == [f"{bad.name}.damaged"]
     HistoryKeeper(History(tmp_path), SOURCE, pytest.fail).look(view(2.0, "docked"), HOME, layer)
+
+
+@pytest.mark.parametrize(
+    ("refuses", "number"),
+    [
+        ("os.open", errno.EMFILE),
+        ("os.open", errno.EACCES),
+        ("roomba.history.unfinished.read_lines", errno.EIO),
+    ],
+)
+def test_a_run_that_the_disk_refuses_for_a_while_is_kept_by_a_later_start(
+    tmp_path: Path, killed_at: float, refuses: str, number: int
+) -> None:
+    assert killed_at > 101.0
+    (path,) = tmp_path.glob("unfinished-*")
+    true: Callable[..., Any] = os.open if refuses == "os.open" else read_lines
+
+    def refuse_it(file: Path, *others: Any, **named: Any) -> Any:
+        if file == path:
+            raise OSError(number, os.strerror(number), str(file))
+        return true(file, *others, **named)
+
+    told: list[str] = []
+    with pytest.MonkeyPatch.context() as disk:
+        disk.setattr(refuses, refuse_it)
+        HistoryKeeper(History(tmp_path), SOURCE, told.append).look(view(2.0, "docked"), HOME, layer)
+    assert [os.strerror(number) in text and "left as it is" in text for text in told] == [True]
+    assert list(tmp_path.glob("unfinished-*")) == [path]
+    HistoryKeeper(History(tmp_path), SOURCE, pytest.fail).look(view(2.0, "docked"), HOME, layer)
+    assert kept(tmp_path)[0].outcome == INTERRUPTED
 
 
 def test_a_run_that_is_refused_does_not_keep_the_others_out(
