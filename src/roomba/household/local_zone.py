@@ -49,16 +49,17 @@ def local_zone(
     if _is_known(linked) and not is_rule:
         return LocalZone(linked)
     copy = _read(file)
-    alike = _zones_of(given.encode() if is_rule else _rule_of(copy), zones)
+    alike = _zones_of(os.fsencode(given) if is_rule else _rule_of(copy), zones)
     if alike:
         return LocalZone(_meant(alike, copy, {linked, written}, _usual(zones)))
     name = next(filter(_is_known, (linked, written)), "")
     if name and not is_rule:
         return LocalZone(name)
+    shown = os.fsencode(file).decode("utf-8", "backslashreplace")
     tz = f"$TZ ({given[:80]!r}) is none, and " if given else ""
     return LocalZone(
         name or _OTHERWISE,
-        f"expected the time zone of this computer, but {tz}{file} and {etc / 'timezone'} name "
+        f"expected the time zone of this computer, but {tz}{shown} and {etc / 'timezone'} name "
         f"{name or 'none'}",
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime as dt
+import os
 import zoneinfo
 from pathlib import Path
 
@@ -78,3 +79,12 @@ def test_what_the_environment_tells_and_is_no_zone_is_told(etc: Path) -> None:
     found = local_zone({"TZ": "Europe/Berlln"}, etc)
     assert found.name == "Etc/UTC"
     assert "'Europe/Berlln'" in found.doubt
+
+
+@pytest.mark.parametrize("given", [b"CET\xff", b":Europe/M\xfcnchen", b"/etc/\xff"])
+def test_bytes_that_are_no_text_are_told_as_well(etc: Path, given: bytes) -> None:
+    link(etc, "Etc/UTC")
+    found = local_zone({"TZ": os.fsdecode(given)}, etc)
+    assert found.name in ("UTC", "Etc/UTC")
+    assert "\\udc" in found.doubt
+    found.doubt.encode()
