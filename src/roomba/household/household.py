@@ -6,7 +6,6 @@ import contextlib
 import datetime as dt
 import math
 import threading
-import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
@@ -14,7 +13,6 @@ from typing import Final
 from roomba.client.household import PlansView, TotalsView, UpkeepView
 from roomba.client.observed import ObservedRobot
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
-from roomba.client.told_once import ToldOnce
 from roomba.client.view import RobotView
 from roomba.configuration.household import HouseholdConfig
 from roomba.errors import RoombaError
@@ -26,6 +24,7 @@ from roomba.household.local_zone import local_zone
 from roomba.household.plan_changes import Change, removed, replaced
 from roomba.household.plan_keeper import PlanKeeper
 from roomba.household.room_names import require_rooms
+from roomba.household.steps import NotDoneError, Steps
 from roomba.household.upkeep_keeper import UpkeepKeeper
 from roomba.plans.moment import is_set
 from roomba.plans.plan import Emptying, Plan, PlannedOrder, Preset, QuietHours
@@ -37,7 +36,7 @@ _END: Final = 10.0
 """s of wall time that the end waits for a look under way."""
 
 
-class ClockNotSetError(RoombaError):
+class ClockNotSetError(NotDoneError):
     """The clock of this computer tells a time at which there was no such program."""
 
 
@@ -66,7 +65,7 @@ class LiveHousehold:
         """
         self.robot, self._totals = robot, totals
         self._now, self._period = now, period
-        self._tell = ToldOnce(tell)
+        self._steps = Steps(tell)
         self._is_full_told = False
         self._capacity, self._emptying, self._bag = bin_capacity, config.emptying, math.nan
         self._summed = TotalsView()
@@ -100,14 +99,14 @@ class LiveHousehold:
         self._ends.set()
         if self._thread.is_alive():
             self._thread.join(_END)
-        if not self._thread.is_alive():  # a look that hangs would be waited for
-            self._trying(self._plans.follow_rooms)
-        self._trying(self._upkeep.end)
+        # A look that hangs would be waited for.
+        rooms = () if self._thread.is_alive() else (self._plans.follow_rooms,)
+        self._steps.take(*rooms, self._upkeep.end)
         self._in_use.end()
 
     def look(self) -> None:
         """Look at the robot once."""
-        self._trying(
+        self._steps.take(
             self._in_use.look,
             self._sum_up,
             self._see,
@@ -244,25 +243,6 @@ class LiveHousehold:
 
     def _change(self, change: Change) -> None:
         _kept(lambda: self._plans.change(change))
-
-    def _trying(self, *steps: Callable[[], None]) -> None:
-        """Take steps, each of them also if another one fails; what went wrong is told."""
-        troubles = [trouble for trouble in map(_trouble_of, steps) if trouble]
-        self._tell("\n".join(troubles))
-
-
-def _trouble_of(step: Callable[[], None]) -> str:
-    """Take a step; return what went wrong, empty if nothing did."""
-    try:
-        step()
-    except ClockNotSetError as error:
-        return str(error)
-    except OSError as error:
-        return f"what belongs to the household was not kept: {error}"
-    except Exception as error:
-        fault = "".join(traceback.format_exception(error))
-        return f"a fault of the program, and the household goes on without this step: {fault}"
-    return ""
 
 
 def _kept(change: Callable[[], None]) -> None:
