@@ -487,16 +487,33 @@ def test_disk_and_master_that_both_refuse_are_both_told(
 
 
 def test_a_file_that_cannot_be_removed_does_not_keep_it_from_being_released(
-    rig: Rig, stop_file: Path
+    rig: Rig, stop_file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    stop_file.mkdir(parents=True)
+    def refuse(*_: object) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
     rig.start()
+    rig.stop("fire")
+    monkeypatch.setattr("roomba.storage.kept_stop.remove_kept", refuse)
     before = len(rig.held)
     answer = rig.stop(engage=False)
     again = "it holds again if the robot is killed, as the disk refused: "
     assert answer.startswith(f"the drive is free again; but {again}")
+    assert stop_file.exists()
     assert rig.held[before:] == [""]
     assert rig.told("cmd_vel", twist_message(AHEAD)) == [AHEAD]
+
+
+def test_what_is_no_file_holds_and_gives_way_to_one_when_it_is_released(
+    rig: Rig, stop_file: Path
+) -> None:
+    stop_file.mkdir(parents=True)
+    rig.start()
+    (held,) = rig.held
+    assert "is damaged" in held
+    assert rig.stop(engage=False) == "the drive is free again"
+    assert not stop_file.exists()
+    assert stop_file.with_name("robot.txt.damaged").is_dir()
 
 
 def odometry(linear: float) -> Odometry:
