@@ -48,7 +48,7 @@ class KeptFileError(RoombaError):
 class UnreadFileError(KeptFileError):
     """A kept file that may be whole: the disk refuses it, or it is for a newer program.
 
-    Nothing was done to it; what is written now would take its place.
+    Nothing was done to it; the next :func:`write_kept` sets it aside.
     """
 
 

@@ -25,7 +25,7 @@ def locked(path: Path, within: float) -> Iterator[None]:
     flags = os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW
     with open(os.open(path, flags, _MODE), "r+b") as lock:
         end = time.monotonic() + within
-        while not _try_to_take(lock.fileno()):
+        while not try_to_lock(lock.fileno()):
             if time.monotonic() >= end:
                 raise TimeoutError(
                     f"expected {path.name} to be free within {within:g} s, another program holds "
@@ -35,10 +35,13 @@ def locked(path: Path, within: float) -> Iterator[None]:
         yield
 
 
-def _try_to_take(lock: int) -> bool:
-    """Take a lock; return whether it was free."""
+def try_to_lock(descriptor: int) -> bool:
+    """Take the lock of an open file without waiting; return whether it was free.
+
+    It is held until the file is closed.
+    """
     try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
     return True

@@ -26,6 +26,7 @@ from roomba.client.protocol import ErrandOutcome
 from roomba.files.atomic import make_private
 from roomba.files.damaged import is_no_file, set_aside
 from roomba.files.journal import append_line, read_lines
+from roomba.files.lock import try_to_lock
 from roomba.history.run import (
     CELL_LAYERS,
     TRACE,
@@ -236,11 +237,7 @@ def _holds(path: Path, held: contextlib.ExitStack) -> bool:
     """Hold a file, if no other program does."""
     descriptor = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW)
     held.callback(os.close, descriptor)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True
+    return try_to_lock(descriptor)
 
 
 def _run_of(lines: Sequence[dict[str, Any]]) -> RunSoFar | None:

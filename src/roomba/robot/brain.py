@@ -230,8 +230,8 @@ class Brain:
     def _safely(self, twist: Twist | None, cruise: float) -> Twist:
         """Return what the wheels get when a twist is wanted, at ``cruise`` m/s at most.
 
-        A robot of which none is wanted stands, whatever its sensors tell: it leaves its station for
-        no cliff sensor that is dirty. So does one under the emergency stop, whatever is wanted.
+        Without a wanted twist (None), and under the emergency stop, the wheels stand still. The
+        speed loop then backs away from no cliff: a dirty sensor must not move a docked robot.
         """
         now, mission = self.readings.time, self._mapped.mission
         self._drive.emergency = mission is not None and mission.state.phase is Phase.EMERGENCY

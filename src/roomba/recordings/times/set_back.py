@@ -37,11 +37,12 @@ def clock_shifts(times: Floats, kinds: Sequence[Hashable]) -> Floats:
     merely lie in another order: by their own times each fits beside the others.
     """
     shifts = _shifts_where_set_back(times, kinds)
+    if not shifts.any():
+        return shifts
     parts = np.cumsum(np.diff(shifts, prepend=0.0) != 0.0)
-    by_kind = [np.array([each == kind for each in kinds]) for kind in set(kinds)]
-    if parts.any() and all(_fit_together(times[own], parts[own]) for own in by_kind):
-        return np.zeros(len(times))
-    return shifts
+    by_kind = (np.array([each == kind for each in kinds]) for kind in set(kinds))
+    fit = all(_fit_together(times[own], parts[own]) for own in by_kind)
+    return np.zeros(len(times)) if fit else shifts
 
 
 def _shifts_where_set_back(times: Floats, kinds: Sequence[Hashable]) -> Floats:
