@@ -22,6 +22,8 @@ _BUCKETS = 128
 _NEVER = np.int32(1 << 30)
 _SQUARE = 64.0
 """cells; places are looked for square by square, outwards."""
+_TOUCHED, _QUEUED, _WAITING = 0, 1, 2
+"""What is counted of a search: blocks with a cost, all that was queued, and what still is."""
 _TRIED = 3
 """Times as many places as are wanted are tried, the nearest as the crow flies."""
 
@@ -38,21 +40,34 @@ class Places(NamedTuple):
 
 
 class NearestSearch(NamedTuple):
-    """Work arrays of a search over a net, int32 over its blocks, and the queue's bucket heads."""
+    """Work arrays of a search over a net, int32.
+
+    ``costs`` are of its blocks, and ``touched`` those that have one. What is queued stands in
+    ``queued``, and in ``next_of`` where the next one of the same bucket stands.
+    """
 
     costs: Ints32
-    queue: Ints32
     touched: Ints32
+    queued: Ints32
+    next_of: Ints32
+    first_of: Ints32
+    last_of: Ints32
+    counts: Ints32
 
 
 @allocating_entry
 def search_over(net: Net) -> NearestSearch:
     """Return work arrays for searches over a net."""
     size = net.links.size // 8
+    most = net.links.size + 9  # each link, and the blocks that a search begins with
     return NearestSearch(
         np.full(size, _NEVER, np.int32),
-        np.zeros((_BUCKETS, 256), np.int32),
         np.zeros(size, np.int32),
+        np.zeros(most, np.int32),
+        np.zeros(most, np.int32),
+        np.full(_BUCKETS, -1, np.int32),
+        np.zeros(_BUCKETS, np.int32),
+        np.zeros(3, np.int32),
     )
 
 
@@ -94,72 +109,84 @@ def nearest_wanted(
     Only those ``wanted``, bool [n], count. The search ends after ``enough`` of them or ``limit``
     cells. Returns how many; they are not sorted.
     """
-    columns = net.links.shape[1]
+    counts = search.counts
+    counts[:] = 0
     x, y = places.at[origin]
-    queue = search.queue
-    heads = np.zeros(_BUCKETS, np.int64)
-    touched = 0
-    waiting = 0
     near = np.empty(9, np.int32)
     for n in range(blocks_near(net, x, y, near)):
-        block = near[n]
-        cost = int(leg_to(net, block, x, y) * UNIT)
-        search.costs[block] = cost
-        search.touched[touched] = block
-        touched += 1
-        bucket = cost % _BUCKETS
-        queue[bucket, heads[bucket]] = block
-        heads[bucket] += 1
-        waiting += 1
+        _put_in(search, near[n], int(leg_to(net, near[n], x, y) * UNIT))
     count = 0
     level = 0
     most = int(min(limit, 1e8) * UNIT)
-    while waiting > 0 and level <= most and count < enough:
-        bucket = level % _BUCKETS
-        at = 0
-        while at < heads[bucket]:
-            block = queue[bucket, at]
-            at += 1
-            waiting -= 1
-            if search.costs[block] != level:
-                continue
-            for n in range(places.block_first[block], places.block_first[block + 1]):
-                place = places.of_block[n]
-                if not wanted[place] or place == origin:
-                    continue
-                to_x, to_y = places.at[place]
-                length = level / UNIT + leg_to(net, block, to_x, to_y)
-                known = 0
-                while known < count and found[known] != place:
-                    known += 1
-                if known < count:
-                    lengths[known] = min(lengths[known], length)
-                elif count < len(found):
-                    found[count], lengths[count] = place, length
-                    count += 1
-            links = net.links[block // columns, block % columns]
-            for step in range(8):
-                if links[step] == 0:
-                    continue
-                other = block + STEP_Y[step] * columns + STEP_X[step]
-                cost = level + links[step]
-                if cost >= search.costs[other]:
-                    continue
-                if search.costs[other] == _NEVER:
-                    search.touched[touched] = other
-                    touched += 1
-                search.costs[other] = cost
-                to_bucket = cost % _BUCKETS
-                if heads[to_bucket] == queue.shape[1]:
-                    queue = _twice_as_long(queue)
-                queue[to_bucket, heads[to_bucket]] = other
-                heads[to_bucket] += 1
-                waiting += 1
-        heads[bucket] = 0
+    while counts[_WAITING] > 0 and level <= most and count < enough:
+        item = search.first_of[level % _BUCKETS]
+        while item >= 0:
+            block = search.queued[item]
+            counts[_WAITING] -= 1
+            if search.costs[block] == level:
+                for n in range(places.block_first[block], places.block_first[block + 1]):
+                    place = places.of_block[n]
+                    if wanted[place] and place != origin:
+                        to_x, to_y = places.at[place]
+                        length = level / UNIT + leg_to(net, block, to_x, to_y)
+                        count = _note_place(place, length, found, lengths, count)
+                _put_in_linked(net, search, block)
+            item = search.next_of[item]
+        search.first_of[level % _BUCKETS] = -1
         level += 1
-    for n in range(touched):
+    for n in range(counts[_TOUCHED]):
         search.costs[search.touched[n]] = _NEVER
+    search.first_of[:] = -1
     return count
+
+
+@inner_part
+def _put_in_linked(net: Net, search: NearestSearch, block: int) -> None:
+    """Queue the blocks next to one that are reached cheaper over it."""
+    columns = net.links.shape[1]
+    links = net.links[block // columns, block % columns]
+    for step in range(8):
+        if links[step] != 0:
+            other = block + STEP_Y[step] * columns + STEP_X[step]
+            cost = search.costs[block] + links[step]
+            if cost < search.costs[other]:
+                _put_in(search, other, cost)
+
+
+@inner_part
+def _put_in(search: NearestSearch, block: int, cost: int) -> None:
+    """Queue a block at its cost, behind what is queued at that cost."""
+    counts = search.counts
+    if search.costs[block] == _NEVER:
+        search.touched[counts[_TOUCHED]] = block
+        counts[_TOUCHED] += 1
+    search.costs[block] = cost
+    bucket = cost % _BUCKETS
+    item = counts[_QUEUED]
+    search.queued[item] = block
+    search.next_of[item] = -1
+    if search.first_of[bucket] < 0:
+        search.first_of[bucket] = item
+    else:
+        search.next_of[search.last_of[bucket]] = item
+    search.last_of[bucket] = item
+    counts[_QUEUED] += 1
+    counts[_WAITING] += 1
+
+
+@inner_part
+def _note_place(
+    place: int, length: float, found: Ints32, lengths: NDArray[np.float64], count: int
+) -> int:
+    """Note a place, or that it is nearer than was known; return how many are found."""
+    for known in range(count):
+        if found[known] == place:
+            lengths[known] = min(lengths[known], length)
+            return count
+    if count == len(found):
+        return count
+    found[count], lengths[count] = place, length
+    return count + 1
 
 
 @allocating_part

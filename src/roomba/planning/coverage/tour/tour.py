@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.compilation import allocating_entry, part
+from roomba.compilation import allocating_entry, allocating_part, inner_part, part
 from roomba.planning.coverage.tour.costs import Costs, Tour, tour_cost
 from roomba.planning.coverage.tour.moves import Trip, exchange, improve, trip_along
 
@@ -14,6 +16,13 @@ _NEAR_SHARE = 30
 """Of a hundred rounds, those that exchange runs between connections that are near each other."""
 _LONGEST = 25
 """pieces; the longest run that the others exchange."""
+
+
+class Kept(NamedTuple):
+    """The best tour so far, int32 [ends], and what the connection of each end costs there."""
+
+    tour: Tour
+    joined: NDArray[np.float64]
 
 
 @allocating_entry
@@ -76,15 +85,29 @@ def shaken(costs: Costs, first_tour: Tour, period: int, pays: float) -> Tour:
     ends = first_tour.size
     tour = first_tour.copy()
     trip = trip_along(costs, tour)
-    position, joined = trip.position, trip.joined
     queue = tour.copy()
     waiting = np.ones(ends, np.bool_)
     improve(costs, trip, queue, ends, waiting)
-    if ends < 12:
-        return tour
-    best, best_joined = tour.copy(), joined.copy()
-    state = np.array([88172645463325252], np.uint64)
-    cost = tour_cost(costs, tour)
+    if ends >= 12:
+        kept = Kept(tour.copy(), trip.joined.copy())
+        state = np.array([88172645463325252], np.uint64)
+        _shake(costs, trip, kept, queue, waiting, state, period, pays)
+    return tour
+
+
+@allocating_part
+def _shake(
+    costs: Costs,
+    trip: Trip,
+    kept: Kept,
+    queue: Tour,
+    waiting: NDArray[np.bool_],
+    state: NDArray[np.uint64],
+    period: int,
+    pays: float,
+) -> None:
+    """Exchange runs and improve the tour from there, and keep what is no worse, while that pays."""
+    cost = tour_cost(costs, trip.tour)
     gained = 0.0
     for round in range(_MOST_ROUNDS):
         if round % period == period - 1:
@@ -92,39 +115,71 @@ def shaken(costs: Costs, first_tour: Tour, period: int, pays: float) -> Tour:
                 break
             cost -= gained
             gained = 0.0
-        if _drawn(state, 100) < _NEAR_SHARE:
-            end = _drawn(state, ends)
-            one = _connection_near(costs, trip, end, state)
-            two = _connection_near(costs, trip, end, state)
-            three = _connection_near(costs, trip, end, state)
-            first, last = min(one, two, three), max(one, two, three)
-            middle = one + two + three - first - last
-        else:
-            first = 1 + 2 * _drawn(state, ends // 2 - 1)
-            middle = first + 2 * (1 + _drawn(state, _LONGEST))
-            last = middle + 2 * (1 + _drawn(state, _LONGEST))
-        if first < 1 or last > ends - 3 or first == middle or middle == last:
+        first, middle, last = _drawn_runs(costs, trip, state)
+        if first < 1 or last > trip.tour.size - 3 or first == middle or middle == last:
             continue
-        a, b, c = tour[first], tour[first + 1], tour[middle]
-        d, e, f = tour[middle + 1], tour[last], tour[last + 1]
-        trip.gain[0] = joined[a] + joined[c] + joined[e]
-        exchange(costs, trip, first + 1, middle + 1, last + 1)
-        trip.gain[0] -= joined[a] + joined[e] + joined[c]
-        trip.span[0], trip.span[1] = first + 1, last
-        for count, concerned in enumerate((a, b, c, d, e, f)):
-            queue[count] = concerned
-            waiting[concerned] = True
-        # No number that stands here: it would be compiled once more for that alone.
-        improve(costs, trip, queue, trip.touched.size, waiting)
-        low, high = trip.span
+        concerned = _exchange_drawn(costs, trip, queue, waiting, first, middle, last)
+        improve(costs, trip, queue, concerned, waiting)
         if trip.gain[0] >= 0.0:
-            for at in range(low - 1, high + 2):
-                best[at] = tour[at]
-                best_joined[tour[at]] = joined[tour[at]]
+            _keep(trip, kept)
             gained += trip.gain[0]
         else:
-            for at in range(low - 1, high + 2):
-                tour[at] = best[at]
-                position[tour[at]] = at
-                joined[tour[at]] = best_joined[tour[at]]
-    return tour
+            _take_back(trip, kept)
+
+
+@inner_part
+def _drawn_runs(costs: Costs, trip: Trip, state: NDArray[np.uint64]) -> tuple[int, int, int]:
+    """Return positions before three connections; the runs between them are to be exchanged."""
+    ends = trip.tour.size
+    if _drawn(state, 100) < _NEAR_SHARE:
+        end = _drawn(state, ends)
+        first, total, last = ends, 0, -1
+        for _ in range(3):
+            at = _connection_near(costs, trip, end, state)
+            first, total, last = min(first, at), total + at, max(last, at)
+        return first, total - first - last, last
+    first = 1 + 2 * _drawn(state, ends // 2 - 1)
+    middle = first + 2 * (1 + _drawn(state, _LONGEST))
+    return first, middle, middle + 2 * (1 + _drawn(state, _LONGEST))
+
+
+@inner_part
+def _exchange_drawn(
+    costs: Costs,
+    trip: Trip,
+    queue: Tour,
+    waiting: NDArray[np.bool_],
+    first: int,
+    middle: int,
+    last: int,
+) -> int:
+    """Exchange two runs, and queue the ends that this concerns; return how many these are."""
+    tour, joined = trip.tour, trip.joined
+    queue[0], queue[1], queue[2] = tour[first], tour[first + 1], tour[middle]
+    queue[3], queue[4], queue[5] = tour[middle + 1], tour[last], tour[last + 1]
+    trip.gain[0] = joined[queue[0]] + joined[queue[2]] + joined[queue[4]]
+    exchange(costs, trip, first + 1, middle + 1, last + 1)
+    trip.gain[0] -= joined[queue[0]] + joined[queue[4]] + joined[queue[2]]
+    trip.span[0], trip.span[1] = first + 1, last
+    for n in range(trip.touched.size):
+        waiting[queue[n]] = True
+    return trip.touched.size
+
+
+@inner_part
+def _keep(trip: Trip, kept: Kept) -> None:
+    """Keep the tour where it was changed."""
+    for at in range(trip.span[0] - 1, trip.span[1] + 2):
+        end = trip.tour[at]
+        kept.tour[at] = end
+        kept.joined[end] = trip.joined[end]
+
+
+@inner_part
+def _take_back(trip: Trip, kept: Kept) -> None:
+    """Make the tour what was kept, where it was changed."""
+    for at in range(trip.span[0] - 1, trip.span[1] + 2):
+        end = kept.tour[at]
+        trip.tour[at] = end
+        trip.position[end] = at
+        trip.joined[end] = kept.joined[end]

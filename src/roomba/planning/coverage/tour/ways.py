@@ -31,6 +31,23 @@ def way_between(
     """
     if way_fits(net.fits, x, y, to_x, to_y):
         return np.array([[x, y], [to_x, to_y]])
+    before, last = _search(net, costs, x, y, to_x, to_y)
+    for block in before:
+        costs[block] = np.inf
+    if last < 0:
+        return np.empty((0, 2))
+    return taut(net.fits, _knots_to(net, before, last, x, y, to_x, to_y))
+
+
+@allocating_part
+def _search(
+    net: Net, costs: NDArray[np.float64], x: float, y: float, to_x: float, to_y: float
+) -> tuple[dict[int, int], int]:
+    """Search from place to place by A*; return the block before each, and the way's last one.
+
+    Before the first block of a way is -1, and the last is -1 if there is no way. Writes what the
+    blocks cost.
+    """
     columns = net.links.shape[1]
     goals = np.empty(9, np.int32)
     goal_count = blocks_near(net, to_x, to_y, goals)
@@ -62,35 +79,40 @@ def way_between(
             keys = np.concatenate((keys, np.empty_like(keys)))
             items = np.concatenate((items, np.empty_like(items)))
         row, column = block // columns, block % columns
+        knot = net.knots[row, column]
         for step in range(8):
             if net.links[row, column, step] == 0:
                 continue
             other = block + STEP_Y[step] * columns + STEP_X[step]
-            knot = net.knots[row, column]
             reached = cost + leg_to(net, other, knot[0], knot[1])
             if reached < costs[other] - 1e-9:
                 costs[other] = reached
                 before[other] = block
                 heap_push(keys, items, heap, reached + leg_to(net, other, to_x, to_y), other)
                 heap += 1
-    for block in before:
-        costs[block] = np.inf
-    if best_block < 0:
-        return np.empty((0, 2))
+    return before, best_block
+
+
+@allocating_part
+def _knots_to(
+    net: Net, before: dict[int, int], last: int, x: float, y: float, to_x: float, to_y: float
+) -> Line:
+    """Return a way over the knots of the blocks before the last one, with both its ends."""
+    columns = net.links.shape[1]
     count = 2
-    block = best_block
+    block = last
     while block >= 0:
         count += 1
         block = before[block]
     way = np.empty((count, 2))
     way[0, 0], way[0, 1] = x, y
     way[count - 1, 0], way[count - 1, 1] = to_x, to_y
-    block = best_block
+    block = last
     for at in range(count - 2, 0, -1):
         knot = net.knots[block // columns, block % columns]
         way[at, 0], way[at, 1] = knot[0], knot[1]
         block = before[block]
-    return taut(net.fits, way)
+    return way
 
 
 @allocating_entry
