@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Annotated, Final, Literal
 
 import numpy as np
+import yaml
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator
 
@@ -129,8 +130,8 @@ def save_map(occupancy: OccupancyMap, path: Path) -> None:
     """Write a map as ``path`` (YAML) and a PGM beside it; :func:`load_map` returns it identically.
 
     Both are sealed in comments. Maps of free, occupied and unknown are written as map_saver does,
-    others in raw mode. Raises
-    ValueError for values outside -1..100 and OSError when the disk refuses.
+    others in raw mode. Raises ValueError for values outside -1..100 and OSError when the disk
+    refuses.
     """
     values = occupancy.values
     if values.min() < UNKNOWN or values.max() > OCCUPIED:
@@ -144,7 +145,7 @@ def save_map(occupancy: OccupancyMap, path: Path) -> None:
     write_kept(image, f"P5\n{columns} {rows}\n255\n".encode() + pixels[::-1].tobytes())
     frame = occupancy.frame
     lines = [
-        f"image: {image.name}",
+        yaml.safe_dump({"image": image.name}, allow_unicode=True, width=math.inf).rstrip(),
         f"resolution: {frame.resolution!r}",
         f"origin: [{frame.origin_x!r}, {frame.origin_y!r}, 0.0]",
         "negate: 0",

@@ -263,6 +263,13 @@ def test_what_is_saved_is_read_back(
     assert np.array_equal(loaded.values, values)
 
 
+@pytest.mark.parametrize("name", ["1e3", "null", "Anna's: flat #2", "Küche", "- a " + 40 * "b c"])
+def test_a_map_of_any_name_is_read_back(tmp_path: Path, name: str) -> None:
+    occupancy = OccupancyMap(GridFrame(0.05, 0.0, 0.0, 1, 2), np.array([[0, 100]], np.int8))
+    save_map(occupancy, tmp_path / f"{name}.yaml")
+    assert np.array_equal(load_map(tmp_path / f"{name}.yaml").values, occupancy.values)
+
+
 def test_values_that_are_no_map_are_not_saved(tmp_path: Path) -> None:
     values = np.full((1, 1), 101, np.int8)
     with pytest.raises(ValueError, match="101"):
