@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from roomba.files.atomic import make_private
+from roomba.files.lock import try_to_lock
 from roomba.household.folder import Tell
 
 _NAME: Final = "in_use"
@@ -33,15 +34,13 @@ class InUse:
             make_private(self._folder)
             flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW
             self._lock = os.open(self._folder / _NAME, flags, 0o600)
-            try:
-                self._mark(self._lock)
-            except BlockingIOError:
+            if not self._mark(self._lock):
                 self._tell_other(self._lock)
 
     def look(self) -> None:
         """Take the mark over from a program that ended meanwhile."""
         if self._lock is not None and not self._owner:
-            with contextlib.suppress(OSError):  # the other program still has it
+            with contextlib.suppress(OSError):
                 self._mark(self._lock)
 
     def end(self) -> None:
@@ -54,11 +53,14 @@ class InUse:
             os.close(lock)
         self._owner = 0
 
-    def _mark(self, lock: int) -> None:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    def _mark(self, lock: int) -> bool:
+        """Write this process into the file unless another has it; return whether it did."""
+        if not try_to_lock(lock):
+            return False
         self._owner = os.getpid()
         os.ftruncate(lock, 0)
         os.pwrite(lock, f"{self._owner}\n".encode(), 0)
+        return True
 
     def _tell_other(self, lock: int) -> None:
         other = os.pread(lock, _LONGEST, 0).decode("ascii", "replace").strip()

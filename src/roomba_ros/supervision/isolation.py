@@ -19,6 +19,7 @@ import rospkg
 
 from roomba.client.address import HERE, outside_address
 from roomba.client.ports import DEFAULT_PORT, OUTSIDE_ADDRESS, PAGE_SOCKET, PORTS
+from roomba.files.lock import try_to_lock
 from roomba_ros.supervision.namespace import IsolationError, has_own_network, isolate
 
 FLAG: Final = "--isolated"
@@ -86,13 +87,12 @@ def _take_record() -> int:
     file = record()
     file.parent.mkdir(parents=True, exist_ok=True)
     lock = os.open(file, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
+    if not try_to_lock(lock):
+        os.close(lock)
         raise IsolationError(
             f"expected no isolated robot with {file}, got one that runs; end it first, or set "
             "ROS_HOME for another robot"
-        ) from error
+        )
     os.set_inheritable(lock, True)
     return lock
 

@@ -11,12 +11,10 @@ from typing import Final
 import numpy as np
 
 from roomba.arrays import Floats
-from roomba.recordings.times.stamps import delay_of, valid_stamps
+from roomba.recordings.times.stamps import arrivals_tell, delay_of, valid_stamps
 
 _LEAST: Final = 50
 """Messages; of fewer no rate is told."""
-_INFORMATIVE: Final = 0.5
-"""Share of the arrivals that must differ, to tell something."""
 _UNITS: Final = {1e3: "ms", 1e6: "µs", 1e9: "ns"}
 _SAME_UNIT: Final = 0.05
 """So much, as a share, a rate may be off that of a unit."""
@@ -62,7 +60,7 @@ def _ends(stamps: Floats, arrivals: Floats) -> tuple[Floats, Floats] | None:
     valid = valid_stamps(stamps)
     stamps, arrivals = stamps[valid], arrivals[valid]
     count = len(stamps)
-    if count < _LEAST or len(np.unique(arrivals)) < _INFORMATIVE * count:
+    if count < _LEAST or not arrivals_tell(stamps, arrivals):
         return None
     tenth = count // 10
     middle = (count - tenth) // 2

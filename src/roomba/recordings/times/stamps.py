@@ -101,11 +101,16 @@ def mended(stamps: Floats, arrivals: Floats, delay: float, counts: StampCounts) 
     times, expected = stamps + shift, arrivals - (own - shift)
     counts.without += int(np.count_nonzero(~valid))
     times[~valid] = expected[~valid]
-    if len(np.unique(arrivals)) > _INFORMATIVE * len(np.unique(stamps[valid])):
+    if arrivals_tell(stamps[valid], arrivals):
         counts.jumped += _unjumped(times, expected)
     before = np.maximum.accumulate(times)
     counts.out_of_order += int(np.count_nonzero(times < before))
     return times
+
+
+def arrivals_tell(stamps: Floats, arrivals: Floats) -> bool:
+    """Return whether so many arrivals, [n], differ that they tell something of stamps, [m]."""
+    return len(np.unique(arrivals)) > _INFORMATIVE * len(np.unique(stamps))
 
 
 def in_order(times: Floats, channels: Ints64, ranks: Ints64, counts: StampCounts) -> Ints64:

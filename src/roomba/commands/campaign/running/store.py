@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, Final
@@ -12,6 +11,7 @@ from roomba.commands.campaign.running.runs import CampaignRun
 from roomba.commands.campaign.running.work import RunEnd
 from roomba.commands.options import UsageError
 from roomba.files.journal import append_line, read_lines
+from roomba.files.lock import try_to_lock
 
 Row = dict[str, Any]
 """A run: key, home, seed, variant, figures (None without), failure, where, began."""
@@ -67,11 +67,9 @@ def opened_store(folder: Path) -> Iterator[ResultStore]:
     """Open the results in a folder, which is made; raises UsageError while another one does."""
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / _LOCK).open("w") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
+        if not try_to_lock(lock.fileno()):
             raise UsageError(
                 f"--out: another campaign writes into {folder}; wait for its end, or choose "
                 "another folder"
-            ) from error
+            )
         yield ResultStore(folder)
