@@ -37,10 +37,10 @@ def require_compiled(*, is_quiet: bool) -> None:
     """
     with quiet_loading():
         from roomba.headless.burst_kernels import run
-        from roomba.planning.coverage.tour.tour import shaken
+        from roomba.planning.coverage.tour.tour import iterated_local_search
 
     # The last and largest ones of both halves.
-    if is_kept(run) and is_kept(shaken):
+    if is_kept(run) and is_kept(iterated_local_search):
         return
     with _shown(is_quiet) as tell:
         compile_for_a_clean("bursts", tell)

@@ -18,7 +18,7 @@ _MOST_MOVES = 20
 """moves for each end; far more than are ever made."""
 
 
-class Trip(NamedTuple):
+class TourState(NamedTuple):
     """A tour that is being changed, ``position`` int32 [ends] of each end in it, and room for work.
 
     ``joined``, float64 [ends], is what the connection of each end costs. ``touched``, int32 [6],
@@ -36,10 +36,10 @@ class Trip(NamedTuple):
 
 
 @allocating_part
-def trip_along(costs: Costs, tour: Tour) -> Trip:
-    """Return a trip along a tour, which it changes; nothing has moved yet."""
+def state_along(costs: Costs, tour: Tour) -> TourState:
+    """Return a state along a tour, which it changes; nothing has moved yet."""
     ends = tour.size
-    trip = Trip(
+    state = TourState(
         tour,
         np.empty(ends, np.int32),
         np.zeros(ends),
@@ -49,39 +49,39 @@ def trip_along(costs: Costs, tour: Tour) -> Trip:
         np.array([ends, -1]),
     )
     for at in range(ends):
-        trip.position[tour[at]] = at
+        state.position[tour[at]] = at
     for at in range(1, ends - 1, 2):
-        join(costs, trip, at)
-    return trip
+        join(costs, state, at)
+    return state
 
 
 @part
-def place_of(trip: Trip, end: int) -> int:
+def place_of(state: TourState, end: int) -> int:
     """Return the position of an end, as wide as sums of positions: moves are compiled once then."""
-    place: int = np.int64(trip.position[end])  # type: ignore[assignment]
+    place: int = np.int64(state.position[end])  # type: ignore[assignment]
     return place
 
 
 @part
-def join(costs: Costs, trip: Trip, at: int) -> None:
+def join(costs: Costs, state: TourState, at: int) -> None:
     """Note what the connection of the ends at a position and at the next one costs."""
-    one, other = trip.tour[at], trip.tour[at + 1]
+    one, other = state.tour[at], state.tour[at + 1]
     cost = cost_of(costs, one, other)
-    trip.joined[one] = cost
-    trip.joined[other] = cost
+    state.joined[one] = cost
+    state.joined[other] = cost
 
 
 @part
-def _note(trip: Trip, gain: float, first: int, last: int) -> None:
-    trip.gain[0] += gain
-    trip.span[0] = min(trip.span[0], first)
-    trip.span[1] = max(trip.span[1], last)
+def _note(state: TourState, gain: float, first: int, last: int) -> None:
+    state.gain[0] += gain
+    state.span[0] = min(state.span[0], first)
+    state.span[1] = max(state.span[1], last)
 
 
 @inner_part
-def _reverse(costs: Costs, trip: Trip, first: int, last: int) -> None:
+def _reverse(costs: Costs, state: TourState, first: int, last: int) -> None:
     """Drive the pieces from one position to another the other way round."""
-    tour, position, before, after = trip.tour, trip.position, first - 1, last
+    tour, position, before, after = state.tour, state.position, first - 1, last
     while first < last:
         one, other = tour[first], tour[last]
         tour[first], tour[last] = other, one
@@ -90,25 +90,25 @@ def _reverse(costs: Costs, trip: Trip, first: int, last: int) -> None:
         last -= 1
     if first == last:
         position[tour[first]] = first
-    join(costs, trip, before)
-    join(costs, trip, after)
+    join(costs, state, before)
+    join(costs, state, after)
 
 
 @inner_part
-def _try_end(costs: Costs, trip: Trip, end: int) -> int:
+def _try_end(costs: Costs, state: TourState, end: int) -> int:
     """Make the first move that a better connection of one end allows.
 
     Returns how many ends it concerned, written to ``touched``; 0 when there is no such move.
     """
-    tour, touched = trip.tour, trip.touched
+    tour, touched = state.tour, state.touched
     size = tour.size
-    at = place_of(trip, end)
+    at = place_of(state, end)
     leaves = at % 2 == 1
     partner_at = at + 1 if leaves else at - 1
     if partner_at < 0 or partner_at >= size:
         return 0
     partner = tour[partner_at]
-    now = trip.joined[end]
+    now = state.joined[end]
     for k in range(costs.nearest.shape[1]):
         other = costs.nearest[end, k]
         if other < 0:
@@ -116,13 +116,13 @@ def _try_end(costs: Costs, trip: Trip, end: int) -> int:
         gain = now - costs.costs[end, k]
         if gain <= _GAIN:
             break
-        other_at = place_of(trip, other)
+        other_at = place_of(state, other)
         other_leaves = other_at % 2 == 1
         other_partner_at = other_at + 1 if other_leaves else other_at - 1
         if other == partner or other_partner_at < 0 or other_partner_at >= size:
             continue
         other_partner = tour[other_partner_at]
-        gain += trip.joined[other]
+        gain += state.joined[other]
         if leaves == other_leaves:
             won = gain - least_cost(costs, partner, other_partner)
             if won > _GAIN:
@@ -130,29 +130,29 @@ def _try_end(costs: Costs, trip: Trip, end: int) -> int:
             if won > _GAIN:
                 first = min(max(at, partner_at), max(other_at, other_partner_at))
                 last = max(min(at, partner_at), min(other_at, other_partner_at))
-                _reverse(costs, trip, first, last)
-                _note(trip, won, first, last)
+                _reverse(costs, state, first, last)
+                _note(state, won, first, last)
                 touched[0], touched[1] = end, other
                 touched[2], touched[3] = partner, other_partner
                 return 4
         else:
-            moved = _swap_runs(costs, trip, at, other_at, gain)
+            moved = _swap_runs(costs, state, at, other_at, gain)
             if moved > 0:
                 return moved
-        moved = _move_run(costs, trip, end, other)
+        moved = _move_run(costs, state, end, other)
         if moved > 0:
             return moved
     return 0
 
 
 @inner_part
-def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) -> int:
+def _swap_runs(costs: Costs, state: TourState, at: int, other_at: int, gain: float) -> int:
     """Let two neighbouring runs of pieces change places, without turning either.
 
     The connection of the ends at ``at`` and ``other_at`` is new and brings ``gain``; which third
     connection is broken is searched here.
     """
-    tour, touched = trip.tour, trip.touched
+    tour, touched = state.tour, state.touched
     size = tour.size
     leaver_at, entry_at = (at, other_at) if at % 2 == 1 else (other_at, at)
     if entry_at > leaver_at:
@@ -163,17 +163,17 @@ def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) ->
             e = costs.nearest[b, k]
             if e < 0 or costs.costs[b, k] >= gain - _GAIN:
                 break
-            e_at = place_of(trip, e)
+            e_at = place_of(state, e)
             if e_at % 2 == 0 or e_at < entry_at or e_at + 1 >= size:
                 continue
             f = tour[e_at + 1]
-            won = gain - costs.costs[b, k] + trip.joined[e]
+            won = gain - costs.costs[b, k] + state.joined[e]
             if won - least_cost(costs, c, f) <= _GAIN:
                 continue
             won -= cost_of(costs, c, f)
             if won > _GAIN:
-                exchange(costs, trip, leaver_at + 1, entry_at, e_at + 1)
-                _note(trip, won, leaver_at + 1, e_at)
+                exchange(costs, state, leaver_at + 1, entry_at, e_at + 1)
+                _note(state, won, leaver_at + 1, e_at)
                 touched[0], touched[1], touched[2] = a, b, c
                 touched[3], touched[4], touched[5] = d, e, f
                 return 6
@@ -187,17 +187,17 @@ def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) ->
             d = costs.nearest[a, k]
             if d < 0 or costs.costs[a, k] >= gain - _GAIN:
                 break
-            d_at = place_of(trip, d)
+            d_at = place_of(state, d)
             if d_at % 2 == 1 or d_at <= entry_at or d_at > leaver_at:
                 continue
             c = tour[d_at - 1]
-            won = gain - costs.costs[a, k] + trip.joined[c]
+            won = gain - costs.costs[a, k] + state.joined[c]
             if won - least_cost(costs, c, f) <= _GAIN:
                 continue
             won -= cost_of(costs, c, f)
             if won > _GAIN:
-                exchange(costs, trip, entry_at, d_at, leaver_at + 1)
-                _note(trip, won, entry_at, leaver_at)
+                exchange(costs, state, entry_at, d_at, leaver_at + 1)
+                _note(state, won, entry_at, leaver_at)
                 touched[0], touched[1], touched[2] = a, b, c
                 touched[3], touched[4], touched[5] = d, e, f
                 return 6
@@ -205,9 +205,9 @@ def _swap_runs(costs: Costs, trip: Trip, at: int, other_at: int, gain: float) ->
 
 
 @part
-def exchange(costs: Costs, trip: Trip, first: int, middle: int, stop: int) -> None:
+def exchange(costs: Costs, state: TourState, first: int, middle: int, stop: int) -> None:
     """Swap the runs at [first, middle) and [middle, stop), between other pieces."""
-    tour, room = trip.tour, trip.room
+    tour, room = state.tour, state.room
     size = middle - first
     for n in range(size):
         room[n] = tour[first + n]
@@ -216,25 +216,25 @@ def exchange(costs: Costs, trip: Trip, first: int, middle: int, stop: int) -> No
     for n in range(size):
         tour[stop - size + n] = room[n]
     for at in range(first, stop):
-        trip.position[tour[at]] = at
-    join(costs, trip, first - 1)
-    join(costs, trip, stop - size - 1)
-    join(costs, trip, stop - 1)
+        state.position[tour[at]] = at
+    join(costs, state, first - 1)
+    join(costs, state, stop - size - 1)
+    join(costs, state, stop - 1)
 
 
 @inner_part
-def _move_run(costs: Costs, trip: Trip, end: int, other: int) -> int:
+def _move_run(costs: Costs, state: TourState, end: int, other: int) -> int:
     """Move a run of one to three pieces that begins with ``end`` to the side of ``other``."""
-    tour, touched = trip.tour, trip.touched
+    tour, touched = state.tour, state.touched
     size = tour.size
-    at = place_of(trip, end)
+    at = place_of(state, end)
     leaves = at % 2 == 1
-    other_at = place_of(trip, other)
+    other_at = place_of(state, other)
     partner_at = other_at + 1 if other_at % 2 == 1 else other_at - 1
     if partner_at < 0 or partner_at >= size:
         return 0
     partner = tour[partner_at]
-    of_place = trip.joined[other] - cost_of(costs, end, other)
+    of_place = state.joined[other] - cost_of(costs, end, other)
     for pieces in range(1, 4):
         # The run reaches away from the connection of ``end`` that is to be broken.
         first, last = (at - 2 * pieces + 1, at) if leaves else (at, at + 2 * pieces - 1)
@@ -246,7 +246,7 @@ def _move_run(costs: Costs, trip: Trip, end: int, other: int) -> int:
             continue
         before, after = tour[first - 1], tour[last + 1]
         far = tour[first] if leaves else tour[last]
-        won = trip.joined[before] + trip.joined[after] + of_place
+        won = state.joined[before] + state.joined[after] + of_place
         if won <= 0.0:
             continue
         least = least_cost(costs, far, partner)
@@ -255,16 +255,16 @@ def _move_run(costs: Costs, trip: Trip, end: int, other: int) -> int:
         won -= cost_of(costs, before, after) + cost_of(costs, far, partner)
         if won > _GAIN:
             gap = max(other_at, partner_at)
-            _note(trip, won, min(first, gap), max(last, gap - 1))
+            _note(state, won, min(first, gap), max(last, gap - 1))
             if gap > last:
-                exchange(costs, trip, first, last + 1, gap)
+                exchange(costs, state, first, last + 1, gap)
                 first, last = gap - 2 * pieces, gap - 1
             else:
-                exchange(costs, trip, gap, first, last + 1)
+                exchange(costs, state, gap, first, last + 1)
                 first, last = gap, gap + 2 * pieces - 1
             entered = tour[first - 1]
             if (entered == other) != (tour[first] == end):
-                _reverse(costs, trip, first, last)
+                _reverse(costs, state, first, last)
             touched[0], touched[1], touched[2] = end, other, far
             touched[3], touched[4], touched[5] = partner, before, after
             return 6
@@ -272,7 +272,9 @@ def _move_run(costs: Costs, trip: Trip, end: int, other: int) -> int:
 
 
 @entry
-def improve(costs: Costs, trip: Trip, queue: Tour, count: int, waiting: NDArray[np.bool_]) -> None:
+def improve(
+    costs: Costs, state: TourState, queue: Tour, count: int, waiting: NDArray[np.bool_]
+) -> None:
     """Make moves until none helps, looking again at the ends that a move concerned.
 
     The first ``count`` of ``queue``, int32 [ends], are looked at first; ``waiting``, bool [ends],
@@ -286,12 +288,12 @@ def improve(costs: Costs, trip: Trip, queue: Tour, count: int, waiting: NDArray[
         count -= 1
         waiting[end] = False
         while moves < _MOST_MOVES * queue.size:
-            concerned = _try_end(costs, trip, end)
+            concerned = _try_end(costs, state, end)
             if concerned == 0:
                 break
             moves += 1
             for n in range(concerned):
-                other = trip.touched[n]
+                other = state.touched[n]
                 if not waiting[other] and other != end:
                     waiting[other] = True
                     queue[(head + count) % queue.size] = other

@@ -18,7 +18,7 @@ from roomba.planning.coverage.tour.near import (
     search_over,
 )
 from roomba.planning.coverage.tour.net import Net
-from roomba.planning.coverage.tour.tour import greedy_links, shaken
+from roomba.planning.coverage.tour.tour import greedy_links, iterated_local_search
 
 Line = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ def ordered(
     costs = costs_of(nearest, lengths, places, headings, net.fits, config.turning, end is None)
     tour = _first_tour(net, search, spots, costs)
     for _ in range(_MOST_SEARCHES):
-        tour = shaken(costs, tour, config.search_rounds, config.search_pays)
+        tour = iterated_local_search(costs, tour, config.search_rounds, config.search_pays)
         if guesses_measured(net, costs, tour) == 0:
             break
     return [

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from roomba.compilation import allocating_entry, allocating_part, inner_part, part
 from roomba.planning.coverage.tour.costs import Costs, Tour, tour_cost
-from roomba.planning.coverage.tour.moves import Trip, exchange, improve, trip_along
+from roomba.planning.coverage.tour.moves import TourState, exchange, improve, state_along
 
 _MOST_ROUNDS = 100000
 _NEAR_SHARE = 30
@@ -18,7 +18,7 @@ _LONGEST = 25
 """pieces; the longest run that the others exchange."""
 
 
-class Kept(NamedTuple):
+class BestTour(NamedTuple):
     """The best tour so far, int32 [ends], and what the connection of each end costs there."""
 
     tour: Tour
@@ -52,62 +52,64 @@ def greedy_links(costs: Costs) -> NDArray[np.int32]:
 
 
 @part
-def _drawn(state: NDArray[np.uint64], below: int) -> int:
+def _drawn(generator: NDArray[np.uint64], below: int) -> int:
     """Return the next number of a fixed sequence (xorshift), 0 to ``below`` - 1."""
-    state[0] ^= state[0] << np.uint64(13)
-    state[0] ^= state[0] >> np.uint64(7)
-    state[0] ^= state[0] << np.uint64(17)
-    drawn: int = np.int64((state[0] >> np.uint64(11)) % np.uint64(below))  # type: ignore[assignment]
+    generator[0] ^= generator[0] << np.uint64(13)
+    generator[0] ^= generator[0] >> np.uint64(7)
+    generator[0] ^= generator[0] << np.uint64(17)
+    drawn: int = np.int64((generator[0] >> np.uint64(11)) % np.uint64(below))  # type: ignore[assignment]
     return drawn
 
 
 @part
-def _connection_near(costs: Costs, trip: Trip, end: int, state: NDArray[np.uint64]) -> int:
+def _connection_near(
+    costs: Costs, state: TourState, end: int, generator: NDArray[np.uint64]
+) -> int:
     """Return the position before a connection some steps from an end, from near end to near end."""
-    for _ in range(1 + _drawn(state, 3)):
+    for _ in range(1 + _drawn(generator, 3)):
         known = 0
         while known < costs.nearest.shape[1] and costs.nearest[end, known] >= 0:
             known += 1
         if known == 0:
             break
-        end = costs.nearest[end, _drawn(state, known)]
-    at: int = trip.position[end]
+        end = costs.nearest[end, _drawn(generator, known)]
+    at: int = state.position[end]
     return at if at % 2 == 1 else at - 1
 
 
 @allocating_entry
-def shaken(costs: Costs, first_tour: Tour, period: int, pays: float) -> Tour:
-    """Return a tour improved, then again and again from where runs were exchanged, while that pays.
+def iterated_local_search(costs: Costs, first_tour: Tour, period: int, pays: float) -> Tour:
+    """Return a tour improved by iterated local search, which exchanges runs while that pays.
 
     It goes on while ``period`` exchanges gain the share ``pays`` of the cost. They are drawn from a
     fixed sequence, so the outcome is always the same.
     """
     ends = first_tour.size
     tour = first_tour.copy()
-    trip = trip_along(costs, tour)
+    state = state_along(costs, tour)
     queue = tour.copy()
     waiting = np.ones(ends, np.bool_)
-    improve(costs, trip, queue, ends, waiting)
+    improve(costs, state, queue, ends, waiting)
     if ends >= 12:
-        kept = Kept(tour.copy(), trip.joined.copy())
-        state = np.array([88172645463325252], np.uint64)
-        _shake(costs, trip, kept, queue, waiting, state, period, pays)
+        best = BestTour(tour.copy(), state.joined.copy())
+        generator = np.array([88172645463325252], np.uint64)
+        _search_on(costs, state, best, queue, waiting, generator, period, pays)
     return tour
 
 
 @allocating_part
-def _shake(
+def _search_on(
     costs: Costs,
-    trip: Trip,
-    kept: Kept,
+    state: TourState,
+    best: BestTour,
     queue: Tour,
     waiting: NDArray[np.bool_],
-    state: NDArray[np.uint64],
+    generator: NDArray[np.uint64],
     period: int,
     pays: float,
 ) -> None:
     """Exchange runs and improve the tour from there, and keep what is no worse, while that pays."""
-    cost = tour_cost(costs, trip.tour)
+    cost = tour_cost(costs, state.tour)
     gained = 0.0
     for round in range(_MOST_ROUNDS):
         if round % period == period - 1:
@@ -115,38 +117,40 @@ def _shake(
                 break
             cost -= gained
             gained = 0.0
-        first, middle, last = _drawn_runs(costs, trip, state)
-        if first < 1 or last > trip.tour.size - 3 or first == middle or middle == last:
+        first, middle, last = _drawn_runs(costs, state, generator)
+        if first < 1 or last > state.tour.size - 3 or first == middle or middle == last:
             continue
-        concerned = _exchange_drawn(costs, trip, queue, waiting, first, middle, last)
-        improve(costs, trip, queue, concerned, waiting)
-        if trip.gain[0] >= 0.0:
-            _keep(trip, kept)
-            gained += trip.gain[0]
+        concerned = _exchange_drawn(costs, state, queue, waiting, first, middle, last)
+        improve(costs, state, queue, concerned, waiting)
+        if state.gain[0] >= 0.0:
+            _keep(state, best)
+            gained += state.gain[0]
         else:
-            _take_back(trip, kept)
+            _take_back(state, best)
 
 
 @inner_part
-def _drawn_runs(costs: Costs, trip: Trip, state: NDArray[np.uint64]) -> tuple[int, int, int]:
+def _drawn_runs(
+    costs: Costs, state: TourState, generator: NDArray[np.uint64]
+) -> tuple[int, int, int]:
     """Return positions before three connections; the runs between them are to be exchanged."""
-    ends = trip.tour.size
-    if _drawn(state, 100) < _NEAR_SHARE:
-        end = _drawn(state, ends)
+    ends = state.tour.size
+    if _drawn(generator, 100) < _NEAR_SHARE:
+        end = _drawn(generator, ends)
         first, total, last = ends, 0, -1
         for _ in range(3):
-            at = _connection_near(costs, trip, end, state)
+            at = _connection_near(costs, state, end, generator)
             first, total, last = min(first, at), total + at, max(last, at)
         return first, total - first - last, last
-    first = 1 + 2 * _drawn(state, ends // 2 - 1)
-    middle = first + 2 * (1 + _drawn(state, _LONGEST))
-    return first, middle, middle + 2 * (1 + _drawn(state, _LONGEST))
+    first = 1 + 2 * _drawn(generator, ends // 2 - 1)
+    middle = first + 2 * (1 + _drawn(generator, _LONGEST))
+    return first, middle, middle + 2 * (1 + _drawn(generator, _LONGEST))
 
 
 @inner_part
 def _exchange_drawn(
     costs: Costs,
-    trip: Trip,
+    state: TourState,
     queue: Tour,
     waiting: NDArray[np.bool_],
     first: int,
@@ -154,32 +158,32 @@ def _exchange_drawn(
     last: int,
 ) -> int:
     """Exchange two runs, and queue the ends that this concerns; return how many these are."""
-    tour, joined = trip.tour, trip.joined
+    tour, joined = state.tour, state.joined
     queue[0], queue[1], queue[2] = tour[first], tour[first + 1], tour[middle]
     queue[3], queue[4], queue[5] = tour[middle + 1], tour[last], tour[last + 1]
-    trip.gain[0] = joined[queue[0]] + joined[queue[2]] + joined[queue[4]]
-    exchange(costs, trip, first + 1, middle + 1, last + 1)
-    trip.gain[0] -= joined[queue[0]] + joined[queue[4]] + joined[queue[2]]
-    trip.span[0], trip.span[1] = first + 1, last
-    for n in range(trip.touched.size):
+    state.gain[0] = joined[queue[0]] + joined[queue[2]] + joined[queue[4]]
+    exchange(costs, state, first + 1, middle + 1, last + 1)
+    state.gain[0] -= joined[queue[0]] + joined[queue[4]] + joined[queue[2]]
+    state.span[0], state.span[1] = first + 1, last
+    for n in range(state.touched.size):
         waiting[queue[n]] = True
-    return trip.touched.size
+    return state.touched.size
 
 
 @inner_part
-def _keep(trip: Trip, kept: Kept) -> None:
-    """Keep the tour where it was changed."""
-    for at in range(trip.span[0] - 1, trip.span[1] + 2):
-        end = trip.tour[at]
-        kept.tour[at] = end
-        kept.joined[end] = trip.joined[end]
+def _keep(state: TourState, best: BestTour) -> None:
+    """Keep the tour as the best one, where it was changed."""
+    for at in range(state.span[0] - 1, state.span[1] + 2):
+        end = state.tour[at]
+        best.tour[at] = end
+        best.joined[end] = state.joined[end]
 
 
 @inner_part
-def _take_back(trip: Trip, kept: Kept) -> None:
-    """Make the tour what was kept, where it was changed."""
-    for at in range(trip.span[0] - 1, trip.span[1] + 2):
-        end = kept.tour[at]
-        trip.tour[at] = end
-        trip.position[end] = at
-        trip.joined[end] = kept.joined[end]
+def _take_back(state: TourState, best: BestTour) -> None:
+    """Make the tour the best one again, where it was changed."""
+    for at in range(state.span[0] - 1, state.span[1] + 2):
+        end = best.tour[at]
+        state.tour[at] = end
+        state.position[end] = at
+        state.joined[end] = best.joined[end]

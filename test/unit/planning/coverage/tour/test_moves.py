@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roomba.planning.coverage.tour.costs import Costs, cost_of, costs_of, tour_cost
-from roomba.planning.coverage.tour.moves import Trip, exchange, improve, trip_along
+from roomba.planning.coverage.tour.moves import TourState, exchange, improve, state_along
 
 Ends = list[int]
 
@@ -35,15 +35,15 @@ def costs_between(pieces: int, seed: int, known: int) -> Costs:
     return costs_of(nearest, lengths, at, headings, np.ones((202, 202), np.bool_), 6.0, False)
 
 
-def trip_of(costs: Costs, tour: Ends) -> Trip:
-    return trip_along(costs, np.array(tour, np.int32))
+def state_of(costs: Costs, tour: Ends) -> TourState:
+    return state_along(costs, np.array(tour, np.int32))
 
 
-def improved(costs: Costs, tour: Ends) -> tuple[Trip, NDArray[np.bool_]]:
-    trip = trip_of(costs, tour)
+def improved(costs: Costs, tour: Ends) -> tuple[TourState, NDArray[np.bool_]]:
+    state = state_of(costs, tour)
     waiting = np.ones(len(tour), np.bool_)
-    improve(costs, trip, trip.tour.copy(), len(tour), waiting)
-    return trip, waiting
+    improve(costs, state, state.tour.copy(), len(tour), waiting)
+    return state, waiting
 
 
 @st.composite
@@ -67,20 +67,20 @@ def connections(costs: Costs, tour: Ends) -> float:
 @settings(max_examples=examples(150))
 def test_moves_keep_every_piece_and_gain_what_they_say(drawn: tuple[Costs, Ends]) -> None:
     costs, first = drawn
-    trip, waiting = improved(costs, first)
-    tour = trip.tour.tolist()
+    state, waiting = improved(costs, first)
+    tour = state.tour.tolist()
     assert sorted(tour) == list(range(len(first)))
     assert all(tour[at] ^ 1 == tour[at + 1] for at in range(0, len(tour), 2))
     assert tour[:2] == first[:2]
     assert tour[-2:] == first[-2:]
-    assert [tour[at] for at in trip.position] == list(range(len(first)))
+    assert [tour[at] for at in state.position] == list(range(len(first)))
     assert not waiting.any()
     # Costs are whole parts of a cell, so the sums are exact.
-    assert connections(costs, tour) == connections(costs, first) - trip.gain[0]
-    assert trip.gain[0] >= 0.0
-    assert_joined(costs, trip)
+    assert connections(costs, tour) == connections(costs, first) - state.gain[0]
+    assert state.gain[0] >= 0.0
+    assert_joined(costs, state)
     changed = [at for at, end in enumerate(tour) if end != first[at]]
-    assert all(trip.span[0] <= at <= trip.span[1] for at in changed)
+    assert all(state.span[0] <= at <= state.span[1] for at in changed)
 
 
 @given(tours(12))
@@ -94,11 +94,11 @@ def test_when_no_end_allows_a_move_no_run_turned_round_is_better(
     costs = costs_between(pieces, len(tour), 2 * pieces)
     for _ in range(20):
         # Only ends that a move concerned are looked at again, so some moves come to light later.
-        trip, _ = improved(costs, tour)
-        tour = trip.tour.tolist()
-        if trip.gain[0] == 0.0:
+        state, _ = improved(costs, tour)
+        tour = state.tour.tolist()
+        if state.gain[0] == 0.0:
             break
-    assert trip.gain[0] == 0.0
+    assert state.gain[0] == 0.0
     found = connections(costs, tour)
     for begin in range(2, len(tour) - 2, 2):
         for end in range(begin + 2, len(tour), 2):
@@ -130,16 +130,16 @@ def test_few_pieces_come_near_to_the_best_of_all_orders(seed: int) -> None:
 def test_two_runs_change_places(cuts: list[int]) -> None:
     first, middle, stop = (2 * cut for cut in sorted(cuts))
     costs, tour = costs_between(12, 3, 8), list(range(24))
-    trip = trip_of(costs, tour)
-    exchange(costs, trip, first, middle, stop)
+    state = state_of(costs, tour)
+    exchange(costs, state, first, middle, stop)
     expected = [*tour[:first], *tour[middle:stop], *tour[first:middle], *tour[stop:]]
-    assert trip.tour.tolist() == expected
-    assert [expected.index(end) for end in range(24)] == trip.position.tolist()
-    assert_joined(costs, trip)
+    assert state.tour.tolist() == expected
+    assert [expected.index(end) for end in range(24)] == state.position.tolist()
+    assert_joined(costs, state)
 
 
-def assert_joined(costs: Costs, trip: Trip) -> None:
+def assert_joined(costs: Costs, state: TourState) -> None:
     """Both ends of each connection know what it costs."""
-    for at in range(1, len(trip.tour) - 1, 2):
-        one, other = trip.tour[at : at + 2].tolist()
-        assert trip.joined[one] == trip.joined[other] == cost_of(costs, one, other)
+    for at in range(1, len(state.tour) - 1, 2):
+        one, other = state.tour[at : at + 2].tolist()
+        assert state.joined[one] == state.joined[other] == cost_of(costs, one, other)

@@ -19,7 +19,7 @@ from roomba.planning.coverage.tour.costs import (
 from roomba.planning.coverage.tour.near import neighbours, places_over, search_over
 from roomba.planning.coverage.tour.net import net_over
 from roomba.planning.coverage.tour.order import ordered
-from roomba.planning.coverage.tour.tour import shaken
+from roomba.planning.coverage.tour.tour import iterated_local_search
 
 CONFIG = CoverageConfig()
 
@@ -46,7 +46,9 @@ def tour_of(order: tuple[int, ...], flips: tuple[int, ...]) -> Tour:
 @pytest.mark.parametrize("seed", range(4))
 def test_few_pieces_are_put_in_hardly_a_worse_order_than_the_best(seed: int) -> None:
     costs = costs_between(seed, 7)
-    tour = shaken(costs, np.arange(14, dtype=np.int32), CONFIG.search_rounds, CONFIG.search_pays)
+    tour = iterated_local_search(
+        costs, np.arange(14, dtype=np.int32), CONFIG.search_rounds, CONFIG.search_pays
+    )
     best = min(
         tour_cost(costs, tour_of(order, flips))
         for order in permutations(range(1, 6))
@@ -61,7 +63,7 @@ def test_few_pieces_are_put_in_hardly_a_worse_order_than_the_best(seed: int) -> 
 def test_many_pieces_get_a_much_better_order() -> None:
     costs = costs_between(1, 60)
     first = np.arange(120, dtype=np.int32)
-    tour = shaken(costs, first, CONFIG.search_rounds, CONFIG.search_pays)
+    tour = iterated_local_search(costs, first, CONFIG.search_rounds, CONFIG.search_pays)
     assert sorted(tour.tolist()) == first.tolist()
     assert all(tour[at] ^ 1 == tour[at + 1] for at in range(0, 120, 2))
     assert tour_cost(costs, tour) < 0.3 * tour_cost(costs, first)
