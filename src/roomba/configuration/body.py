@@ -73,15 +73,6 @@ class BodyConfig(Frozen):
             return -farthest, farthest
         return (0.0, math.pi / 2.0) if left else (-math.pi / 2.0, 0.0)
 
-    def patience(self, timeout: float, turning_speed: float) -> float:
-        """Return how long it may come no farther before it counts as held, s.
-
-        At least ``timeout`` s, and two half turns on the spot at ``turning_speed``, rad/s, or at
-        its own top one: on its way it may have to turn by one, and comes no farther meanwhile.
-        """
-        half_turn = math.pi / min(turning_speed, self.max_angular_speed)
-        return max(timeout, 2.0 * half_turn)
-
     def docked_at(self, station: Pose) -> Pose:
         """Return the pose of the robot for that of its station, which looks into the station.
 

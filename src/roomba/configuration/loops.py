@@ -61,6 +61,8 @@ class WalkConfig(Frozen):
     remembers of things is of another place. Of cleans as well."""
     least_progress: Length = 0.05
     """m; coming nearer to the goal by less is no progress."""
+    least_turn: Angle = 0.2
+    """rad of a turn towards the way; less is no progress either."""
     standstill: Speed = 0.03
     """m/s; slower than this the robot stands."""
     sharp_corner: Acute = 0.3

@@ -120,6 +120,8 @@ class DrivingConfig(Frozen):
     """Mean speed of a clean as a share of ``speed``, by which the time to go is told."""
     least_progress: Length = 0.02
     """m along the path; less is no progress."""
+    least_turn: Angle = 0.2
+    """rad of a turn on the spot; less is no progress either."""
     leaves_trouble: Length = 0.5
     """m of progress after which earlier recoveries count no more."""
     most_futile: AtLeastOne = 3

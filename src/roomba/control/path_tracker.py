@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,7 +33,7 @@ class PathTracker:
         # The same row twice: numbers are read from the plain one in a tenth of the time.
         self.state, self._row = rows.view(np.recarray), rows[0]
         state = self.state[0]
-        state.turning = 1.0
+        state.turning, state.to_turn = 1.0, math.inf
         state.acceleration, state.braking = body.max_acceleration, config.braking
         state.reach, state.reach_time = config.reach, config.reach_time
         state.gain = config.heading_gain
@@ -60,6 +62,11 @@ class PathTracker:
     def leg(self) -> int:
         """The leg that it is on, from 0."""
         return int(self._row["leg"])
+
+    @property
+    def to_turn(self) -> float:
+        """What is left of a turn on the spot, rad, by the last tick; infinite where it drives."""
+        return float(self._row["to_turn"])
 
     @property
     def length(self) -> float:

@@ -20,6 +20,7 @@ TRACK: Final = np.dtype(
         ("section", "i8"),  # that it is on
         ("leg", "i8"),  # of the path, as far as it came
         ("turning", "f8"),  # 1 while it turns on the spot towards its section
+        ("to_turn", "f8"),  # rad; what is left of that turn, infinite where it drives
         ("done", "f8"),  # 1 at the end of the path
         ("along", "f8"),  # how far along the path it is, m
         ("aside", "f8"),  # left of its curve, m
@@ -66,9 +67,9 @@ def track(
         error = wrapped(heading - theta)
         if state.turning > 0.0:
             if abs(error) > state.aimed:
-                state.speed = 0.0
-                return 0.0, turn_speed(state, error)
+                return turn_on_the_spot(state, error)
             state.turning = 0.0
+        state.to_turn = math.inf
         left = section.end - state.along
         if left > state.there:
             return drive(state, course, section, error, left, limit)
@@ -137,6 +138,13 @@ def between(section: Row, station: float) -> tuple[int, float]:
 
 
 @inner_part
+def turn_on_the_spot(state: Row, error: float) -> tuple[float, float]:
+    """Return the twist that turns by ``error``, rad, and note what is left of the turn."""
+    state.speed, state.to_turn = 0.0, abs(error)
+    return 0.0, turn_speed(state, error)
+
+
+@inner_part
 def turn_speed(state: Row, error: float) -> float:
     """Return the turning speed, rad/s, that ends a turn on the spot without overshoot."""
     size = abs(error)
@@ -154,8 +162,8 @@ def drive(
     """Return the twist along the curve: as fast as what is ahead allows, back to the line."""
     if abs(error) > state.askew:
         # Pushed aside: it aims first.
-        state.turning, state.speed = 1.0, 0.0
-        return 0.0, turn_speed(state, error)
+        state.turning = 1.0
+        return turn_on_the_spot(state, error)
     late = state.late * state.period * state.speed
     speed = min(limit, speed_at(course, section, state.along + late))
     speed = min(speed, arriving_speed(state, left))

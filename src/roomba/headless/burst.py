@@ -131,7 +131,6 @@ class Burst:
         )
         if steady.driver is not None:
             row["off_path"] = brain.config.driving.off_path
-            row["progress_timeout"] = steady.driver.patience
         row["felt_version"] = mission.obstacles.felt_version
         row["clock"] = brain.readings.time - self._body.simulator.time
         row["scans"], row["seen_at"] = self._body.scans, brain.keeper.scans.seen_at

@@ -20,7 +20,7 @@ from roomba.headless.burst_place_kernels import believed, follow
 from roomba.headless.burst_state import Drive, Floor, PlaceParts, Rows, Sight, World
 from roomba.headless.tick_rows import BELIEVED, GYRO, ODOMETRY, TIME, TRUE
 from roomba.mission.cleaning.dirty.watch_kernels import may_be_dirty
-from roomba.mission.driving.progress_kernels import mark_progress
+from roomba.mission.driving.progress_kernels import is_held
 from roomba.mission.driving.way_ahead_kernels import is_blocked
 from roomba.mission.phases.carpet_kernels import changes_floor, note_current
 from roomba.mission.phases.dust_bin_kernels import note_dust
@@ -96,7 +96,7 @@ def comes_up(
     course, version = drive.course, things.layer[0].version + burst.felt_version
     if is_blocked(drive.ahead, things, course.points, course.stations, version, along):
         return True
-    return bool(mark_progress(drive.progress, along, tracker.leg, now) > burst.progress_timeout)
+    return bool(is_held(drive.progress, along, tracker.leg, tracker.to_turn, now))
 
 
 @inner_part

@@ -45,7 +45,6 @@ BURST: Final = np.dtype(
         ("most_silent", "f8"),  # m2 that became clean without a grain
         ("cell_area", "f8"),  # m2
         ("off_path", "f8"),  # m
-        ("progress_timeout", "f8"),  # s without progress
         ("felt_version", "i8"),  # of what the bumper felt in the way
         # what goes on
         ("clock", "f8"),  # s; of the robot, beside the world's

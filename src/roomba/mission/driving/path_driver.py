@@ -22,7 +22,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.control.path_tracker import PathTracker
 from roomba.geometry import STANDSTILL, Twist
 from roomba.mission.driving.obstacles import Obstacles
-from roomba.mission.driving.progress_kernels import PROGRESS, mark_progress
+from roomba.mission.driving.progress_kernels import PROGRESS, is_held
 from roomba.mission.driving.recovery import Recovery
 from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
@@ -108,7 +108,9 @@ class PathDriver:
         self._backs_from: tuple[float, float, float] | None = None
         self._recovery: Recovery | None = None
         self.progress = np.zeros(1, PROGRESS)
+        self.progress["timeout"] = config.progress_timeout
         self.progress["least"] = config.least_progress
+        self.progress["least_turn"] = config.least_turn
         self.progress["leaves_trouble"] = config.leaves_trouble
         self._planned_at, self._futile = (math.inf, math.inf), 0
         self._nudged_at = (math.inf, math.inf)
@@ -121,12 +123,6 @@ class PathDriver:
     def left(self) -> float:
         """How much of the path is before the robot, m."""
         return self.tracker.left
-
-    @property
-    def patience(self) -> float:
-        """How long it may come no farther, s."""
-        timeout, tracking = self._config.progress_timeout, self._robot.tracking
-        return self._robot.body.patience(timeout, tracking.turning_speed)
 
     @property
     def points_left(self) -> NDArray[np.float64]:
@@ -248,7 +244,7 @@ class PathDriver:
             self.tracker.course, self._obstacles, self._config.look_ahead, leaves_until
         )
         row = self.progress[0]
-        row["at"], row["along"], row["leg"] = senses.now, 0.0, 0
+        row["at"], row["along"], row["leg"], row["to_turn"] = senses.now, 0.0, 0, math.inf
 
     def _go_around(self, senses: Senses) -> None:
         """Plan to the next piece of the path that can be reached; a bump may have shortened it."""
@@ -269,8 +265,7 @@ class PathDriver:
 
     def _comes_no_farther(self, senses: Senses) -> bool:
         tracker = self.tracker
-        since = mark_progress(self.progress, tracker.along, tracker.leg, senses.now)
-        return bool(since > self.patience)
+        return bool(is_held(self.progress, tracker.along, tracker.leg, tracker.to_turn, senses.now))
 
     def _begin_recovery(self, senses: Senses) -> None:
         self.progress["recoveries"] += 1

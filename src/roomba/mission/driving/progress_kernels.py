@@ -16,9 +16,12 @@ PROGRESS: Final = np.dtype(
         ("at", "f8"),  # s; when it last came farther
         ("along", "f8"),  # m; how far along its path it was then
         ("leg", "i8"),
+        ("to_turn", "f8"),  # rad; the least that was left of a turn on the spot since then
         ("recoveries", "i8"),  # in vain, one after the other
         # what does not change
+        ("timeout", "f8"),  # s without progress, after which it is held
         ("least", "f8"),  # m along the path; less is no progress
+        ("least_turn", "f8"),  # rad of a turn on the spot; less is none either
         ("leaves_trouble", "f8"),  # m of progress after which earlier recoveries count no more
     ]
 )
@@ -26,12 +29,18 @@ PROGRESS: Final = np.dtype(
 
 
 @entry
-def mark_progress(rows: Rows, along: float, leg: int, now: float) -> float:
-    """Remember whether a drive came farther by a time, s; return for how long it has not."""
+def is_held(rows: Rows, along: float, leg: int, to_turn: float, now: float) -> bool:
+    """Remember whether a drive came farther by a time, s; tell if it has not for too long.
+
+    ``to_turn`` is what is left of a turn on the spot, rad, infinite where it drives. On one place
+    it comes farther as long as less and less of a turn is left, so not for ever.
+    """
     progress = rows[0]
     if along > progress.along + progress.least or leg > progress.leg:
-        progress.at, progress.leg = now, leg
+        progress.at, progress.leg, progress.to_turn = now, leg, np.inf
         if along > progress.leaves_trouble:
             progress.recoveries = 0
         progress.along = max(along, progress.along)
-    return float(now - progress.at)
+    elif to_turn < progress.to_turn - progress.least_turn:
+        progress.at, progress.to_turn = now, to_turn
+    return bool(now - progress.at > progress.timeout)

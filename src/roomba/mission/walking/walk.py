@@ -67,8 +67,6 @@ class Walk:
         """Plan the way; raises NoPathError when there is none, ValueError for a goal not finite."""
         self.goal = goal
         self._planner, self._config, self._obstacles = planner, robot.walk, obstacles
-        timeout, turning_speed = robot.walk.progress_timeout, robot.control.turning_speed
-        self._patience = robot.body.patience(timeout, turning_speed)
         self._started = senses.now
         self._jumps = ClockJumps(last=senses.now, longest=LONGEST_TICK)
         self._replans = self._ways_around = 0
@@ -96,6 +94,7 @@ class Walk:
         if self._blocked_since is not None:
             return self._stay(WalkState.WALKING, senses, 0.0, self._trouble)
         setpoint, cruise_speed = self._follower.tick(senses.pose, max_speed)
+        self._setpoint = setpoint
         return WalkStep(WalkState.WALKING, setpoint, cruise_speed, self._follower.left)
 
     def _begin(self, path: Path, senses: Senses) -> None:
@@ -108,7 +107,9 @@ class Walk:
         self._ahead = WayAhead(path, self._obstacles, self._config.look_ahead, leaves_until)
         self._blocked_since: float | None = None
         self._looked, self._trouble = -math.inf, ""
-        self._least_left, self._progressed = math.inf, senses.now
+        self._setpoint = (senses.pose.x, senses.pose.y)
+        self._least_left, self._least_turn = math.inf, math.inf
+        self._progressed = senses.now
 
     def _stay(self, state: WalkState, senses: Senses, speed: float, reason: str) -> WalkStep:
         here = (senses.pose.x, senses.pose.y)
@@ -161,13 +162,23 @@ class Walk:
             return f"the floor ends {where}" if senses.cliff else f"{_UNKNOWN} in the way {where}"
         if self._follower.distance_off(senses.pose) > self._config.off_path:
             return f"the robot was moved off its path {where}"
-        is_nearer = self._follower.left < self._least_left - self._config.least_progress
-        if is_nearer or self._blocked_since is not None:
-            self._least_left = min(self._least_left, self._follower.left)
+        if self._comes_nearer(senses) or self._blocked_since is not None:
             self._progressed = senses.now
-        if senses.now - self._progressed > self._patience:
+        if senses.now - self._progressed > self._config.progress_timeout:
             return f"the robot comes no nearer {where}"
         return ""
+
+    def _comes_nearer(self, senses: Senses) -> bool:
+        """Whether less of the way is left than ever, or less of a turn than ever since then."""
+        left = self._follower.left
+        to_turn = abs(senses.pose.bearing_to(*self._setpoint))
+        if left < self._least_left - self._config.least_progress:
+            self._least_left, self._least_turn = left, math.inf
+            return True
+        if to_turn < self._least_turn - self._config.least_turn:
+            self._least_turn = to_turn
+            return True
+        return False
 
     def _is_found_again(self, senses: Senses) -> bool:
         """Whether the place is known again; what is remembered of another place is forgotten."""

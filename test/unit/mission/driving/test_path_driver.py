@@ -202,6 +202,17 @@ def test_one_that_turns_slowly_is_not_stuck_while_it_turns(limit: str) -> None:
     assert DriveState.RECOVERING not in rig.states
 
 
+def test_one_that_turns_slower_than_it_is_told_is_not_stuck_while_it_turns() -> None:
+    """As behind a slow line, whose commands reach it now and then."""
+    rig = Rig(pose=Pose(0.6, 0.5, math.pi))
+
+    def meanwhile(tick: int) -> None:
+        rig.is_held = tick % 10 != 0
+
+    assert rig.run(meanwhile=meanwhile).state is DriveState.DONE
+    assert DriveState.RECOVERING not in rig.states
+
+
 def test_held_for_a_while_it_goes_on() -> None:
     rig = Rig()
 

@@ -136,13 +136,13 @@ def test_a_goal_beside_the_stairs_is_reached_without_a_wheel_over_the_edge() -> 
     assert record.poses[:, 1].max() < 6.5
 
 
-def stuck_walk(robot: RobotConfig = CONFIG) -> tuple[Walk, Senses]:
+def stuck_walk() -> tuple[Walk, Senses]:
     home = room_home()
     planner = PathPlanner(home.map, CONFIG.body.radius, 0.04, 0.01)
     senses = Senses(100.0, Pose(1.0, 1.0, 0.0))
     things = ThingLayer(SurfaceField.of(home.map))
     obstacles = Obstacles(things, CONFIG.walk, CONFIG.body, MissionConfig().driving)
-    return Walk(planner, robot, obstacles, (4.0, 3.0), senses), senses
+    return Walk(planner, CONFIG, obstacles, (4.0, 3.0), senses), senses
 
 
 def test_where_it_stands_it_has_arrived_though_no_way_leads_there() -> None:
@@ -172,19 +172,29 @@ def test_a_robot_that_does_not_move_gives_up_with_the_reason() -> None:
     assert walk.time_spent(100.0 + 0.05 * tick) == pytest.approx(expected, abs=2.0)
 
 
-@pytest.mark.parametrize("limit", ["body", "control"])
-def test_one_that_turns_slowly_keeps_its_path_while_it_turns(limit: str) -> None:
+def test_one_that_turns_slowly_keeps_its_path_while_it_turns() -> None:
     """Its half turn on the spot takes some 16 s, more than twice what is no progress."""
-    slow = {"max_angular_speed" if limit == "body" else "turning_speed": 0.2}
-    walk, senses = stuck_walk(RobotConfig.model_validate({limit: slow}))
-    path, half_turn = walk.path, math.pi / 0.2
-    for time in np.arange(0.05, half_turn, 0.05):
-        turned = replace(senses.pose, theta=0.2 * time)
+    walk, senses = stuck_walk()
+    path, speed = walk.path, 0.2
+    ahead = senses.pose.bearing_to(*path.points[1])
+    times = np.arange(0.05, math.pi / speed, 0.05)
+    for time in times:
+        turned = replace(senses.pose, theta=ahead + math.pi - speed * time)
         walk.tick(Senses(100.0 + time, turned), 0.5)
         assert walk.path is path
-    for time in np.arange(half_turn, 2.0 * half_turn + 0.2, 0.05):
+    for time in times[-1] + np.arange(0.05, CONFIG.walk.progress_timeout + 0.2, 0.05):
         walk.tick(Senses(100.0 + time, turned), 0.5)
     assert walk.path is not path, "it is held"
+
+
+def test_one_that_swings_to_and_fro_is_held() -> None:
+    walk, senses = stuck_walk()
+    path = walk.path
+    for time in np.arange(0.05, 10.0 * CONFIG.walk.progress_timeout, 0.05):
+        walk.tick(Senses(100.0 + time, replace(senses.pose, theta=3.0 * math.sin(time))), 0.5)
+        if walk.path is not path:
+            return
+    raise AssertionError("it was never held")
 
 
 def test_a_robot_that_was_carried_away_plans_anew() -> None:
