@@ -71,7 +71,7 @@ class ChangeTopics:
         self._offered = offered
         self._tell(now)
         if offered:
-            rospy.loginfo("%d things stand otherwise than on the map; see map/update", len(offered))
+            rospy.loginfo("%d changes against the map are offered; see map/update", len(offered))
 
     def _tell(self, now: float) -> None:
         self._publisher.publish(update_message(now, self._offered, "map"))

@@ -34,7 +34,7 @@ _DONE: Final = {
     Event.PAUSE: "paused",
     Event.RESUME: "going on",
     Event.STOP: "stopped",
-    Event.EMPTIED: "it goes by an empty bin",
+    Event.EMPTIED: "the bin counts as empty now",
     Event.EMPTY: "its station empties the bin",
 }
 

@@ -263,7 +263,7 @@ def test_a_full_bin_is_told_and_waited_for(graph: RosGraph) -> None:
     world.bin_level = 0.0
     world.does("undocking", 30.0)
     assert world.state.message == ""
-    assert order("empty_bin") == (True, "it goes by an empty bin")
+    assert order("empty_bin") == (True, "the bin counts as empty now")
 
 
 def test_its_station_empties_the_bin_as_long_as_it_is_told_to(graph: RosGraph) -> None:
