@@ -81,7 +81,7 @@ class CleanRequest:
         return max((way.passes for way in self.each), default=self.passes)
 
     def way_of(self, room: str) -> RoomWay:
-        """Return how a room is cleaned; what is none of its rooms, as all else."""
+        """Return how a room is cleaned: by its part of ``each``, else by ``passes`` and ``fan``."""
         if self.each and room in self.rooms:
             return self.each[self.rooms.index(room)]
         return RoomWay(self.passes, self.fan)

@@ -149,7 +149,7 @@ class OpenEdge:
 
 
 def fault_of_name(name: str) -> str:
-    """Return what is expected of a name in place of this one; empty if it is one."""
+    """Return why a text is no valid name: what was expected, and came; empty if it is one."""
     if 0 < len(name) <= LONGEST_NAME and name.strip() and is_readable(name):
         return ""
     # Of an endless one, the beginning tells enough.

@@ -14,7 +14,7 @@ _DONE: Final = (ErrandOutcome.COMPLETED, ErrandOutcome.NOT_DOCKED)
 
 
 class EndedErrands:
-    """Which errand ended since the look before; what did so before the first is another's."""
+    """Finds errands that ended since the last look; one that ended before the first is ignored."""
 
     def __init__(self) -> None:
         """Begin before the first look."""

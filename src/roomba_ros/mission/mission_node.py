@@ -65,7 +65,7 @@ _SILENT = "no message tells its place; is position_pub_node running?"
 
 
 class MissionNode:
-    """Ticks one mission for each map; what it is on, it takes up again after it was killed.
+    """Ticks one mission for each map; a restarted node resumes the errand that was under way.
 
     Publishes, subscribes and serves what :class:`HeardSenses`, :class:`HomeTopics`,
     :class:`LowThingTopics`, :class:`CarpetTopics`, :class:`MissionOrders`, :class:`MissionDrive`

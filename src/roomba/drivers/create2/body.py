@@ -2,8 +2,8 @@
 
 The robot drives as it was told last, for ever: the Open Interface has no time-out. So it is told
 anew twenty times a second; :mod:`roomba.drivers.create2.dead_man` stops it when the driver dies,
-and safe mode where a wheel drops or the floor ends. A cable that is pulled while it drives nothing
-can make up for. :meth:`Create2Body.serve` is called again and again by a thread of its own.
+and safe mode where a wheel drops or the floor ends. When its cable is pulled while it drives, only
+safe mode can stop it. A thread of its own calls :meth:`Create2Body.serve` again and again.
 """
 
 from __future__ import annotations

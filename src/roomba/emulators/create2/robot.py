@@ -95,7 +95,7 @@ class Create2Robot:
             Opcode.TOGGLE_STREAM: self._toggle_stream,
         }
         for program in (Opcode.POWER, Opcode.SPOT, Opcode.CLEAN, Opcode.MAX, Opcode.SEEK_DOCK):
-            # Its own programs are not made up: it is out of the hands of whom it obeyed, and rests.
+            # The robot's own programs are not emulated: it goes to passive mode and stands.
             self._actions[program] = lambda data: self._into(OpenMode.PASSIVE)
         self._begin_anew()
 
