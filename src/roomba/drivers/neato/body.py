@@ -3,9 +3,9 @@
 One command at a time goes over the line, some 25 ms each and a scan half a second on a serial line.
 :meth:`NeatoBody.serve` does the one that is due; a thread of its own calls it again and again.
 
-No command takes a wheel farther ahead than the floor that the drop sensors have seen, which are
-asked before it where too little of that is left: a scan, a slow line or one that dies lead over no
-edge. Where they tell one the wheels are stopped at once.
+No command drives a wheel farther ahead than the floor that the drop sensors have seen. They are
+asked first where too little of it is left, so that neither a scan nor a slow or dead line leads
+over an edge. When they report an edge the wheels are stopped at once.
 """
 
 from __future__ import annotations
@@ -42,8 +42,9 @@ from roomba.robot.command import Command
 from roomba.robot.readings import CliffReading, Readings, ScanReading
 
 _SCAN_ANSWER: Final = 1.5
+"""s; the longest wait for the answer to GetLDSScan."""
 _BEGINNING: Final = 1.0
-"""s; the same for what takes the robot over."""
+"""s; the longest wait for the answer to a command that takes the robot over."""
 _GIVING_BACK: Final = 3
 """Times that it is tried; a radio that fails once may not fail again."""
 _SILENT: Final = 0.15
@@ -63,11 +64,11 @@ _SCAN_SHARE: Final = 0.5
 _BRIDGED_SCAN_SHARE: Final = 0.8
 """The same behind a bridge: it rests after each short answer, and scans would be too rare."""
 _CALM: Final = 0.3
-"""rad/s; a robot that turns faster waits for the next scan, where they take long,"""
+"""rad/s; while the robot turns faster, no scan is asked for on a slow line."""
 _SETTLED: Final = 0.4
-"""s; and for so long after that: it is asked for a sweep that was measured by then,"""
+"""s after such a turn until a scan is asked for: its sweep was measured after the turn."""
 _LONGEST_WITHOUT_SCAN: Final = 3.0
-"""but no longer than that, s."""
+"""s without a scan, after which one is asked for even while the robot turns."""
 _NO_FLOOR: Final = 0.06
 """m; a floor so far below a drop sensor is none."""
 _SAME_TURN: Final = 0.05
