@@ -11,7 +11,7 @@ import serial
 
 from roomba.errors import RoombaError
 
-_GONE: Final = (serial.SerialException, OSError, termios.error, TypeError)
+_UNPLUGGED: Final = (serial.SerialException, OSError, termios.error, TypeError)
 """What pyserial raises when a device was unplugged; TypeError when another thread closed it."""
 _NO_PINS: Final = (errno.ENOTTY, errno.EINVAL)
 """What a device without such pins answers."""
@@ -69,7 +69,7 @@ class SerialLine:
         """Send all of ``data``."""
         try:
             self._serial.write(data)
-        except _GONE as error:
+        except _UNPLUGGED as error:
             raise LineError(f"the line is gone: {error}") from error
 
     def read(self, seconds: float) -> bytes:
@@ -78,7 +78,7 @@ class SerialLine:
             self._serial.timeout = seconds
             first = self._serial.read(1)
             return bytes(first + self._serial.read(min(self._serial.in_waiting, _PIECE)))
-        except _GONE as error:
+        except _UNPLUGGED as error:
             raise LineError(f"the line is gone: {error}") from error
 
     def pull(self, *, is_low: bool) -> bool:
@@ -88,7 +88,7 @@ class SerialLine:
         """
         try:
             self._serial.rts = self._serial.dtr = is_low
-        except _GONE as error:
+        except _UNPLUGGED as error:
             if getattr(error, "errno", None) in _NO_PINS:
                 return False
             raise LineError(f"the line is gone: {error}") from error
@@ -98,7 +98,7 @@ class SerialLine:
         """Forget what came and was not read."""
         try:
             self._serial.reset_input_buffer()
-        except _GONE as error:
+        except _UNPLUGGED as error:
             raise LineError(f"the line is gone: {error}") from error
 
     def close(self) -> None:

@@ -21,13 +21,13 @@ from roomba.robot.command import Command
 from roomba.robot.readings import Readings, ScanReading
 
 _LOG: Final = logging.getLogger(__name__)
-_AGAIN: Final = 0.5
+_RETRY_PERIOD: Final = 0.5
 """s of wall time between two attempts to open a line that is gone, and after a fault."""
-_FIRST_SCAN: Final = 15.0
+_FIRST_SCAN_WAIT: Final = 15.0
 """s of wall time; a lidar needs some to come up to its speed."""
-_LOOK: Final = 0.05
+_LOOK_PERIOD: Final = 0.05
 """s of wall time between two looks for the first scan."""
-_ENDING: Final = 5.0
+_LONGEST_ENDING: Final = 5.0
 """s of wall time for the thread of the line to end: longer than any answer takes."""
 
 
@@ -68,7 +68,7 @@ class LineBody:
         self._faults: set[str] = set()
         """The kinds and places of those that are in the log already."""
 
-    def start(self, first_scan: float = _FIRST_SCAN, *, has_lidar: bool = True) -> None:
+    def start(self, first_scan: float = _FIRST_SCAN_WAIT, *, has_lidar: bool = True) -> None:
         """Take the robot over, and return when its lidar told a scan, if it has one.
 
         Raises LineError when it does not answer, NoScanError when no scan comes within
@@ -94,13 +94,13 @@ class LineBody:
                     "turn, and is nothing in its way?"
                 )
             self._driver.act(Command())
-            self._is_over.wait(_LOOK)
+            self._is_over.wait(_LOOK_PERIOD)
 
     def stop(self) -> None:
         """Let the robot stand, give it back, and let go of the line."""
         self._is_over.set()
         if self._thread.ident is not None:
-            self._thread.join(_ENDING)
+            self._thread.join(_LONGEST_ENDING)
         self._driver.end()
         self._line.close()
 
@@ -145,7 +145,7 @@ class LineBody:
         self._clock.stand()
         self._note(error)
         # A line that is only garbled is whole again at once; a fault may come each time.
-        pause = 0.0 if isinstance(error, LineError) else _AGAIN
+        pause = 0.0 if isinstance(error, LineError) else _RETRY_PERIOD
         is_open = True
         while not self._is_over.wait(pause):
             try:
@@ -154,7 +154,7 @@ class LineBody:
                 self._driver.begin()
             except Exception as newer:
                 self._note(newer)
-                is_open, pause = False, _AGAIN
+                is_open, pause = False, _RETRY_PERIOD
                 continue
             self._clock.go_on()
             self._trouble = ""

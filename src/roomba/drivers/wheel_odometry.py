@@ -9,9 +9,9 @@ from typing import Final
 
 from roomba.geometry import STANDSTILL, Pose, Twist
 
-_WINDOW: Final = 0.15
+_SPEED_WINDOW: Final = 0.15
 """s; speeds are taken over at least that: wheels are told in steps of a millimetre or so."""
-_JUMP: Final = 0.5
+_LEAST_JUMP: Final = 0.5
 """m; a wheel that is told farther than this from before began to count anew."""
 
 
@@ -40,7 +40,7 @@ class WheelOdometry:
         if self._told:
             before = self._told[-1]
             ways = left - before.left, right - before.right
-            if max(map(abs, ways)) > _JUMP or at <= before.at:
+            if max(map(abs, ways)) > _LEAST_JUMP or at <= before.at:
                 self._told.clear()
                 self._twist = STANDSTILL
             else:
@@ -70,7 +70,7 @@ class WheelOdometry:
 
     def _measure(self) -> None:
         newest = self._told[-1]
-        while len(self._told) > 2 and newest.at - self._told[1].at >= _WINDOW:
+        while len(self._told) > 2 and newest.at - self._told[1].at >= _SPEED_WINDOW:
             self._told.popleft()
         first = self._told[0]
         passed = newest.at - first.at

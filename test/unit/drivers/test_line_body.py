@@ -100,7 +100,7 @@ def test_after_a_fault_it_waits_before_it_takes_over_again() -> None:
 
 
 def test_stopped_while_it_waits_it_takes_nothing_over(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roomba.drivers.line_body._AGAIN", 60.0)
+    monkeypatch.setattr("roomba.drivers.line_body._RETRY_PERIOD", 60.0)
     driver = FaultyDriver([ValueError("no number")] * 1000, [])
     body = body_by(driver)
     body.start(has_lidar=False)

@@ -33,17 +33,17 @@ from roomba.robot.readings import Readings, ScanReading
 
 BAUDS: Final = (115_200, 19_200)
 """What its line is tried with: the usual rate, and the one of a robot that was asked for it."""
-_ROOMY: Final = 57_600
+_LEAST_BAUD_FOR_ALL: Final = 57_600
 """Baud, from which on all packets come in each frame."""
-_PERIOD: Final = 0.05
+_SEND_PERIOD: Final = 0.05
 """s, between two commands."""
-_SILENT: Final = 0.15
+_LONGEST_SILENCE: Final = 0.15
 """s; the robot stands when what it is to do, or what it told last, is older than this."""
-_GONE: Final = 0.5
+_FRAME_WAIT: Final = 0.5
 """s without a frame, after which the line counts as gone."""
-_FIRST: Final = 0.5
+_FIRST_FRAME_WAIT: Final = 0.5
 """s, for the first frame at each rate."""
-_TURNS: Final = 5
+_COMMANDS_PER_SLOW_LIST: Final = 5
 """Of as many commands on a slow line one is followed by the packets that may be old."""
 
 
@@ -166,14 +166,14 @@ class Create2Body:
         try:
             if self._line is None:
                 raise LineError("expected begin() before serve()")
-            self._take(self._line.read(max(0.001, min(_PERIOD, self._due - time.monotonic()))))
+            self._take(self._line.read(max(0.001, min(_SEND_PERIOD, self._due - time.monotonic()))))
             now = time.monotonic()
-            if now - self._heard > _GONE:
-                raise LineError(f"expected a frame each 15 ms, got none for {_GONE:g} s")
+            if now - self._heard > _FRAME_WAIT:
+                raise LineError(f"expected a frame each 15 ms, got none for {_FRAME_WAIT:g} s")
             if self._obedience.is_lost(now, self._twist, self._odometry.twist):
                 raise DisobeyedError("its wheels do not turn as they are told")
             if now >= self._due:
-                self._due = now + _PERIOD
+                self._due = now + _SEND_PERIOD
                 self._send(self._line, now)
                 self._pin.keep_awake(self._line, may_sleep=self._state.mode is OpenMode.PASSIVE)
         except LineError as error:
@@ -207,17 +207,17 @@ class Create2Body:
 
     def _answers(self, baud: int) -> bool:
         """Open the line at a rate, and ask for the stream; whether it comes."""
-        self._lists = (ALL,) if baud >= _ROOMY else (FAST, SLOW)
+        self._lists = (ALL,) if baud >= _LEAST_BAUD_FOR_ALL else (FAST, SLOW)
         self._reader = FrameReader(self._lists)
         self._line = self._opened(self._port, baud)
         try:
             self._line.discard()
             self._line.write(LONG_PADDING + commands.into(OpenMode.PASSIVE))
             self._line.write(commands.song() + commands.stream(self._lists[0]))
-            self._due, until = time.monotonic(), time.monotonic() + _FIRST
+            self._due, until = time.monotonic(), time.monotonic() + _FIRST_FRAME_WAIT
             self._heard = -math.inf
             while not math.isfinite(self._heard) and time.monotonic() < until:
-                self._take(self._line.read(_PERIOD))
+                self._take(self._line.read(_SEND_PERIOD))
         except LineError:
             self._let_go()
             raise
@@ -237,7 +237,7 @@ class Create2Body:
 
     def _send(self, line: Line, now: float) -> None:
         with self._lock:
-            fresh = now - self._wanted_at <= _SILENT and now - self._heard <= _SILENT
+            fresh = now - min(self._wanted_at, self._heard) <= _LONGEST_SILENCE
             wanted = self._wanted if fresh else Command()
             sings, self._is_to_sing = self._is_to_sing, False
             state = self._state
@@ -280,7 +280,7 @@ class Create2Body:
         """Return the command for what is streamed until the next one, where lists take turns."""
         if len(self._lists) == 1:
             return b""
-        self._sent = (self._sent + 1) % _TURNS
+        self._sent = (self._sent + 1) % _COMMANDS_PER_SLOW_LIST
         if self._sent > 1:
             return b""
         fast, slow = self._lists

@@ -7,7 +7,7 @@ from typing import Final
 
 from roomba.drivers.create2.open_interface import HEADER, format_of
 
-_MOST: Final = 4096
+_MOST_BYTES: Final = 4096
 """Bytes that are kept; a frame has at most some hundred."""
 Told = Mapping[int, int]
 
@@ -33,7 +33,7 @@ class FrameReader:
 
     def take(self, data: bytes) -> list[Told]:
         """Return the packets of each frame that is whole by now, by their numbers."""
-        self._came = (self._came + data)[-_MOST:]
+        self._came = (self._came + data)[-_MOST_BYTES:]
         frames: list[Told] = []
         while True:
             start = self._came.find(HEADER)

@@ -8,11 +8,11 @@ from typing import Final
 from roomba.drivers.line import LineError
 from roomba.geometry import STANDSTILL, Twist
 
-_FASTER: Final = 0.05
+_LEAST_DISOBEDIENCE: Final = 0.05
 """m/s; a wheel that turns by so much faster than it is told, or the other way, does not obey."""
-_PATIENCE: Final = 0.5
+_LONGEST_DISOBEDIENCE: Final = 0.5
 """s; wheels that are told to stand do so much sooner."""
-_LASTING: Final = 3.0
+_LONGEST_AFTER_DRIVING: Final = 3.0
 """s since it was told to drive, after which wheels that turn are pushed by hand."""
 
 
@@ -40,9 +40,9 @@ class Obedience:
         if told != STANDSTILL:
             self._drove = now
         pairs = zip(self._wheels(told), self._wheels(measured), strict=True)
-        if now - self._drove > _LASTING or all(_is_obeyed(*pair) for pair in pairs):
+        if now - self._drove > _LONGEST_AFTER_DRIVING or all(_is_obeyed(*pair) for pair in pairs):
             self._obeyed = now
-        return now - self._obeyed > _PATIENCE
+        return now - self._obeyed > _LONGEST_DISOBEDIENCE
 
     def _wheels(self, twist: Twist) -> tuple[float, float]:
         """Return the speeds of the left and of the right wheel, m/s."""
@@ -52,4 +52,4 @@ class Obedience:
 
 def _is_obeyed(told: float, measured: float) -> bool:
     """Whether a wheel is no faster than it was told, m/s; a slower one is held up by something."""
-    return min(0.0, told) - _FASTER <= measured <= max(0.0, told) + _FASTER
+    return min(0.0, told) - _LEAST_DISOBEDIENCE <= measured <= max(0.0, told) + _LEAST_DISOBEDIENCE

@@ -10,11 +10,11 @@ from roomba.configuration.robot import RobotConfig
 from roomba.drivers.create2.open_interface import ENCODER_SPAN
 from roomba.geometry import STANDSTILL, Pose, Twist
 
-_WINDOW: Final = 0.1
+_SPEED_WINDOW: Final = 0.1
 """s; over which speeds are measured: a count is 0.4 mm."""
-_FASTEST: Final = 1.0
+_FASTEST_WHEEL: Final = 1.0
 """m/s, of a wheel; what is faster are encoders that began anew."""
-_SLACK: Final = 0.05
+_SLACK_WAY: Final = 0.05
 """m; more than what a wheel rolls while bytes wait."""
 
 
@@ -49,7 +49,7 @@ class EncoderOdometry:
             return
         at, left_before, right_before = before
         rolled = self._rolled(left_before, left), self._rolled(right_before, right)
-        if max(map(abs, rolled)) > _SLACK + _FASTEST * (now - at):
+        if max(map(abs, rolled)) > _SLACK_WAY + _FASTEST_WHEEL * (now - at):
             self.forget()
             self._last = now, left, right
             return
@@ -67,7 +67,7 @@ class EncoderOdometry:
         return self._way * ((now - before + half) % ENCODER_SPAN - half)
 
     def _measure(self, now: float) -> None:
-        while len(self._steps) > 2 and now - self._steps[1][0] >= _WINDOW:
+        while len(self._steps) > 2 and now - self._steps[1][0] >= _SPEED_WINDOW:
             self._steps.popleft()
         passed = now - self._steps[0][0]
         if passed <= 0.0:

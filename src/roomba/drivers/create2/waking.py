@@ -12,15 +12,15 @@ import math
 from collections.abc import Callable
 from typing import Final, Protocol
 
-HIGH: Final = 0.1
+HIGH_TIME: Final = 0.1
 """s for which the pin is held high before a pulse, so that the pulse begins with a falling edge."""
-LOW: Final = 1.0
+PULSE_TIME: Final = 1.0
 """s of a pulse: longer than those that change the rate."""
-EACH: Final = 60.0
+PULSE_PERIOD: Final = 60.0
 """s between two pulses that keep it awake: one that is lost does not matter."""
-AWAKE: Final = 1.0
+WAKING_TIME: Final = 1.0
 """s that it needs to wake, at most; assumed."""
-_LOOK: Final = 0.02
+_LOOK_PERIOD: Final = 0.02
 """s between two looks."""
 
 
@@ -48,14 +48,14 @@ class BrcPin:
         if not line.pull(is_low=False):
             return False
         self._is_low, self._began = False, self._wall()
-        while self._wall() - self._began < HIGH + LOW + AWAKE:
+        while self._wall() - self._began < HIGH_TIME + PULSE_TIME + WAKING_TIME:
             self._follow(line)
-            line.read(_LOOK)
+            line.read(_LOOK_PERIOD)
         return True
 
     def keep_awake(self, line: PinLine, *, may_sleep: bool) -> None:
         """Begin a pulse each minute while it may fall asleep, and end it in time."""
-        if may_sleep and self._wall() - self._began >= EACH:
+        if may_sleep and self._wall() - self._began >= PULSE_PERIOD:
             self._began = self._wall()
         self._follow(line)
 
@@ -64,7 +64,7 @@ class BrcPin:
         self._began, self._is_low = -math.inf, None
 
     def _follow(self, line: PinLine) -> None:
-        is_low = HIGH <= self._wall() - self._began < HIGH + LOW
+        is_low = HIGH_TIME <= self._wall() - self._began < HIGH_TIME + PULSE_TIME
         if is_low is not self._is_low:
             self._is_low = is_low
             line.pull(is_low=is_low)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-_DRIFT: Final = 0.0005
+_MOST_DRIFT: Final = 0.0005
 """Share; so much faster than the clock here a device's may go (crystals: 0.0001)."""
-_ASTRAY: Final = 0.5
+_LARGEST_OFFSET: Final = 0.5
 """s; a device that is farther off began anew."""
 
 
@@ -27,8 +27,8 @@ class DeviceClock:
         if self._before is not None:
             before, at = self._before
             self._counted += 1e-3 * ((told - before) % self._lap)
-            self._offset = min(self._offset + _DRIFT * (arrived - at), arrived - self._counted)
-            if arrived - self._counted - self._offset > _ASTRAY:
+            self._offset = min(self._offset + _MOST_DRIFT * (arrived - at), arrived - self._counted)
+            if arrived - self._counted - self._offset > _LARGEST_OFFSET:
                 self._before = None
         if self._before is None:
             self._counted, self._offset = 0.0, arrived

@@ -27,9 +27,9 @@ SIZE: Final = START.size + POINTS * POINT.size + END.size
 LAP: Final = 30_000
 """ms, after which the frames' time begins anew."""
 _POLYNOMIAL: Final = 0x4D
-_TURN: Final = 36_000
+_FULL_TURN: Final = 36_000
 """0.01 degrees"""
-_WIDEST: Final = 30.0
+_WIDEST_FRAME: Final = 30.0
 """degrees from the first to the last point; at 4 turns a second they are 4 degrees apart."""
 
 
@@ -67,8 +67,8 @@ def frame_of(data: bytes) -> LidarFrame | None:
         return None
     _head, speed, first = START.unpack_from(data)
     last, time, _crc = END.unpack_from(data, SIZE - END.size)
-    span = ((last - first) % _TURN) / 100.0
-    if first > _TURN or last > _TURN or span > _WIDEST:
+    span = ((last - first) % _FULL_TURN) / 100.0
+    if first > _FULL_TURN or last > _FULL_TURN or span > _WIDEST_FRAME:
         return None
     points = POINT.iter_unpack(data[START.size : SIZE - END.size])
     ranges = tuple(1e-3 * distance if distance else math.inf for distance, _ in points)

@@ -9,13 +9,13 @@ from typing import Final, Protocol
 from roomba.drivers.line import Line, LineError
 from roomba.robot.readings import ScanReading
 
-_SILENT: Final = 1.0
+_LONGEST_WITHOUT_SCAN: Final = 1.0
 """s without a scan, after which that is told."""
-_AGAIN: Final = 1.0
+_REOPEN_PERIOD: Final = 1.0
 """s, after which a line is opened anew."""
-_LOOK: Final = 0.05
+_LOOK_PERIOD: Final = 0.05
 """s; between two looks for whether it is to end."""
-_ENDING: Final = 2.0
+_LONGEST_ENDING: Final = 2.0
 """s, for its thread to end."""
 
 
@@ -46,7 +46,7 @@ class LidarReader:
         self._line: Line | None = None
         self._lock = threading.Lock()
         self._newest: ScanReading | None = None
-        self._came_at = self._tried_at = now() - _AGAIN
+        self._came_at = self._tried_at = now() - _REOPEN_PERIOD
         self.trouble = "not asked yet"
         self._is_over = threading.Event()
         self._thread: threading.Thread | None = None
@@ -62,7 +62,7 @@ class LidarReader:
         """Read no more, and let go of the line."""
         self._is_over.set()
         if self._thread is not None:
-            self._thread.join(_ENDING)
+            self._thread.join(_LONGEST_ENDING)
             self._thread = None
         self._let_go()
 
@@ -79,7 +79,7 @@ class LidarReader:
                 with self._lock:
                     self._newest = scan
                 self._came_at, self.trouble = now, ""
-            if now - self._came_at > _SILENT:
+            if now - self._came_at > _LONGEST_WITHOUT_SCAN:
                 self.trouble = (
                     f"expected scans of the lidar, got none for {now - self._came_at:.0f} s. "
                     "Does it turn, and is it the right kind and rate?"
@@ -95,7 +95,7 @@ class LidarReader:
 
     def _read_on(self) -> None:
         while not self._is_over.is_set():
-            self.serve(_LOOK)
+            self.serve(_LOOK_PERIOD)
 
     def _let_go(self) -> None:
         line, self._line = self._line, None
@@ -104,7 +104,7 @@ class LidarReader:
 
     def _begin(self) -> Line | None:
         now = self._now()
-        if now - self._tried_at < _AGAIN:
+        if now - self._tried_at < _REOPEN_PERIOD:
             return None
         self._tried_at = now
         self._line = self._opened()

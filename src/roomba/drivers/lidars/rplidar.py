@@ -18,10 +18,10 @@ STOP: Final = b"\xa5\x25"
 SCAN: Final = b"\xa5\x20"
 ANSWER: Final = b"\xa5\x5a\x05\x00\x00\x40\x81"
 """What comes before the first point."""
-_SIZE: Final = 5
-_ANGLES: Final = 64.0
-_RANGES: Final = 4000.0
-_SURE: Final = 3
+_POINT_SIZE: Final = 5
+_PER_DEGREE: Final = 64.0
+_PER_METRE: Final = 4000.0
+_POINTS_IN_A_ROW: Final = 3
 """Points that must follow each other for the first of them to count: bytes may be lost."""
 
 
@@ -47,13 +47,13 @@ class RplidarPoints:
         if ANSWER in self._came:
             self._came = self._came.partition(ANSWER)[2]
         scans: list[ScanReading] = []
-        while len(self._came) >= _SURE * _SIZE:
-            followed = range(0, _SURE * _SIZE, _SIZE)
-            if not all(_is_point(self._came[place : place + _SIZE]) for place in followed):
+        while len(self._came) >= _POINTS_IN_A_ROW * _POINT_SIZE:
+            followed = range(0, _POINTS_IN_A_ROW * _POINT_SIZE, _POINT_SIZE)
+            if not all(_is_point(self._came[place : place + _POINT_SIZE]) for place in followed):
                 self._came = self._came[1:]
                 continue
-            scan = self._turns.add(*_point_of(self._came[:_SIZE]), arrived)
-            self._came = self._came[_SIZE:]
+            scan = self._turns.add(*_point_of(self._came[:_POINT_SIZE]), arrived)
+            self._came = self._came[_POINT_SIZE:]
             if scan is not None:
                 scans.append(scan)
         return scans
@@ -61,11 +61,11 @@ class RplidarPoints:
 
 def _is_point(data: bytes) -> bool:
     first, angle = data[0], data[1] | data[2] << 8
-    return (first ^ first >> 1) & 1 == 1 and angle & 1 == 1 and (angle >> 1) < 360 * _ANGLES
+    return (first ^ first >> 1) & 1 == 1 and angle & 1 == 1 and (angle >> 1) < 360 * _PER_DEGREE
 
 
 def _point_of(data: bytes) -> tuple[float, float]:
     """Return the angle, degrees, and the range, m, inf without an echo."""
     distance = data[3] | data[4] << 8
-    angle = ((data[1] | data[2] << 8) >> 1) / _ANGLES
-    return angle, distance / _RANGES if distance else math.inf
+    angle = ((data[1] | data[2] << 8) >> 1) / _PER_DEGREE
+    return angle, distance / _PER_METRE if distance else math.inf

@@ -12,15 +12,15 @@ from roomba.geometry import TWO_PI, Pose
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.readings import ScanReading
 
-_TURN: Final = 360.0
+_FULL_TURN: Final = 360.0
 """degrees"""
-_GAP: Final = 30.0
+_WIDEST_GAP: Final = 30.0
 """degrees; a turn in which more is missing is none."""
 _LONGEST_TURN: Final = 1.0
 """s; lidars take 0.08 to 0.5 s."""
-_JITTER: Final = 0.05
+_MOST_JITTER: Final = 0.05
 """s; by so much a point may seem to be older than the one before it."""
-_SAME: Final = 0.01
+_SAME_TURN: Final = 0.01
 """Share by which the time of a turn may differ for the same model of the lidar."""
 
 
@@ -49,18 +49,18 @@ class TurnCollector:
         scan = None
         if self._last is not None:
             before, at = self._last
-            step = (angle - before) % _TURN
-            if step > _GAP or not at - _JITTER <= when <= at + _LONGEST_TURN:
+            step = (angle - before) % _FULL_TURN
+            if step > _WIDEST_GAP or not at - _MOST_JITTER <= when <= at + _LONGEST_TURN:
                 self._began = None
             elif angle < before:
                 # It looked ahead between the two.
                 when = max(when, at)
-                crossed = at + (when - at) * ((_TURN - before) / step if step > 0.0 else 0.0)
+                crossed = at + (when - at) * ((_FULL_TURN - before) / step if step > 0.0 else 0.0)
                 scan = self._ended(crossed)
                 self._began = crossed
                 self._ranges = np.full(self._config.beams, np.inf, np.float32)
         self._last = angle, when
-        beam = round(angle / _TURN * self._config.beams) % self._config.beams
+        beam = round(angle / _FULL_TURN * self._config.beams) % self._config.beams
         if self._config.min_range <= distance < self._config.max_range:
             self._ranges[beam] = min(self._ranges[beam], distance)
         return scan
@@ -71,7 +71,7 @@ class TurnCollector:
         return ScanReading(self._began, self._ranges, self._lidar(now - self._began))
 
     def _lidar(self, sweep: float) -> LidarModel:
-        if self._model is None or not math.isclose(sweep, self._sweep, rel_tol=_SAME):
+        if self._model is None or not math.isclose(sweep, self._sweep, rel_tol=_SAME_TURN):
             self._sweep = sweep
             self._model = LidarModel(
                 self._angles,

@@ -22,7 +22,7 @@ _LEAST_BEAMS: Final = 300
 """Lines of a scan; with fewer the answer was cut."""
 _FIRST_ERROR: Final = 1
 """Of a beam; 0 is a range."""
-_LONGEST: Final = 65_535
+_LONGEST_RANGE: Final = 65_535
 """mm; the lidar tells ranges in 16 bits."""
 
 Values = Mapping[str, float]
@@ -157,7 +157,7 @@ def _beam(cells: Sequence[str]) -> tuple[int, int, int]:
         angle, millimetres, error = int(cells[0]), int(cells[1]), int(cells[3], 16)
     except (IndexError, ValueError):
         return -1, 0, 0
-    return (angle if 0 <= millimetres <= _LONGEST else -1), millimetres, error
+    return (angle if 0 <= millimetres <= _LONGEST_RANGE else -1), millimetres, error
 
 
 def _number(text: str) -> float:

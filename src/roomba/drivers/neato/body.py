@@ -41,21 +41,21 @@ from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.command import Command
 from roomba.robot.readings import CliffReading, Readings, ScanReading
 
-_SCAN_ANSWER: Final = 1.5
+_SCAN_ANSWER_WAIT: Final = 1.5
 """s; the longest wait for the answer to GetLDSScan."""
-_BEGINNING: Final = 1.0
+_BEGINNING_WAIT: Final = 1.0
 """s; the longest wait for the answer to a command that takes the robot over."""
-_GIVING_BACK: Final = 3
+_GIVING_BACK_TRIES: Final = 3
 """Times that it is tried; a radio that fails once may not fail again."""
-_SILENT: Final = 0.15
+_LONGEST_SILENCE: Final = 0.15
 """s; the robot stands when what it is to do is older than this."""
-_HOLD: Final = 0.3
+_DRIVE_HOLD: Final = 0.3
 """s; that the wheels go on after a command, while others are on the line."""
 _SCAN_HOLD: Final = 0.45
 """s; the same before a scan, which takes longer on a serial line."""
-_AGAIN: Final = 0.05
+_DRIVE_REPEAT_PERIOD: Final = 0.05
 """s; from a command of the wheels to the next."""
-_LONG: Final = 10.0
+_LONGEST_WITHOUT_SCAN_OR_CHARGE: Final = 10.0
 """s without a scan, or the charge, after which that is trouble; bumpers and drops are told."""
 _SCAN_PERIOD: Final = 0.1
 """s; more often than the lidar turns, so that it is seen when its sweeps end."""
@@ -63,11 +63,11 @@ _SCAN_SHARE: Final = 0.5
 """Of the line's time for scans, at most, where they take long."""
 _BRIDGED_SCAN_SHARE: Final = 0.8
 """The same behind a bridge: it rests after each short answer, and scans would be too rare."""
-_CALM: Final = 0.3
+_FASTEST_TURN_FOR_SCAN: Final = 0.3
 """rad/s; while the robot turns faster, no scan is asked for on a slow line."""
-_SETTLED: Final = 0.4
+_SETTLING_TIME: Final = 0.4
 """s after such a turn until a scan is asked for: its sweep was measured after the turn."""
-_LONGEST_WITHOUT_SCAN: Final = 3.0
+_LONGEST_TURN_WITHOUT_SCAN: Final = 3.0
 """s without a scan, after which one is asked for even while the robot turns."""
 _NO_FLOOR: Final = 0.06
 """m; a floor so far below a drop sensor is none."""
@@ -109,7 +109,7 @@ class NeatoBody:
         self._goes_ahead = False
         self._telling = 0.0
         self._scans = Question(
-            "GetLDSScan", "its lidar", _SCAN_PERIOD, self._take_scan, _SCAN_ANSWER
+            "GetLDSScan", "its lidar", _SCAN_PERIOD, self._take_scan, _SCAN_ANSWER_WAIT
         )
         self._edges = Question("GetAnalogSensors", "its drop sensors", 0.1, self._take_drops)
         self._charger = Question("GetCharger", "its battery", 0.25, self._take_charge)
@@ -174,7 +174,7 @@ class NeatoBody:
         to come up to its speed.
         """
         for command in ("TestMode On", "SetLDSRotation On", STOP):
-            self._line.ask(command, _BEGINNING)
+            self._line.ask(command, _BEGINNING_WAIT)
         self._is_enabled, self._is_unanswered, self._goes_ahead = False, False, False
         self._power_told = (False, 0)
         with self._lock:
@@ -194,7 +194,7 @@ class NeatoBody:
         for command in (STOP, *_AT_REST, "SetLDSRotation Off"):
             if not self._is_answered(command):
                 break
-        for _ in range(_GIVING_BACK):
+        for _ in range(_GIVING_BACK_TRIES):
             if self._is_answered("TestMode Off"):
                 break
 
@@ -226,7 +226,7 @@ class NeatoBody:
         try:
             for question in self._questions:
                 may_wait = question is self._scans or question is self._charger
-                question.check(self._now(), _LONG if may_wait else soon)
+                question.check(self._now(), _LONGEST_WITHOUT_SCAN_OR_CHARGE if may_wait else soon)
         except UntoldError:
             self._is_answered(STOP)
             raise
@@ -234,7 +234,7 @@ class NeatoBody:
     def _serve(self) -> None:
         if self._drive_is_due():
             others = max(each.took for each in self._questions if each is not self._scans)
-            self._drive(_HOLD, others)
+            self._drive(_DRIVE_HOLD, others)
             return
         if self._takes_beep():
             self._line.ask(_BEEP, ANSWER)
@@ -250,14 +250,14 @@ class NeatoBody:
     def _urgency(self, question: Question) -> float:
         since = self._now() - question.asked_at
         is_blind = question is self._scans and question.period > _SCAN_PERIOD / _SCAN_SHARE
-        is_blind = is_blind and since < _LONGEST_WITHOUT_SCAN
-        if is_blind and (self._is_to_turn() or self._now() - self._turned_at < _SETTLED):
+        is_blind = is_blind and since < _LONGEST_TURN_WITHOUT_SCAN
+        if is_blind and (self._is_to_turn() or self._now() - self._turned_at < _SETTLING_TIME):
             # While a scan is on a slow line it is not told how far the robot turned.
             return 0.0
         return question.urgency(self._now())
 
     def _is_to_turn(self) -> bool:
-        return abs(self._wanted_now()[0].angular) > _CALM
+        return abs(self._wanted_now()[0].angular) > _FASTEST_TURN_FOR_SCAN
 
     def _ask(self, question: Question) -> None:
         try:
@@ -274,12 +274,12 @@ class NeatoBody:
     def _drive_is_due(self) -> bool:
         wants = self._wanted_now()[0] != STANDSTILL
         was_driving, at = self._driven
-        return wants != was_driving or (wants and self._now() - at >= _AGAIN)
+        return wants != was_driving or (wants and self._now() - at >= _DRIVE_REPEAT_PERIOD)
 
     def _wanted_now(self) -> tuple[Twist, tuple[bool, int]]:
         """Return the twist, and whether the brush turns and the fan's duty, %."""
         with self._lock:
-            if self._now() - self._wanted_at > _SILENT or self._wanted == STANDSTILL:
+            if self._now() - self._wanted_at > _LONGEST_SILENCE or self._wanted == STANDSTILL:
                 return STANDSTILL, (False, 0)
             return self._wanted, self._power
 
@@ -344,7 +344,7 @@ class NeatoBody:
         with self._lock:
             self._odometry.take(at, positions.left, positions.right)
             self._planned_when_told = self._planned.ways(at)
-        if abs(self._odometry.twist.angular) > _CALM:
+        if abs(self._odometry.twist.angular) > _FASTEST_TURN_FOR_SCAN:
             self._turned_at = at
 
     def _take_touches(self, lines: list[str]) -> None:

@@ -15,13 +15,13 @@ from typing import Final
 from urllib.parse import quote
 
 from roomba.drivers.line import LineError
-from roomba.drivers.neato.bridge_requests import MOST, BridgeAddress, gone
+from roomba.drivers.neato.bridge_requests import MOST_BYTES, BridgeAddress, gone
 from roomba.drivers.neato.conversation import END
 
-_CONNECT: Final = 1.0
+_CONNECT_WAIT: Final = 1.0
 """s; in a home network a connection is there at once."""
 _BUSY: Final = 503
-_SOONEST: Final = 0.001
+_LEAST_WAIT: Final = 0.001
 """s; a wait of 0 would be none for connections."""
 PATIENCE: Final = 0.5
 """s that an answer may take longer than on a wire: the bridge's rest, what it asks by itself, and
@@ -50,7 +50,7 @@ class BridgeLine:
         self.discard()
         command = quote(data.decode("ascii", "replace").strip())
         place = self._address
-        asked = http.client.HTTPConnection(place.host, place.port, timeout=_CONNECT)
+        asked = http.client.HTTPConnection(place.host, place.port, timeout=_CONNECT_WAIT)
         self._asked = asked
         try:
             asked.request("POST", f"/api/serial?cmd={command}")
@@ -64,10 +64,10 @@ class BridgeLine:
             # Nothing was asked, or it is answered: no more comes.
             time.sleep(max(0.0, seconds))
             return b""
-        asked.sock.settimeout(max(seconds, _SOONEST))
+        asked.sock.settimeout(max(seconds, _LEAST_WAIT))
         try:
             response = asked.getresponse()
-            body = response.read(MOST)
+            body = response.read(MOST_BYTES)
         except TimeoutError:
             return b""
         except (OSError, http.client.HTTPException) as error:

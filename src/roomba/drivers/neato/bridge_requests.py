@@ -12,7 +12,7 @@ from roomba.drivers.line import LineError
 from roomba.drivers.neato.timed_socket import connected
 from roomba.files.plain_json import load_json
 
-MOST: Final = 65_536
+MOST_BYTES: Final = 65_536
 """Bytes of an answer; a scan has some 6,000, and as JSON some 20,000."""
 _DEADLINE: Final = 4.5
 """s of a whole request; the bridge itself gives the robot 3 s for each command."""
@@ -77,7 +77,7 @@ def request(address: BridgeAddress, method: str, path: str) -> bytes:
         connection.sock = connected(address.host, address.port, time.monotonic() + _DEADLINE)
         connection.request(method, path, headers={"Connection": "close"})
         response = connection.getresponse()
-        body = response.read(MOST)
+        body = response.read(MOST_BYTES)
     except (OSError, http.client.HTTPException) as error:
         raise gone(address, error) from error
     finally:

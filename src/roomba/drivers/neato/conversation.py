@@ -8,9 +8,9 @@ from typing import Final
 from roomba.drivers.line import Line, LineError
 
 END: Final = b"\x1a"
-_LONGEST: Final = 65_536
+_LONGEST_ANSWER: Final = 65_536
 """Bytes; a scan has some 6,000."""
-_MOST_LATE: Final = 8
+_MOST_LATE_PIECES: Final = 8
 """Pieces that are read after their time: what a line holds while none is read fits in."""
 
 
@@ -83,7 +83,7 @@ class Conversation:
             # What came while this program was held up is read although it is late.
             late += left <= 0.0
             piece = self._line.read(max(0.0, left))
-            if (not piece and late) or late > _MOST_LATE or len(came) > _LONGEST:
+            if (not piece and late) or late > _MOST_LATE_PIECES or len(came) > _LONGEST_ANSWER:
                 raise SilenceError(
                     f"expected an answer to {command!r} within {within:g} s, got "
                     f"{len(came)} bytes without an end"

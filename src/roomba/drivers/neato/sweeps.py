@@ -14,7 +14,7 @@ from typing import Final
 _DRIFT: Final = 0.005
 """Share of the time that passed by which the turns may be other than they are told."""
 
-_SAME: Final = 1.4
+_TURNS_AS_NEWEST: Final = 1.4
 """Turns since the end of a sweep until it cannot be the newest one any more."""
 
 _Bounds = tuple[float, float]
@@ -38,7 +38,7 @@ class SweepClock:
         newest = asked - turn, asked
         if is_other:
             return self._taken((max(before, newest[0]), asked), turn)
-        if asked - _middle(self._bounds) > _SAME * turn:
+        if asked - _middle(self._bounds) > _TURNS_AS_NEWEST * turn:
             return self._taken(newest, turn)
         return None
 

@@ -15,7 +15,7 @@ from roomba.geometry import Twist
 STOP: Final = "SetMotor LWheelDisable RWheelDisable"
 """Distances of 0 are passed over by some firmware, which then rolls on for a second."""
 ENABLE: Final = "SetMotor LWheelEnable RWheelEnable"
-_FASTEST: Final = 0.3
+_FASTEST_WHEEL: Final = 0.3
 """m/s, of a wheel."""
 
 
@@ -65,7 +65,7 @@ def fastest_ahead(twist: Twist, track: float) -> float:
 
     No wheel is faster than it can.
     """
-    return min(_FASTEST, twist.linear + 0.5 * track * abs(twist.angular))
+    return min(_FASTEST_WHEEL, twist.linear + 0.5 * track * abs(twist.angular))
 
 
 def wheel_command(
@@ -86,7 +86,7 @@ def wheel_command(
         raise ValueError(f"expected a finite twist, got {twist}")
     half = 0.5 * track * twist.angular
     left, right = twist.linear - half, twist.linear + half
-    left, right = _scaled(left, right, _share(_FASTEST, max(abs(left), abs(right))))
+    left, right = _scaled(left, right, _share(_FASTEST_WHEEL, max(abs(left), abs(right))))
     left, right = _scaled(left, right, _share(limit.way, max(left, right) * limit.seconds))
     fastest = max(abs(left), abs(right))
     speed = round(1e3 * fastest)

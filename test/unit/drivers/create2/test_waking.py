@@ -6,7 +6,7 @@ import pytest
 from fixtures.robots.create2_rig import create2_in_studio
 
 from roomba.drivers.create2.open_interface import Opcode
-from roomba.drivers.create2.waking import AWAKE, EACH, HIGH, LOW, BrcPin
+from roomba.drivers.create2.waking import HIGH_TIME, PULSE_PERIOD, PULSE_TIME, WAKING_TIME, BrcPin
 from roomba.drivers.line import SerialLine
 from roomba.emulators.create2.instructions import Instruction
 from roomba.emulators.create2.robot import SLEEPS_AFTER, Create2Robot
@@ -54,8 +54,8 @@ def test_a_pulse_wakes_it_and_is_too_long_to_change_its_rate(line: PinnedLine) -
     assert not line.robot.is_asleep
     times = [time - began for time, _ in line.levels]
     assert [is_low for _, is_low in line.levels] == [False, True, False]
-    assert times == pytest.approx([0.0, HIGH, HIGH + LOW], abs=0.03)
-    assert line.now - began == pytest.approx(HIGH + LOW + AWAKE, abs=0.03)
+    assert times == pytest.approx([0.0, HIGH_TIME, HIGH_TIME + PULSE_TIME], abs=0.03)
+    assert line.now - began == pytest.approx(HIGH_TIME + PULSE_TIME + WAKING_TIME, abs=0.03)
     assert times[2] - times[1] > 0.5
 
 
@@ -72,7 +72,7 @@ def test_it_is_kept_awake_while_it_may_fall_asleep(may_sleep: bool) -> None:
     robot.do(Instruction(Opcode.START))
     line = PinnedLine(robot, slower)
     pin = BrcPin(lambda: line.now)
-    while line.now < SLEEPS_AFTER + 2.0 * EACH:
+    while line.now < SLEEPS_AFTER + 2.0 * PULSE_PERIOD:
         pin.keep_awake(line, may_sleep=may_sleep)
         line.read(0.2)
     assert robot.is_asleep is not may_sleep
