@@ -50,9 +50,9 @@ class FitConfig(Frozen):
     """With this a pose that was told is gone by until the comparison is done."""
     doubt_worse: Ratio = 0.45
     doubt_through: Ratio = 0.15
-    """Worse than usual by so much, the pose is doubted;"""
+    """A pose that fits worse than usual by so much is doubted."""
     doubt_agree: Ratio = 0.35
-    """and with less than this, even where less is usual."""
+    """A pose with less than this is doubted, even where less is usual."""
     near_worse: Ratio = 0.2
     near_through: Ratio = 0.06
     """Worse than usual by so much at most at a place that is found near by."""
@@ -76,14 +76,15 @@ class ExpectingConfig(Frozen):
 
     told_radius: Length = 0.5
     told_turn: HalfTurn = 0.5
-    """Around a pose that was told,"""
+    """So near to a pose that was told the robot is expected."""
     here_radius: Length = 0.04
     here_turn: HalfTurn = 0.04
-    """and around one that was known;"""
+    """So near to a pose that was known the robot is expected."""
     drift: NotNegative = 0.01
-    """and so much more for each s of a search: the error of dead reckoning as it looks around."""
+    """Both ranges grow by so much for each s of a search, as dead reckoning errs."""
     here_evidence: NotNegative = 14.0
-    """For that, more than believing a place needs: it stays unless another one is likelier."""
+    """For where it is expected, beside what believing a place needs: it stays unless another one is
+    likelier."""
     still_evidence: NotNegative = 60.0
     """The same of a robot that sees what it saw before: it was not carried."""
 
@@ -94,9 +95,9 @@ class SearchingConfig(Frozen):
     wait_before_moving: WaitOrNone = 0.5
     """For a scan that tells places apart, before it moves to get one."""
     again_after: WaitOrNone = 1.0
-    """A search that found nothing is tried anew;"""
+    """s after which a search that found nothing is tried anew."""
     compare_after: WaitOrNone = 1.0
-    """a place of which no better one was found is compared anew."""
+    """s after which a place of which no better one was found is compared anew."""
     doubted_way: Length = 1.0
     """m; driven while scans do not correct the pose: from then on the place is ROUGH."""
     follow_after: Duration = 1.0

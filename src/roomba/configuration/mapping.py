@@ -29,9 +29,9 @@ class MapChangesConfig(Frozen):
     farthest: Length = 5.0
     """The longest range that counts: there a degree is two cells."""
     look_way: Length = 0.5
-    """A look at the home lasts until so much was driven,"""
+    """A look at the home lasts until so much was driven, or longer."""
     look_time: Duration = 15.0
-    """and so much time has passed: people who stand about are no change."""
+    """A look at the home lasts for so long, or longer: people who stand about are no change."""
     sure: Annotated[int, Field(ge=1, le=5)] = 4
     """Looks that show a change of a cell, minus those that show none, for the change to count."""
     blur: Length = 0.12
@@ -72,9 +72,9 @@ class FloorsConfig(Frozen):
     moved, -0.05. The best place in a furnished home that the robot never was in has -0.15 to -0.30.
     """
     least_walls: Ratio = 0.73
-    """Share of the walls that two maps of one floor have in common, or more,"""
+    """The least share of their walls that two maps of one floor have in common."""
     least_floor: Ratio = 0.6
-    """and of the smaller map's floor."""
+    """The least share of the smaller map's floor that two maps of one floor have in common."""
     same_wall: Length = 0.08
     """Walls so near to each other are the same: those of neighbouring cells."""
     same_room: Ratio = 0.5
@@ -94,34 +94,34 @@ class FollowingConfig(Frozen):
     """Of the usual agreement; a scan that agrees less is searched for around the robot."""
     searched_way: Window = 0.5
     searched_turn: Angle = 0.8
-    """To each side,"""
+    """The window to each side, before anything was driven unconfirmed."""
     searched_share: NotNegative = 0.2
-    """and by this share of what was driven and turned since a scan confirmed the pose,"""
+    """The window grows by this share of what was driven and turned unconfirmed."""
     searched_farthest: Annotated[float, Field(ge=0.0, le=50.0)] = 4.0
-    """and by what it drives in that time at its pace, but no farther than this."""
+    """The most by which the window grows for what it drives unconfirmed at its pace."""
     pace_fades: Duration = 10.0
     """After so long the fastest pace counts a third."""
     likelihood: Ratio = 0.5
     """Mean of points, from which a pose is looked at closely."""
     far_apart: Length = 0.5
-    """Between scans that are so far apart, which show much that none before them did,"""
+    """Scans that are so far apart show much that none before them did."""
     likelihood_apart: Ratio = 0.3
-    """it is this, up to half as far off as wheels may have slipped."""
+    """The same mean between such scans, up to half as far off as wheels may have slipped."""
     better: Annotated[float, Field(ge=1.0, le=10.0)] = 1.2
     """Times that a place found must agree better than the one that is thought to be right."""
     leap_way: Length = 0.5
     leap_turn: Angle = 0.35
-    """And its share of what was driven and turned unconfirmed; a place that is farther from where
-    the robot was thought to be is of a piece of its own, until more than one scan shows it."""
+    """A place that is farther off than this and ``searched_share`` of what was driven and turned
+    unconfirmed is of a piece of its own, until more than one scan shows it."""
     carried_way: Length = 0.3
     carried_turn: Angle = 0.3
     """From a scan that fitted to one that does not; after less the robot was carried: what it saw
     before must be in sight still."""
     given_up_after: AtLeastOne = 7
-    """Scans that show enough and confirm nothing,"""
+    """Scans that show enough and confirm nothing, before the map goes on in a piece of its own."""
     piece_way: NotNegative = 0.6
     piece_turn: NotNegative = 2.0
-    """and so much driven or turned: then the map goes on in a piece of its own."""
+    """Driven or turned unconfirmed, too, before the map goes on in a piece of its own."""
     standing_deviation: Length = 0.001
     standing_heading: Angle = 0.0005
     """Standard deviations, besides those of the way, of dead reckoning between two scans."""
@@ -176,25 +176,25 @@ class PiecesConfig(Frozen):
 
     deviation: Length = 0.5
     heading_deviation: Angle = 0.1
-    """Of one to a piece of its own,"""
+    """Of a link to a piece of its own, before anything was driven unconfirmed."""
     share: NotNegative = 0.1
-    """and by this share of what was driven and turned there."""
+    """Such a link is less sure by this share of what was driven and turned unconfirmed."""
     told_deviation: Length = 0.05
     told_heading_deviation: Angle = 0.05
-    """Of one to a pose that people told."""
+    """Of a link to a pose that people told."""
 
 
 class PartsConfig(Frozen):
     """Finding parts of a map that no scan joined to it."""
 
     looked_for: AtLeastOne = 8
-    """Samples of a part at most, each over all of the map,"""
+    """The most samples of a part, each of which is looked for on all of the map."""
     keyframes: AtLeastOne = 5
-    """of so many keyframes or more."""
+    """The fewest keyframes of a sample."""
     backed: AtLeastOne = 3
-    """So many must be found where the part lies then,"""
+    """The fewest samples that must be found where the part lies then."""
     clearer: Annotated[float, Field(ge=1.0, le=10.0)] = 2.0
-    """and this many times as many as elsewhere."""
+    """There this many times as many must be found as elsewhere."""
     seen_through: Ratio = 0.05
     """Share of a part's beams that go through surfaces seen before: with more it does not lie where
     it is thought to lie, and its robot was carried."""

@@ -30,9 +30,9 @@ class HearingConfig(Frozen):
     """When the place is not told any more; both, as a fast clock runs on while all nodes work."""
 
     oldest_pose: Duration = 0.5
-    """s of the robot's clock; an older pose counts no more,"""
+    """s of the robot's clock; the newest pose still counts until it is older than this."""
     silence: Duration = 0.4
-    """and s of wall time, in which none was heard."""
+    """s of wall time; the newest pose still counts until none was heard for so long."""
 
 
 class DeadlinesConfig(Frozen):
@@ -64,9 +64,9 @@ class WalkEndConfig(Frozen):
     longest_turn: Duration = 6.0
     """s; limit of the turn at the goal; half a turn takes two."""
     standstill: Speed = 0.02
-    """m/s; a cancelled walk stands when it is slower,"""
+    """m/s; a cancelled walk stands when it is slower."""
     longest_braking: Duration = 1.0
-    """or after so many s, without odometry too."""
+    """s after which a cancelled walk counts as standing in any case, without odometry too."""
     heard_by: Duration = 0.3
     """s; after this a setpoint has reached its subscriber, on a busy machine too."""
 
@@ -85,9 +85,9 @@ class PeriodsConfig(Frozen):
     mission_state: Duration = 1.0
     """Between two states of the mission that did not change."""
     mission_map: Duration = 1.0
-    """Between two maps of the same kind that the mission tells,"""
+    """Between two maps of the same kind that the mission tells."""
     mission_map_wall: Duration = 0.5
-    """and s of wall time between them."""
+    """s of wall time between two maps of the same kind, on a fast clock too."""
     changes: Duration = 0.4
     """Between two scans that are looked through for changes of the map."""
     finish: Duration = 5.0
@@ -95,9 +95,9 @@ class PeriodsConfig(Frozen):
     pictures: Duration = 0.2
     """s of wall time between two pictures of the simulated camera's stream."""
     true_pose_wall: Duration = 0.04
-    """s of wall time between two tellings of where a simulated robot really is,"""
+    """s of wall time between two tellings of where a simulated robot really is."""
     true_dirt_wall: Duration = 0.5
-    """and of the dirt that really lies in its home."""
+    """s of wall time between two tellings of the dirt that really lies in its home."""
 
 
 class MemoryConfig(Frozen):
@@ -108,18 +108,18 @@ class MemoryConfig(Frozen):
     errand: Duration = 0.8
     """s of wall time between two checkpoints of a phase."""
     map: Duration = 0.8
-    """s of the robot's clock between two writings of the map that is being made,"""
+    """s of the robot's clock between two writings of the map that is being made."""
     map_wall_per_byte: Positive = 1e-6
-    """and s of wall time for each of its bytes: 1 MB/s is enough for any disk."""
+    """s of wall time between two such writings for each byte: 1 MB/s is enough for any disk."""
     most_taken_up: AtLeastOne = 5
     """What a node ended with so often, each time within ``goes_well``, is dropped: it may be the
     reason."""
     goes_well: Duration = 20.0
     """s of wall time after which what was taken up is no danger."""
     free_space: Bytes = 2e6
-    """Bytes; with less on the disk of the errand it is told that the disk is full,"""
+    """Bytes; with less on the disk of the errand it is told that the disk is full."""
     free_space_period: Duration = 1.0
-    """which is looked at so often: s of wall time."""
+    """s of wall time between two looks at how much is free."""
 
 
 class PlacingConfig(Frozen):
@@ -175,9 +175,9 @@ class SupervisionConfig(Frozen):
     back_after: Duration = 0.2
     """From the end of a process until it is started anew."""
     short_life: Duration = 20.0
-    """A process that lived for less ended soon;"""
+    """A process that lived for less had a short life."""
     most_short_lives: AtLeastOne = 15
-    """after so many of them in a row it is not started any more: a start does not mend it."""
+    """After so many short lives in a row a process is not started any more."""
 
     in_order: ClassVar[tuple[str, ...]] = ("busy <= stopped <= hung",)
 

@@ -27,7 +27,7 @@ class Part(Enum):
     SIDE_BRUSH = "side brush"
     FILTER = "filter"
     SENSORS = "sensors"
-    """And the charging contacts: they are wiped."""
+    """The sensors and the charging contacts: they are wiped."""
     BIN = "bin"
 
 

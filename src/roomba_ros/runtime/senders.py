@@ -20,9 +20,9 @@ SPEED_NODE: Final = "speed_pub_node"
 SUPERVISOR: Final = "supervisor_node"
 """The node that tells how the robot's processes are."""
 _SILENT_AFTER: Final = 1.0
-"""s of wall time without a message, after which a node is no sender any more,"""
+"""s of wall time without a message, after which a node is no sender any more."""
 SELDOM_SILENT_AFTER: Final = 3.0
-"""and where a message a second is usual."""
+"""s of wall time; the same where a message a second is usual."""
 
 
 class Senders(Protocol):

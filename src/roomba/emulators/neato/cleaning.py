@@ -22,9 +22,9 @@ _AHEAD: Final = 5000
 _BACK: Final = -150
 """mm that it backs off."""
 _LEAST_TURN: Final = 1.2
-"""rad, away from what it touched,"""
+"""rad that it turns away from what it touched, at least."""
 _MORE_TURN: Final = 1.6
-"""and up to so much more, by turns, so that it does not go round for ever."""
+"""rad that it turns more, at most: another part of it each time, so as not to go round for ever."""
 _GOLDEN: Final = 0.618
 """The share of that by which one turn differs from the one before."""
 _FIRST_RADIUS, _LAST_RADIUS = 150.0, 700.0

@@ -17,15 +17,15 @@ _BIN: Final = 0.05
 _BINS: Final = 61
 """Bins to either side of where it was found: 3 m."""
 _GAP: Final = 3
-"""Bins without a beam over which a mirror goes on,"""
+"""Bins without images that fit over which a mirror goes on."""
 _TO_SURFACE: Final = 6
-"""and over which it goes on to a surface that is seen: no robot fits through there."""
+"""Bins over which it goes on to a surface that is seen: no robot fits through there."""
 _LEAST: Final = 3
 """Images that fit in a bin and those beside it, for the mirror to be there."""
 _FOUND: Final = 1
-"""Bins to either side of that point that are mirror in any case,"""
+"""Bins to either side of where it was found that are mirror in any case."""
 _LEAST_REACH: Final = ((_FOUND + 0.5) * _BIN, (_FOUND + 0.5) * _BIN)
-"""m to the right and to the left."""
+"""m to the right and to the left that are mirror in any case."""
 
 
 @dataclass(slots=True, eq=False)

@@ -25,13 +25,13 @@ _FARTHEST: Final = 4.0
 _BODY: Final = 0.04
 """m; half of the way ends so far before a mirror: the image is of the robot's near side."""
 _OFF: Final = 0.05
-"""m; off one plane at most,"""
+"""m; images that are taken together are less than this off one plane."""
 _ASIDE: Final = 0.4
-"""and along it, of what is taken together."""
+"""m; images that are taken together are less than this off one point along the plane."""
 _LEAST: Final = 6
-"""Places from which the robot saw itself in a plane,"""
+"""The fewest places from which the robot saw itself in a plane."""
 _LEAST_SPREAD: Final = 1.2
-"""m; of which the nearest and the farthest are so far apart by their distance."""
+"""m; the least by which the farthest of these images is farther off than the nearest."""
 _MOST: Final = 3
 """Planes that are told for one direction."""
 

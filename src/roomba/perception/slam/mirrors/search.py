@@ -29,22 +29,24 @@ _ASIDE: Final = 0.12
 _BEYOND: Final = 0.25
 """m; it did pass it if it ended so much farther."""
 _LEAST: Final = 25
-"""Beams that passed, for what they show to count,"""
+"""The fewest beams that passed, for what they show to count."""
 _LEAST_INFORMING: Final = 10
-"""those of them whose images fit and tell something,"""
+"""The fewest beams whose images fit a mirror and tell something."""
 _LEAST_FITTING: Final = 0.4
-"""the share of all whose images fit,"""
+"""The least share of the beams that passed whose images fit a mirror."""
 _LEAST_SHARE: Final = 0.7
-"""and that of those which fit or contradict: of true mirrors 0.72 to 0.93, of glass 0.04 to 0.6."""
+"""The least share that fits of all images that fit or contradict: of true mirrors 0.72 to 0.93, of
+glass 0.04 to 0.6."""
 _BEFORE: Final = 1.0
 _BEFORE_ASIDE: Final = 0.3
-"""m; so near before a mirror, and so near beside the touched point, a robot sees itself,"""
+"""m; so near before a mirror, and so near beside its middle, a robot sees itself."""
 _LEAST_STOOD: Final = 2
-"""from so many places if it touched it,"""
+"""The fewest places so near to a mirror where the robot stood, if it touched it."""
 _LEAST_STOOD_AWAY: Final = 3
-"""and from so many if it did not;"""
+"""The fewest places so near to a mirror where the robot stood, if it did not touch it."""
 _LEAST_SHOWN: Final = 0.6
-"""in this share of the scans there: of true mirrors in all of them, of glass in a tenth at most."""
+"""The least share of scans so near to a mirror that show the robot: of true mirrors all do, of
+glass a tenth at most."""
 _ALIKE: Final = 0.02
 """Share of the beams by which planes differ that fit alike."""
 _MOST: Final = 1500
