@@ -177,7 +177,9 @@ class Broker:
         client.on_message = self._came
         return client
 
-    def _connected(self, _: Any, __: Any, ___: Any, reason: Any, ____: Any) -> None:
+    def _connected(
+        self, _client: Any, _user_data: Any, _flags: Any, reason: Any, _properties: Any
+    ) -> None:
         if reason.is_failure:
             self._tell(f"the broker refuses the robot: {reason}")
             return
@@ -195,12 +197,14 @@ class Broker:
         self._tell(f"connected to the broker at {self._config.host}")
         self._wake()
 
-    def _disconnected(self, _: Any, __: Any, ___: Any, reason: Any, ____: Any) -> None:
+    def _disconnected(
+        self, _client: Any, _user_data: Any, _flags: Any, reason: Any, _properties: Any
+    ) -> None:
         if self.is_connected and not self._ends.is_set():
             self._tell(f"the broker is gone ({reason}); the robot connects again by itself")
         self.is_connected = False
 
-    def _came(self, _: Any, __: Any, message: mqtt.MQTTMessage) -> None:
+    def _came(self, _client: Any, _user_data: Any, message: mqtt.MQTTMessage) -> None:
         """Queue what is short, and no command of before; too many wait at the broker."""
         self._wait_for_budget()
         if message.topic == self._topics.available:
