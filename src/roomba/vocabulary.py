@@ -131,6 +131,49 @@ class RoomDirt:
     grains: float
 
 
+class Hindrance(str, Enum):
+    """What keeps a robot from what it was asked, for programs to decide by.
+
+    A hindrance equals its word, which is what programs hear.
+    """
+
+    NONE = ""
+    """Nothing, or what no program treats apart from the rest: the sentence beside it tells."""
+    NO_WAY = "no way"
+    """It waits for a way to open."""
+    BIN_FULL = "bin full"
+    NOT_EMPTIED = "not emptied"
+    """Its station did not empty its dust bin: that is done by hand."""
+    STOP_RELEASED = "stop released"
+    """The emergency stop that interrupted it was released, and it waits to be told to go on."""
+    UNREACHABLE = "unreachable"
+    """Its line is gone, or it does not answer."""
+    SENSOR_SILENT = "sensor silent"
+    """It stands, as it does not tell what it senses."""
+    DISOBEYS = "disobeys"
+    """It tells what it senses, and does not do what it is told."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reason:
+    """Why a robot does not do what was asked; empty when all is well.
+
+    ``text`` is for people, with what helps; it may be said otherwise tomorrow. Programs decide by
+    ``hindrance``. ``looks_within``: it looks again for a way within so many s; 0 if it does not.
+    """
+
+    text: str = ""
+    hindrance: Hindrance = Hindrance.NONE
+    looks_within: float = 0.0
+
+    def __bool__(self) -> bool:
+        """Whether there is one."""
+        return bool(self.text)
+
+
+NO_REASON: Final = Reason()
+
+
 class EdgeReason(str, Enum):
     """Why a map goes on no further; a reason equals its words."""
 
@@ -146,6 +189,26 @@ class OpenEdge:
     x: float
     y: float
     reason: EdgeReason
+
+
+@dataclass(frozen=True, slots=True)
+class MissedFloor:
+    """Floor that was wanted and is not clean: ``area`` m2 around (x, y), m, and why, in words.
+
+    ``code`` is the reason for programs, as of :func:`code_of`; empty where it was not kept.
+    """
+
+    area: float
+    x: float
+    y: float
+    room: str
+    reason: str
+    code: str = ""
+
+
+def code_of(reason: Enum) -> str:
+    """Return the word for a reason by which programs decide: its value is a sentence for people."""
+    return reason.name.lower().replace("_", " ")
 
 
 def fault_of_name(name: str) -> str:

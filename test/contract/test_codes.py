@@ -11,6 +11,7 @@ from roomba_robot.msg import (
     Localization,
     MissedArea,
     OpenEdge,
+    VacuumState,
     Zone,
 )
 
@@ -18,13 +19,22 @@ from roomba.mission.cleaning.result import CleanOutcome, MissReason
 from roomba.mission.phases.machine import VACUUM_STATES
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.zones import ZoneKind
-from roomba.vocabulary import CarpetWay, CleanMode, EdgeOrder, EdgeReason, FanLevel, Phase
+from roomba.vocabulary import (
+    CarpetWay,
+    CleanMode,
+    EdgeOrder,
+    EdgeReason,
+    FanLevel,
+    Hindrance,
+    Phase,
+)
 from roomba_ros.convert.localization import STATES
 from roomba_ros.convert.mission import (
     CARPETS,
     EDGE_REASONS,
     EDGES,
     FANS,
+    HINDRANCES,
     KINDS,
     MODES,
     OUTCOMES,
@@ -50,6 +60,11 @@ def constants(message: type, names: set[str]) -> dict[str, int]:
         (CleanResult, CleanOutcome, {outcome.name: code for outcome, code in OUTCOMES.items()}),
         (MissedArea, MissReason, {reason.name: code for reason, code in REASONS.items()}),
         (OpenEdge, EdgeReason, {reason.name: code for code, reason in EDGE_REASONS.items()}),
+        (
+            VacuumState,
+            Hindrance,
+            {hindrance.name: code for code, hindrance in HINDRANCES.items()},
+        ),
         (Zone, ZoneKind, {kind.name: code for code, kind in KINDS.items()}),
         (Localization, Knowledge, {knowledge.name: code for knowledge, code in STATES.items()}),
     ],
@@ -84,6 +99,7 @@ def test_the_constants_are_those_of_the_enums_and_no_others() -> None:
         (CleanResult, {outcome.name for outcome in CleanOutcome}),
         (MissedArea, {reason.name for reason in MissReason}),
         (OpenEdge, {reason.name for reason in EdgeReason}),
+        (VacuumState, {hindrance.name for hindrance in Hindrance}),
         (Zone, {kind.name for kind in ZoneKind}),
     ):
         known = {name for name, value in vars(message).items() if name.isupper()}

@@ -8,7 +8,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.vocabulary import AT_REST, HELD, Phase, cleaned_name, fault_of_name, places_told
+from roomba.vocabulary import (
+    AT_REST,
+    HELD,
+    NO_REASON,
+    EdgeReason,
+    Hindrance,
+    Phase,
+    Reason,
+    cleaned_name,
+    code_of,
+    fault_of_name,
+    places_told,
+)
 
 JOINERS = ("\u200c", "\u200d")
 LETTERS = st.characters(categories=("L", "M", "N", "P", "S"))
@@ -77,3 +89,13 @@ def test_a_phase_is_found_by_its_word_as_programs_hear_it(phase: Phase) -> None:
 def test_a_word_that_is_no_phase_is_in_no_group_of_them() -> None:
     assert "starting" not in frozenset(Phase)
     assert "starting" not in AT_REST | HELD
+
+
+def test_what_programs_decide_by_is_no_sentence() -> None:
+    assert json.dumps(Hindrance.NO_WAY) == '"no way"'
+    assert code_of(EdgeReason.NOT_LOOKED_AT) == "not looked at"
+
+
+def test_a_reason_is_one_if_it_says_something() -> None:
+    assert Reason("it is stuck")
+    assert not NO_REASON

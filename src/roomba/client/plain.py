@@ -10,6 +10,7 @@ from roomba.client.observed import TimelineView
 from roomba.client.protocol import CleanReport
 from roomba.client.view import HomeView, Point, RobotView, RoomView, TruthView, ZoneView
 from roomba.time_spent import square_metres_a_minute
+from roomba.vocabulary import code_of
 
 Json = dict[str, Any]
 
@@ -30,6 +31,8 @@ def state_of(view: RobotView) -> Json:
             "state": vacuum.state,
             "phase": vacuum.phase,
             "message": vacuum.message,
+            "hindrance": vacuum.hindrance.value,
+            "looks_within": round(vacuum.looks_within, 1),
             "room": vacuum.room,
             "covered": round(vacuum.covered, 2),
             "wanted": round(vacuum.wanted, 2),
@@ -88,11 +91,20 @@ def report_of(report: CleanReport) -> Json:
             for each in report.rooms
         ],
         "missed": [
-            {"area": miss.area, "x": miss.x, "y": miss.y, "room": miss.room, "reason": miss.reason}
+            {
+                "area": miss.area,
+                "x": miss.x,
+                "y": miss.y,
+                "room": miss.room,
+                "reason": miss.reason,
+                "code": miss.code,
+            }
             for miss in report.missed
         ],
         "mapped": known(report.mapped),
-        "open_edges": [asdict(edge) for edge in report.open_edges],
+        "open_edges": [
+            {**asdict(edge), "code": code_of(edge.reason)} for edge in report.open_edges
+        ],
     }
 
 

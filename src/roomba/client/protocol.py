@@ -23,10 +23,12 @@ from roomba.vocabulary import (
     CleanMode,
     EdgeOrder,
     FanLevel,
+    Hindrance,
     OpenEdge,
     RoomDirt,
     RoomWay,
 )
+from roomba.vocabulary import MissedFloor as MissedFloor
 
 
 class RobotUnavailableError(RoombaError):
@@ -140,17 +142,6 @@ class CleanProgress:
 
 
 @dataclass(frozen=True, slots=True)
-class MissedFloor:
-    """Floor that was wanted and is not clean: ``area`` m2 around (x, y), m, and why, in words."""
-
-    area: float
-    x: float
-    y: float
-    room: str
-    reason: str
-
-
-@dataclass(frozen=True, slots=True)
 class CleanReport:
     """The end of a clean: areas in m2, dirt in g, m, s of the robot's clock, Wh.
 
@@ -250,9 +241,10 @@ class VacuumSnapshot:
     """The robot's state, in the words of smart homes, and its progress.
 
     ``phase`` is ``state`` in more detail; ``message`` says why it does not do what was asked, and
-    what helps, empty when all is well. ``queue`` are the rooms that a clean of rooms has still to
-    do, the present one first. The rest is as in :class:`CleanProgress`; areas, share and
-    time are 0 without a clean, a battery not heard of is not a number.
+    what helps, empty when all is well. ``hindrance`` is the same for programs, and
+    ``looks_within`` as in :class:`roomba.vocabulary.Reason`. ``queue`` are the rooms that a clean
+    of rooms has still to do, the present one first. The rest is as in :class:`CleanProgress`;
+    areas, share and time are 0 without a clean, a battery not heard of is not a number.
     """
 
     state: str
@@ -266,6 +258,8 @@ class VacuumSnapshot:
     battery: float
     queue: tuple[str, ...] = ()
     is_on_carpet: bool = False
+    hindrance: Hindrance = Hindrance.NONE
+    looks_within: float = 0.0
 
 
 class CleaningClient(Protocol):

@@ -10,6 +10,7 @@ from typing import Final, Protocol
 import serial
 
 from roomba.errors import RoombaError
+from roomba.vocabulary import Hindrance
 
 _UNPLUGGED: Final = (serial.SerialException, OSError, termios.error, TypeError)
 """What pyserial raises when a device was unplugged; TypeError when another thread closed it."""
@@ -25,8 +26,9 @@ class LineError(RoombaError):
     """The line is gone, or the robot at its other end does not answer, or not as it must."""
 
     trouble = "the robot cannot be reached"
-    """What a person is told first; the page knows the beginnings."""
+    """What a person is told first."""
     remedy = "Plug its line in and switch it on"
+    hindrance = Hindrance.UNREACHABLE
 
 
 class Line(Protocol):

@@ -19,6 +19,7 @@ from roomba.drivers.line import LineError
 from roomba.errors import RoombaError
 from roomba.robot.command import Command
 from roomba.robot.readings import Readings, ScanReading
+from roomba.vocabulary import NO_REASON, Reason
 
 _LOG: Final = logging.getLogger(__name__)
 _RETRY_PERIOD: Final = 0.5
@@ -61,7 +62,7 @@ class LineBody:
     def __init__(self, driver: Driver, line: LineAgain, clock: BodyClock, tick: float) -> None:
         """Connect nothing yet."""
         self._driver, self._line, self._clock, self._tick = driver, line, clock, tick
-        self._trouble = "its line is not served yet"
+        self._trouble = Reason("its line is not served yet")
         self._is_over = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="robot's line", daemon=True)
         self._due = 0.0
@@ -75,7 +76,7 @@ class LineBody:
         ``first_scan`` s; then it was given back.
         """
         self._driver.begin()
-        self._trouble = ""
+        self._trouble = NO_REASON
         self._clock.go_on()
         self._thread.start()
         if has_lidar:
@@ -86,7 +87,7 @@ class LineBody:
         end = time.monotonic() + first_scan
         while self._driver.newest_scan() is None:
             if time.monotonic() > end:
-                why = self._trouble
+                why = self._trouble.text
                 self.stop()
                 raise NoScanError(
                     why
@@ -105,7 +106,7 @@ class LineBody:
         self._line.close()
 
     @property
-    def trouble(self) -> str:
+    def trouble(self) -> Reason:
         """Why the robot cannot be reached, and what helps; empty while it can."""
         return self._trouble
 
@@ -157,7 +158,7 @@ class LineBody:
                 is_open, pause = False, _RETRY_PERIOD
                 continue
             self._clock.go_on()
-            self._trouble = ""
+            self._trouble = NO_REASON
             return
 
     def _note(self, error: Exception) -> None:
@@ -178,7 +179,8 @@ def _as_line_error(error: Exception) -> LineError:
     return DriverFaultError(f"its driver failed, by {type(error).__name__}: {error}")
 
 
-def _told(error: LineError) -> str:
+def _told(error: LineError) -> Reason:
     why = str(error).rstrip(". ")
     end = "" if why.endswith("?") else "."
-    return f"{error.trouble}: {why}{end} {error.remedy}: it goes on by itself"
+    text = f"{error.trouble}: {why}{end} {error.remedy}: it goes on by itself"
+    return Reason(text, error.hindrance)

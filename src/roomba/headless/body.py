@@ -14,6 +14,7 @@ from roomba.mission.inputs.senses import Battery, EmptyingTold
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.robot.command import Command
 from roomba.robot.readings import CliffReading, Readings, ScanReading
+from roomba.vocabulary import NO_REASON
 from roomba.world.engine.state.arrays import Infrared
 from roomba.world.home.home import Home
 from roomba.world.observation import Observation
@@ -29,7 +30,7 @@ class SimulatedBody:
     tick at which they come.
     """
 
-    trouble = ""
+    trouble = NO_REASON
 
     def __init__(
         self,

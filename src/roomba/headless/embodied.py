@@ -51,7 +51,7 @@ class Embodied:
             self._sense()
             self.rows.append(self.row())
         raise RoombaError(
-            self.body.trouble
+            self.body.trouble.text
             or "expected a scan that a map can begin with, got none: put the robot on its station, "
             "with room before it, and see whether its lidar turns"
         )

@@ -19,9 +19,10 @@ from roomba.client.protocol import (
 )
 from roomba.geometry import wrap_angle
 from roomba.grid import GridFrame
-from roomba.history.run import TRACE, RunFigures, RunRecording, told
+from roomba.history.run import TRACE, RunFigures, RunRecording, Word, told
 from roomba.history.run_file import RunFileError
 from roomba.perception.swept.visits import Visits
+from roomba.vocabulary import Hindrance
 
 SPEEDS: Final = (0.25, 100.0)
 """The recording's seconds per second: the least and the most."""
@@ -118,6 +119,7 @@ class RecordedRobot:
             row["covered"] / wanted if wanted > 0.0 else 0.0,
             row["to_go"],
             told(row["battery"]),
+            hindrance=_hindrance_of(word),
         )
         return view.RobotView(
             time=at,
@@ -175,6 +177,12 @@ class RecordedRobot:
     empty_at_station = replace_bag = _refuse
     emergency_stop = release = drive = put_zone = remove_zone = rename_room = _refuse
     join_rooms = split_room = undo_rooms = set_top_speed = change_rooms = _refuse
+
+
+def _hindrance_of(word: Word) -> Hindrance:
+    """Return what is told of a hindrance; NONE of one that only a newer program knows."""
+    known = {hindrance.value: hindrance for hindrance in Hindrance}
+    return known.get(word.hindrance, Hindrance.NONE)
 
 
 def _home_of(recording: RunRecording) -> view.HomeView:

@@ -123,7 +123,10 @@ class CellLayer:
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """What the robot said from a time on, s: state, phase, message, room and doubt."""
+    """What the robot said from a time on, s: state, phase, message, room and doubt.
+
+    ``hindrance`` is the word of what kept it from what it was asked; an older run has none.
+    """
 
     time: float
     state: str
@@ -131,6 +134,7 @@ class Word:
     message: str = ""
     room: str = ""
     doubt: str = ""
+    hindrance: str = ""
 
     def is_as(self, other: Word) -> bool:
         """Whether another one says the same, at whatever time."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import sqlite3
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, astuple, dataclass
 from typing import Any, Final
 
 from roomba.client.protocol import MissedFloor
@@ -41,6 +41,9 @@ MIGRATIONS: Final = (
     """
     ALTER TABLE runs ADD COLUMN mapped REAL;
     ALTER TABLE runs ADD COLUMN open_edges TEXT NOT NULL DEFAULT '[]';
+    """,
+    """
+    ALTER TABLE missed ADD COLUMN code TEXT NOT NULL DEFAULT '';
     """,
 )
 """What makes each version of the schema of the one before; the first one of nothing."""
@@ -92,7 +95,10 @@ def row_of(figures: RunFigures) -> dict[str, Any]:
             [[edge.length, edge.x, edge.y, edge.reason.name] for edge in figures.open_edges]
         ),
         **{name: _known(getattr(figures, name)) for name in _NUMBERS},
-        "missed": [[miss.area, miss.x, miss.y, miss.room, miss.reason] for miss in figures.missed],
+        "missed": [
+            [miss.area, miss.x, miss.y, miss.room, miss.reason, miss.code]
+            for miss in figures.missed
+        ],
     }
 
 
@@ -104,9 +110,8 @@ def insert_row(database: sqlite3.Connection, row: dict[str, Any], number: int | 
     added = database.execute(f"INSERT INTO runs (id, {names}) VALUES (:id, {places})", values)
     given = added.lastrowid
     assert given is not None
-    database.executemany(
-        "INSERT INTO missed VALUES (?, ?, ?, ?, ?, ?)", [(given, *miss) for miss in row["missed"]]
-    )
+    missed = [(given, *astuple(MissedFloor(*miss))) for miss in row["missed"]]
+    database.executemany("INSERT INTO missed VALUES (?, ?, ?, ?, ?, ?, ?)", missed)
     return given
 
 
@@ -134,7 +139,8 @@ def select(database: sqlite3.Connection, which: str, values: tuple[Any, ...]) ->
 
 def _figures_of(database: sqlite3.Connection, number: int, row: dict[str, Any]) -> RunFigures:
     missed = database.execute(
-        "SELECT area, x, y, room, reason FROM missed WHERE run = ? ORDER BY area DESC", (number,)
+        "SELECT area, x, y, room, reason, code FROM missed WHERE run = ? ORDER BY area DESC",
+        (number,),
     )
     source = RunSource(
         row["program"], row["home"], row["seed"], row["repeat"], json.loads(row["configuration"])

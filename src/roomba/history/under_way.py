@@ -61,7 +61,15 @@ class RunUnderWay:
             self.rests_since = view.time
         self._turning += abs(wrap_angle(view.pose[2] - self._theta))
         self._theta = view.pose[2]
-        word = Word(now, vacuum.state, vacuum.phase, vacuum.message, vacuum.room, view.doubt)
+        word = Word(
+            now,
+            vacuum.state,
+            vacuum.phase,
+            vacuum.message,
+            vacuum.room,
+            view.doubt,
+            vacuum.hindrance.value,
+        )
         is_news = not self._words or not word.is_as(self._words[-1])
         if is_news:
             self._words.append(word)

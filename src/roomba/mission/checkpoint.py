@@ -16,7 +16,7 @@ from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Errand, MissionState
-from roomba.vocabulary import EdgeReason, OpenEdge, Phase
+from roomba.vocabulary import EdgeReason, Hindrance, OpenEdge, Phase, Reason
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,7 +28,7 @@ class Remembered:
     """
 
     state: MissionState
-    message: str
+    reason: Reason
     outcome: CleanOutcome | None
     cleaning: Cleaning | None
     exploration: Exploration | None
@@ -41,7 +41,7 @@ class Remembered:
     rough_way: float
 
 
-def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Values | None:
+def checkpoint_of(state: MissionState, reason: Reason, job: Job, now: float) -> Values | None:
     """Return the checkpoint of a job as plain values; None without an errand."""
     if state.errand is Errand.NONE or state.errand is Errand.UNDOCK:
         return None
@@ -50,7 +50,8 @@ def checkpoint_of(state: MissionState, message: str, job: Job, now: float) -> Va
         "phase": state.phase.name,
         "errand": state.errand.name,
         "resumes": None if state.resumes is None else state.resumes.name,
-        "message": message,
+        "message": reason.text,
+        "hindrance": reason.hindrance.name,
         "outcome": None if job.outcome is None else job.outcome.name,
         "cleaning": None if job.cleaning is None else job.cleaning.values(),
         "exploration": None if job.exploration is None else job.exploration.values(),
@@ -101,6 +102,7 @@ def _remembered(
     duration = float(values["duration"])
     times = {str(name): float(value) for name, value in values["times"].items()}
     # Older checkpoints have none of these.
+    reason = Reason(str(values["message"]), Hindrance[values.get("hindrance", "NONE")])
     full_at = None if values.get("bin_full_at") is None else float(values["bin_full_at"])
     rough_way = float(values.get("rough_way", 0.0))
     edges = tuple(
@@ -113,7 +115,7 @@ def _remembered(
         raise CheckpointError("expected finite numbers")
     return Remembered(
         state,
-        str(values["message"]),
+        reason,
         None if outcome is None else CleanOutcome[outcome],
         cleaning,
         exploration,

@@ -16,7 +16,7 @@ from roomba.mission.phases.at_station import why_not_emptied
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Errand, Event, next_state
 from roomba.mission.transitions import BIN_FULL, RELEASED, Transitions
-from roomba.vocabulary import Phase, RoomWay
+from roomba.vocabulary import NO_REASON, Phase, Reason, RoomWay
 
 
 class CommandRefusedError(RoombaError):
@@ -77,7 +77,7 @@ class Commands:
         if event is Event.RESUME:
             self._retries.renew()
             self._job.take_up()
-        held = reason if event is Event.EMERGENCY else self._transitions.reason
+        held = Reason(reason) if event is Event.EMERGENCY else self._transitions.reason
         self._transitions.go(event, senses)
         if event in (Event.RELEASE, Event.STOP) and senses.battery.is_docked:
             self._transitions.go(Event.CONTACT, senses)
@@ -136,12 +136,12 @@ class Commands:
         after = next_state(self._transitions.state, Event.EMERGENCY)
         return after is not None and after.errand is not Errand.NONE
 
-    def _reason_after(self, event: Event, held: str) -> str:
+    def _reason_after(self, event: Event, held: Reason) -> Reason:
         """Return why the robot stands after a command; ``held`` is why an emergency stop holds."""
         phase = self._transitions.state.phase
         if phase is Phase.EMERGENCY:
             return held
-        return RELEASED if event is Event.RELEASE and phase is Phase.PAUSED else ""
+        return RELEASED if event is Event.RELEASE and phase is Phase.PAUSED else NO_REASON
 
     def _require_possible(self, event: Event) -> None:
         if next_state(self._transitions.state, event) is None:
@@ -149,7 +149,7 @@ class Commands:
 
     def _refusal(self, what: str) -> CommandRefusedError:
         """Return the refusal of what is not possible in the present phase."""
-        phase, message = self._transitions.state.phase, self._transitions.message
+        phase, message = self._transitions.state.phase, self._transitions.told.text
         state = "held by the emergency stop" if phase is Phase.EMERGENCY else phase.value
         return CommandRefusedError(
             f"cannot {what} now: the robot is {state}" + (f" ({message})" if message else "")
@@ -168,4 +168,4 @@ class Commands:
     def _require_room_in_bin(self, senses: Senses) -> None:
         self._job.look_at_bin(senses)
         if self._job.bin.is_full:
-            raise CommandRefusedError(f"expected room in the dust bin, got none: {BIN_FULL}")
+            raise CommandRefusedError(f"expected room in the dust bin, got none: {BIN_FULL.text}")

@@ -42,11 +42,11 @@ from roomba.mission.transitions import Transitions
 from roomba.perception.rooms.felt_carpets import CarpetVotes
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
-from roomba.vocabulary import Phase, RoomWay
+from roomba.vocabulary import Phase, Reason, RoomWay
 
 
 class Mission:
-    """One robot's mission in one home. ``message`` says why it does not do what was asked."""
+    """One robot's mission in one home. ``reason`` says why it does not do what was asked."""
 
     def __init__(
         self,
@@ -177,7 +177,7 @@ class Mission:
         self._ticks.last = senses
         is_docked = self._monitor.was_docked = senses.battery.is_docked
         transitions = self._transitions
-        transitions.reason = found.message
+        transitions.reason = found.reason
         transitions.state = state_after(found.state, is_docked=is_docked)
         if self.state.phase is Phase.DOCKED:
             transitions.end_job_at_station(senses)
@@ -188,15 +188,20 @@ class Mission:
         return self._transitions.state
 
     @property
-    def message(self) -> str:
+    def reason(self) -> Reason:
         """Why it does not do what was asked, and what helps; empty when all is well."""
         if self._monitor.is_astray and self.state.drives:
-            return f"it stands until it knows where it is: {self.last.trouble}"
-        return self._transitions.message
+            return Reason(f"it stands until it knows where it is: {self.last.trouble}")
+        return self._transitions.told
+
+    @property
+    def message(self) -> str:
+        """The same as a sentence."""
+        return self.reason.text
 
     @message.setter
     def message(self, message: str) -> None:
-        self._transitions.reason = message
+        self._transitions.reason = Reason(message)
 
     @property
     def dust(self) -> NDArray[np.void]:

@@ -189,8 +189,8 @@ class MissionTicks:
         if self._monitor.is_astray and self._phase is not Phase.DOCKING:
             return MissionStep(STANDSTILL, looks_around=self._is_under_way)
         step = self._step(senses)
-        if step.message is not None:
-            self._transitions.reason = step.message
+        if step.reason is not None:
+            self._transitions.reason = step.reason
         if step.event is Event.CONTACT:
             self._monitor.was_docked = True
         if step.event is not None:

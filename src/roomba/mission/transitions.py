@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from roomba.mission.cleaning.result import CleanOutcome
@@ -12,10 +13,15 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Errand, Event, MissionState, next_state
-from roomba.vocabulary import Phase
+from roomba.vocabulary import NO_REASON, Hindrance, Phase, Reason
 
-BIN_FULL: Final = "bin full: empty the dust bin, and tell the robot (empty_bin)"
-RELEASED: Final = "the emergency stop was released: it waits to be told to go on, or to stop"
+BIN_FULL: Final = Reason(
+    "bin full: empty the dust bin, and tell the robot (empty_bin)", Hindrance.BIN_FULL
+)
+RELEASED: Final = Reason(
+    "the emergency stop was released: it waits to be told to go on, or to stop",
+    Hindrance.STOP_RELEASED,
+)
 """Why a job that it interrupted does not go on."""
 
 
@@ -36,18 +42,19 @@ class Transitions:
         retries: RetryPolicy,
     ) -> None:
         """Begin in a state, without a reason."""
-        self.state, self.reason = state, ""
+        self.state, self.reason = state, NO_REASON
         self.last_command: Event | None = None
         self._job, self._drives, self._obstacles = job, drives, obstacles
         self._at_station, self._retries = at_station, retries
 
     @property
-    def message(self) -> str:
-        """The reason, and what helps; empty when all is well."""
-        full = BIN_FULL if self._job.bin.is_full else ""
-        if full and self.reason == RELEASED:
-            return f"{full}; {self.reason}"
-        return self.reason or full
+    def told(self) -> Reason:
+        """What is told of why; empty when all is well."""
+        if not self._job.bin.is_full:
+            return self.reason
+        if self.reason.hindrance is Hindrance.STOP_RELEASED:
+            return replace(BIN_FULL, text=f"{BIN_FULL.text}; {self.reason.text}")
+        return self.reason or BIN_FULL
 
     def go(self, event: Event, senses: Senses) -> None:
         """Let an event change the state; what belonged to the old phase ends."""
@@ -62,7 +69,7 @@ class Transitions:
         self.drop_driver()
         self._at_station.forget()
         if event is not Event.FAILED:
-            self.reason = ""
+            self.reason = NO_REASON
         if event is Event.FINISHED:
             self._job.outcome = CleanOutcome.COMPLETED
         if after.phase is Phase.DOCKED:
@@ -74,13 +81,13 @@ class Transitions:
         """Go on with a clean that was done, on its way home: there is more of it again."""
         after = next_state(self.state, Event.MORE)
         if after is not None:
-            self.state, self.reason, self._job.outcome = after, "", None
+            self.state, self.reason, self._job.outcome = after, NO_REASON, None
             self.drop_driver()
 
     def fail(self, outcome: CleanOutcome, reason: str, senses: Senses) -> None:
         """Go no further, for a reason."""
         self.go(Event.FAILED, senses)
-        self.reason = reason
+        self.reason = Reason(reason)
         self.end_job(outcome, reason, senses)
 
     def end_job(self, outcome: CleanOutcome, message: str, senses: Senses) -> None:

@@ -6,6 +6,7 @@ from typing import Protocol
 
 from roomba.robot.command import Command
 from roomba.robot.readings import Readings, ScanReading
+from roomba.vocabulary import Reason
 
 
 class Body(Protocol):
@@ -16,7 +17,7 @@ class Body(Protocol):
     """
 
     @property
-    def trouble(self) -> str:
+    def trouble(self) -> Reason:
         """Why the body cannot be reached, and what helps; empty while it can."""
 
     def read(self) -> Readings:

@@ -11,7 +11,9 @@ from roomba_robot.msg import (
     CleanFeedback,
     CleanResult,
     ExploreResult,
+    LineTrouble,
     Localization,
+    MissedArea,
     RoomArray,
     VacuumState,
 )
@@ -29,10 +31,10 @@ from roomba.client.protocol import (
     VacuumSnapshot,
 )
 from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
-from roomba.vocabulary import OpenEdge, RoomDirt
+from roomba.vocabulary import Hindrance, OpenEdge, Reason, RoomDirt, code_of
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.localization import knowledge_of
-from roomba_ros.convert.mission import EDGE_REASONS, OUTCOMES
+from roomba_ros.convert.mission import EDGE_REASONS, HINDRANCES, OUTCOMES, REASONS
 
 BATTERY_NOT_HEARD: Final = -1.0
 """The charge in a state before the first message of the battery; a snapshot has NaN for it."""
@@ -49,6 +51,7 @@ def vacuum_of(message: VacuumState) -> VacuumSnapshot:
         message.fraction,
         message.seconds_to_go,
         message.battery,
+        message.looks_within,
     )
     return VacuumSnapshot(
         state=message.state,
@@ -62,7 +65,19 @@ def vacuum_of(message: VacuumState) -> VacuumSnapshot:
         battery=math.nan if message.battery == BATTERY_NOT_HEARD else message.battery,
         queue=tuple(message.queue),
         is_on_carpet=message.on_carpet,
+        hindrance=_hindrance_of(message.hindrance),
+        looks_within=message.looks_within,
     )
+
+
+def line_trouble_of(message: LineTrouble) -> Reason:
+    """Return why a robot on a line cannot be reached; empty if it can."""
+    return Reason(message.message, _hindrance_of(message.hindrance))
+
+
+def _hindrance_of(code: int) -> Hindrance:
+    """Return the hindrance of a code; NONE if it is none that is known here."""
+    return HINDRANCES.get(code, Hindrance.NONE)
 
 
 def progress_of(message: CleanFeedback) -> CleanProgress:
@@ -96,14 +111,18 @@ def clean_end_of(message: CleanResult, outcome: ErrandOutcome, reason: str) -> C
         distance=message.distance,
         duration=message.duration,
         energy=message.energy,
-        missed=tuple(
-            MissedFloor(area.area, area.at.x, area.at.y, area.room, area.message)
-            for area in message.missed
-        ),
+        missed=tuple(map(_missed_of, message.missed)),
         times=times_of(message.times),
         rooms=room_dirt_of(message.rooms),
         open_edges=open_edges_of(message.open_edges),
     )
+
+
+def _missed_of(message: MissedArea) -> MissedFloor:
+    """Return floor that was missed; without the code of a reason that is none."""
+    codes = [code_of(reason) for reason, code in REASONS.items() if code == message.reason]
+    at, code = message.at, codes[0] if codes else ""
+    return MissedFloor(message.area, at.x, at.y, message.room, message.message, code)
 
 
 def exploration_end_of(

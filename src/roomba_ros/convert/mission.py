@@ -18,6 +18,7 @@ from roomba_robot.msg import (
     CarpetArray,
     CleanFeedback,
     CleanGoal,
+    LineTrouble,
     LowThing,
     LowThingArray,
     MissedArea,
@@ -53,7 +54,9 @@ from roomba.vocabulary import (
     EdgeOrder,
     EdgeReason,
     FanLevel,
+    Hindrance,
     OpenEdge,
+    Reason,
     RoomWay,
 )
 from roomba_ros.convert.common import header, map_message, quaternion_of
@@ -63,6 +66,7 @@ MODES = {getattr(CleanGoal, mode.name): mode for mode in CleanMode}
 FANS = {getattr(CleanGoal, level.name): level for level in FanLevel}
 OUTCOMES = {outcome: getattr(CleanResultMessage, outcome.name) for outcome in CleanOutcome}
 REASONS = {reason: getattr(MissedArea, reason.name) for reason in MissReason}
+HINDRANCES = {getattr(VacuumState, hindrance.name): hindrance for hindrance in Hindrance}
 EDGE_REASONS = {getattr(OpenEdgeMessage, reason.name): reason for reason in EdgeReason}
 CARPETS = {getattr(CleanGoal, f"CARPETS_{way.name}"): way for way in CarpetWay}
 EDGES = {getattr(CleanGoal, f"EDGES_{order.name}"): order for order in EdgeOrder}
@@ -216,6 +220,17 @@ def _missed_message(missed: Missed) -> MissedArea:
         REASONS[missed.reason],
         missed.reason.value,
     )
+
+
+def put_reason(state: VacuumState, reason: Reason) -> None:
+    """Put into a state why the robot does not do what was asked."""
+    state.message, state.looks_within = reason.text, reason.looks_within
+    state.hindrance = _code_of(HINDRANCES, reason.hindrance)
+
+
+def line_trouble_message(reason: Reason) -> LineTrouble:
+    """Return why a robot on a line cannot be reached as a message."""
+    return LineTrouble(_code_of(HINDRANCES, reason.hindrance), reason.text)
 
 
 def feedback_message(state: VacuumState) -> CleanFeedback:

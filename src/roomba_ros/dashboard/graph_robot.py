@@ -147,11 +147,11 @@ class GraphRobot(GraphMaps):
         return view.RobotView(
             time=rospy.get_time(),
             pose=(pose.x, pose.y, pose.theta),
-            doubt=self._topics.unreached or self._topics.trouble or self._topics.doubt,
+            doubt=self._topics.trouble or self._topics.doubt,
             speed=self._topics.speed,
             dirt=self._topics.in_bin,
             held=self._topics.held,
-            vacuum=self._vacuum.vacuum(0.0),
+            vacuum=self._topics.reached(self._vacuum.vacuum(0.0)),
             scan=self._topics.scan_at(pose),
             path=self._topics.path(),
             last=self._topics.last,

@@ -19,6 +19,7 @@ from roomba_robot.msg import (
     CleanActionResult,
     EmptyingStation,
     ExploreActionResult,
+    LineTrouble,
     Localization,
     LowThingArray,
     MapUpdate,
@@ -30,7 +31,7 @@ from sensor_msgs.msg import BatteryState, LaserScan
 from std_msgs.msg import Float32, String
 from tf2_msgs.msg import TFMessage
 
-from roomba.client.protocol import CleanReport, RobotUnavailableError
+from roomba.client.protocol import CleanReport, RobotUnavailableError, VacuumSnapshot
 from roomba.client.view import (
     NO_POINTS,
     ChangeView,
@@ -47,7 +48,8 @@ from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.robot.readings import ScanReading
-from roomba_ros.convert.client import doubt_of
+from roomba.vocabulary import NO_REASON
+from roomba_ros.convert.client import doubt_of, line_trouble_of
 from roomba_ros.convert.common import pose_in_map
 from roomba_ros.convert.mounts import Mounts, transforms_of
 from roomba_ros.convert.page import (
@@ -110,7 +112,7 @@ class PageTopics:
             0, "home", (0.0, 0.0, 0.0), (), (), (), config.body.radius, config.brush.width
         )
         self._layers: dict[LayerName, GridLayer] = {}
-        self.doubt, self.held, self.trouble, self.unreached = "", "", "", ""
+        self.doubt, self.held, self.trouble, self.unreached = "", "", "", NO_REASON
         self.last: CleanReport | None = None
         self.speed, self.in_bin, self.battery_seconds = 0.0, 0.0, math.nan
         self.charges = False
@@ -133,7 +135,7 @@ class PageTopics:
         subscribe("battery_state", BatteryState, charges_of, charges, senders=_one())
         drive, supervisor = OnlyFrom(SPEED_NODE), OnlyFrom(SUPERVISOR)
         subscribe("trouble", String, data_of, partial(self._set, "trouble"), senders=supervisor)
-        subscribe("line_trouble", String, data_of, partial(self._set, "unreached"))
+        subscribe("line_trouble", LineTrouble, line_trouble_of, partial(self._set, "unreached"))
         subscribe("emergency_stop", String, data_of, partial(self._set, "held"), senders=drive)
         subscribe("scan", LaserScan, self._decoder.decode, self._on_scan)
         subscribe("plan", Path, shown_path_of, self._on_path)
@@ -179,6 +181,11 @@ class PageTopics:
         """Return rooms, zones and station."""
         with self._lock:
             return self._home
+
+    def reached(self, vacuum: VacuumSnapshot) -> VacuumSnapshot:
+        """Return a state with why the robot cannot be reached, if so: its mission does not know."""
+        why = self.unreached
+        return replace(vacuum, message=why.text, hindrance=why.hindrance) if why else vacuum
 
     def layer(self, name: LayerName) -> GridLayer | None:
         """Return the newest grid of a layer."""

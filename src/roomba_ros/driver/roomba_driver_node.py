@@ -7,18 +7,21 @@ from functools import partial
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
-from std_msgs.msg import Float32, String
+from roomba_robot.msg import LineTrouble
+from std_msgs.msg import Float32
 from tf2_msgs.msg import TFMessage
 
 from roomba.drivers.robots.table import ROBOTS, OwnedRobot
 from roomba.errors import ConfigError
 from roomba.robot.command import Command
 from roomba.robot.readings import Readings
+from roomba.vocabulary import NO_REASON, Reason
 from roomba_ros.body.drive_link import DriveLink
 from roomba_ros.body.frames import BodyFrames
 from roomba_ros.body.told_topics import ToldTopics
 from roomba_ros.convert.common import transform_message
 from roomba_ros.convert.diagnostics import line_message
+from roomba_ros.convert.mission import line_trouble_message
 from roomba_ros.convert.values import duty_of
 from roomba_ros.runtime.node import frame_id, run_node
 from roomba_ros.runtime.parameters import read_robot_config, read_seed_parameters
@@ -33,8 +36,8 @@ class RoombaDriverNode:
 
     Publishes: what :class:`ToldTopics` tells, ``/tf`` (odom -> base_link, 20 Hz while heard),
     ``/tf_static`` (where the sensors are on the body), ``/diagnostics`` (how its line is), 1 Hz,
-    and ``line_trouble`` (String, latched: why the robot cannot be reached, and what helps; empty
-    again when it can). While it cannot, nothing else but ``/diagnostics`` is told.
+    and ``line_trouble`` (LineTrouble, latched: why the robot cannot be reached, and what helps;
+    empty again when it can). While it cannot, nothing else but ``/diagnostics`` is told.
     Subscribes: what :class:`DriveLink` hears (``cmd_vel_out``, ``emergency_stop``);
     ``main_brush_motor``, ``vacuum_motor`` (Float32, duty 0..1, of brush and fan: they are off until
     something is told).
@@ -60,7 +63,7 @@ class RoombaDriverNode:
         self._drive = DriveLink(config.body.command_timeout, self._lock)
         self._fan: float | None = None
         self._brush: float | None = None
-        self._trouble, self._silent_ticks = "", _LINE_TICKS
+        self._trouble, self._silent_ticks = NO_REASON, _LINE_TICKS
         self._body = kind.body_on(port, config, _lidar_port())
         self._body.start()
         rospy.loginfo("%s on %s is taken over", kind.title, port)
@@ -72,7 +75,7 @@ class RoombaDriverNode:
         if rospy.get_param("~frames", True):
             self._mounts = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
             self._mounts.publish(BodyFrames(config).mounted())
-        self._reached = rospy.Publisher("line_trouble", String, queue_size=1, latch=True)
+        self._reached = rospy.Publisher("line_trouble", LineTrouble, queue_size=1, latch=True)
         self._drive.start()
         subscribe("vacuum_motor", Float32, duty_of, partial(self._on_power, "_fan"))
         subscribe("main_brush_motor", Float32, duty_of, partial(self._on_power, "_brush"))
@@ -100,15 +103,15 @@ class RoombaDriverNode:
         self._topics.tell(now, self._ticks, told)
         self._ticks += 1
 
-    def _tell_line(self, now: float, trouble: str) -> None:
+    def _tell_line(self, now: float, trouble: Reason) -> None:
         if trouble != self._trouble:
-            rospy.logwarn(trouble or "the robot answers again")
+            rospy.logwarn(trouble.text or "the robot answers again")
             self._trouble, self._silent_ticks = trouble, _LINE_TICKS
-            self._reached.publish(trouble)
+            self._reached.publish(line_trouble_message(trouble))
         self._silent_ticks += 1
         if self._silent_ticks >= _LINE_TICKS:
             self._silent_ticks = 0
-            self._line.publish(line_message(now, trouble, self._name))
+            self._line.publish(line_message(now, trouble.text, self._name))
 
     def _on_power(self, motor: str, duty: float) -> None:
         with self._lock:

@@ -6,6 +6,7 @@ import copy
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -22,9 +23,10 @@ from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import VACUUM_STATES
 from roomba.perception.swept.dirt_map import dirty_from
 from roomba.shares import share_of
+from roomba.vocabulary import Reason
 from roomba_ros.convert.client import BATTERY_NOT_HEARD
 from roomba_ros.convert.common import header, path_message
-from roomba_ros.convert.mission import coverage_message, dirt_message, shown
+from roomba_ros.convert.mission import coverage_message, dirt_message, put_reason, shown
 from roomba_ros.convert.values import data_of
 from roomba_ros.runtime.background import Background
 from roomba_ros.runtime.senders import SUPERVISOR, OnlyFrom
@@ -53,7 +55,7 @@ class MissionTopics:
         self._points: NDArray[np.float64] | None = None
         self._cleaned = False
         self._trouble = ""
-        self._newest: tuple[VacuumState, str] | None = None
+        self._newest: tuple[VacuumState, Reason] | None = None
 
     def start(self) -> None:
         """Connect."""
@@ -82,7 +84,9 @@ class MissionTopics:
         """Publish what is due; return the state if it is told now."""
         self._show_plan(now, mission)
         self._show_maps(now, mission)
-        own = "; ".join(filter(None, (mission.message, self._background.trouble)))
+        reason = mission.reason
+        text = "; ".join(filter(None, (reason.text, self._background.trouble)))
+        own = replace(reason, text=text)
         if not self._is_due(
             now, (mission.state, mission.queue, mission.is_on_carpet, self._trouble, own)
         ):
@@ -90,9 +94,8 @@ class MissionTopics:
         self._newest = (state_of(now, mission, senses), own)
         return self._tell_newest(*self._newest)
 
-    def _tell_newest(self, state: VacuumState, own: str) -> VacuumState:
-        # A process that does not work first: it may be the reason of all else.
-        state.message = "; ".join(filter(None, (self._trouble, own)))
+    def _tell_newest(self, state: VacuumState, own: Reason) -> VacuumState:
+        put_reason(state, with_trouble(self._trouble, own))
         self._state.publish(state)
         return state
 
@@ -144,17 +147,25 @@ class MissionTopics:
         self._background.do(f"no {publisher.name} is shown", lambda: publisher.publish(message()))
 
 
+def with_trouble(trouble: str, own: Reason) -> Reason:
+    """Return what is told with what is wrong with the robot's processes, empty for nothing.
+
+    That comes first, and without a word of the mission: it may be the reason of all else.
+    """
+    return Reason("; ".join(filter(None, (trouble, own.text)))) if trouble else own
+
+
 def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
     """Return the mission's state, in the words of smart homes."""
     state = VacuumState(
         header=header(now, ""),
         state=VACUUM_STATES[mission.state.phase],
         phase=mission.state.phase.value,
-        message=mission.message,
         battery=senses.battery.level,
         queue=mission.queue,
         on_carpet=mission.is_on_carpet,
     )
+    put_reason(state, mission.reason)
     if senses.knowledge.is_usable:
         state.room = mission.context.room_at(senses.pose.x, senses.pose.y)
     if mission.cleaning is not None:

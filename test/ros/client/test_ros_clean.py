@@ -159,7 +159,7 @@ def test_a_clean_from_its_goal_to_its_report(graph: RosGraph) -> None:
     assert report.times.times_least == 2.0
     assert [(each.room, each.share, each.grains) for each in report.rooms] == [("Hall", 0.75, 900)]
     assert (report.distance, report.duration, report.energy) == (40.0, 300.0, 2.5)
-    assert report.missed == (MissedFloor(0.5, 1.0, 2.0, "Hall", "a chair"),)
+    assert report.missed == (MissedFloor(0.5, 1.0, 2.0, "Hall", "a chair", "thing"),)
 
     exploring = roomba.robot.explore()
     handle = wait_until(lambda: next(iter(mission.explorations.goals), None), 30.0)

@@ -33,8 +33,14 @@ from roomba.mission.docking.beams import StationBeams
 from roomba.mission.inputs.senses import Battery
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.readings import CliffReading, Readings
+from roomba.vocabulary import Hindrance, Reason
 from roomba.world.simulator import Simulator
-from roomba_ros.convert.client import BATTERY_NOT_HEARD, doubt_of, vacuum_of
+from roomba_ros.convert.client import (
+    BATTERY_NOT_HEARD,
+    doubt_of,
+    line_trouble_of,
+    vacuum_of,
+)
 from roomba_ros.convert.common import (
     path_of,
     planar_pose_message,
@@ -47,7 +53,7 @@ from roomba_ros.convert.common import (
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.localization import knowledge_of, told_pose_of
 from roomba_ros.convert.mapping import is_growing_of
-from roomba_ros.convert.mission import battery_of
+from roomba_ros.convert.mission import battery_of, line_trouble_message, put_reason
 from roomba_ros.convert.readings import (
     OdometryReading,
     Sides,
@@ -237,6 +243,19 @@ def test_sides_are_told_apart() -> None:
 def test_a_battery_that_was_not_heard_is_no_number_for_clients() -> None:
     assert math.isnan(vacuum_of(VacuumState(battery=BATTERY_NOT_HEARD)).battery)
     assert vacuum_of(VacuumState(battery=0.5)).battery == 0.5
+
+
+def test_what_hinders_the_robot_is_told_by_its_code() -> None:
+    state = VacuumState()
+    put_reason(state, Reason("no way home", Hindrance.NO_WAY, 30.0))
+    told = vacuum_of(state)
+    assert state.hindrance == VacuumState.NO_WAY
+    assert (told.message, told.hindrance, told.looks_within) == (
+        *("no way home", Hindrance.NO_WAY, 30.0),
+    )
+    assert vacuum_of(VacuumState(hindrance=200)).hindrance is Hindrance.NONE
+    gone = Reason("the line is gone", Hindrance.UNREACHABLE)
+    assert line_trouble_of(line_trouble_message(gone)) == gone
 
 
 TOLD = Readings(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from actionlib_msgs.msg import GoalStatus
 from fixtures.nodes.lockstep import Lockstep
 from geometry_msgs.msg import Point
@@ -11,17 +13,19 @@ from roomba_robot.msg import (
     EmptyingStation,
     ExploreActionResult,
     ExploreResult,
+    LineTrouble,
     Localization,
     LowThing,
     LowThingArray,
+    VacuumState,
 )
 from roomba_robot.msg import OpenEdge as OpenEdgeMessage
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Float32
 
-from roomba.client.protocol import ErrandOutcome
+from roomba.client.protocol import ErrandOutcome, VacuumSnapshot
 from roomba.configuration.robot import RobotConfig
-from roomba.vocabulary import EdgeReason, OpenEdge
+from roomba.vocabulary import EdgeReason, Hindrance, OpenEdge
 from roomba_ros.dashboard.page_topics import PageTopics
 
 
@@ -46,6 +50,20 @@ def test_of_two_nodes_that_tell_of_the_body_the_page_shows_the_first() -> None:
             ros.publish(topic, message, "/other")
         assert shown.bag == 0.25
         assert (shown.doubt, shown.in_bin, shown.charges) == (doubt, in_bin, True)
+
+
+def test_a_robot_that_cannot_be_reached_says_so_whatever_its_mission_says() -> None:
+    told = VacuumSnapshot("cleaning", "cleaning", "no way", "hall", 1.0, 4.0, 0.25, 60.0, 0.5)
+    with Lockstep().installed() as ros:
+        shown = PageTopics(RobotConfig())
+        shown.start()
+        assert shown.reached(told) == told
+        ros.publish("/line_trouble", LineTrouble(VacuumState.DISOBEYS, "it drives on"))
+        assert shown.reached(told) == replace(
+            told, message="it drives on", hindrance=Hindrance.DISOBEYS
+        )
+        ros.publish("/line_trouble", LineTrouble())
+        assert shown.reached(told) == told
 
 
 def test_the_page_shows_the_zones_that_are_offered_as_they_are_told_last() -> None:

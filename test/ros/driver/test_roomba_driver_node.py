@@ -15,7 +15,16 @@ from fixtures.processes.programs import Program
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from roomba_robot.msg import BodyState, Bumper, Cliff, DockStatus, HazardDetectionVector, WheelDrop
+from roomba_robot.msg import (
+    BodyState,
+    Bumper,
+    Cliff,
+    DockStatus,
+    HazardDetectionVector,
+    LineTrouble,
+    VacuumState,
+    WheelDrop,
+)
 from sensor_msgs.msg import BatteryState, LaserScan
 from std_msgs.msg import String, UInt16
 
@@ -110,10 +119,11 @@ def test_a_line_that_is_gone_is_told(graph: RosGraph, tmp_path: Path) -> None:
     robot, link = emulated(graph, tmp_path)
     node = driven(graph, link)
     probe = Probe(graph)
-    probe.hear("/line_trouble", String)
+    probe.hear("/line_trouble", LineTrouble)
     robot.send(signal.SIGINT)
     wait_until(lambda: "/line_trouble" in probe.newest, 30.0, "it is told")
-    assert "Plug its line in" in probe.newest["/line_trouble"].data
+    assert "Plug its line in" in probe.newest["/line_trouble"].message
+    assert probe.newest["/line_trouble"].hindrance == VacuumState.UNREACHABLE
 
     def is_told() -> bool:
         parts = probe.next("/diagnostics", DiagnosticArray).status
@@ -121,7 +131,7 @@ def test_a_line_that_is_gone_is_told(graph: RosGraph, tmp_path: Path) -> None:
 
     wait_until(is_told, 20.0, "its diagnostics")
     emulated(graph, tmp_path)
-    wait_until(lambda: probe.newest["/line_trouble"].data == "", 30.0, "it goes on by itself")
+    wait_until(lambda: probe.newest["/line_trouble"].message == "", 30.0, "it goes on by itself")
     probe.next("/odom", Odometry)
     assert node.status is None
 

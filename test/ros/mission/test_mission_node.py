@@ -252,6 +252,7 @@ def test_a_full_bin_is_told_and_waited_for(graph: RosGraph) -> None:
     world.bin_level = 1.0
     world.does("returning", 30.0)
     assert world.state.message.startswith("bin full")
+    assert world.state.hindrance == VacuumState.BIN_FULL
     world.x, world.is_docked = 1.0, True
     world.does("bin full", 30.0)
     assert (world.state.state, world.state.message[:8]) == ("error", "bin full")
@@ -262,7 +263,7 @@ def test_a_full_bin_is_told_and_waited_for(graph: RosGraph) -> None:
     )
     world.bin_level = 0.0
     world.does("undocking", 30.0)
-    assert world.state.message == ""
+    assert (world.state.message, world.state.hindrance) == ("", VacuumState.NONE)
     assert order("empty_bin") == (True, "the bin counts as empty now")
 
 

@@ -31,12 +31,15 @@ from roomba.perception.rooms.zones import Zone, ZoneKind, Zones, ZonesError
 from roomba.perception.swept.coverage_bits import SWEPT, WANTED
 from roomba.time_spent import TimeSpent
 from roomba.vocabulary import (
+    NO_REASON,
     CarpetWay,
     CleanMode,
     EdgeOrder,
     EdgeReason,
     FanLevel,
+    Hindrance,
     OpenEdge,
+    Reason,
     RoomWay,
 )
 from roomba_ros.convert.client import clean_end_of, open_edges_of, outcome_of, times_of
@@ -58,6 +61,7 @@ from roomba_ros.convert.mission import (
 )
 from roomba_ros.convert.readings import beams_of
 from roomba_ros.mission.known_home import GROWING, KnownHome
+from roomba_ros.mission.topics import with_trouble
 from roomba_ros.senses.heard_place import moved
 
 
@@ -178,8 +182,11 @@ def test_a_result_says_what_was_missed_and_why() -> None:
     assert (report.outcome, report.message) == (ErrandOutcome.NOT_DOCKED, "no beams")
     assert (report.wanted, report.covered, report.dirt) == (20.0, 19.5, 3.0)
     assert (report.distance, report.duration, report.energy) == (99.0, 600.0, 4.5)
-    assert report.missed == (MissedFloor(0.5, 1.0, 2.0, "Hall", MissReason.SHUT.value),)
+    assert report.missed == (MissedFloor(0.5, 1.0, 2.0, "Hall", MissReason.SHUT.value, "shut"),)
     assert report.times == TIMES
+    area.reason = 200
+    (unknown,) = clean_end_of(message, ErrandOutcome.STOPPED, "").missed
+    assert unknown.code == ""
     message.message = ""
     assert clean_end_of(message, ErrandOutcome.STOPPED, "a newer goal").message == "a newer goal"
 
@@ -315,3 +322,10 @@ def test_an_edit_of_zones_is_told_from_a_map_that_only_grew() -> None:
     assert not known(shut).is_edit_of(known(shut))
     assert known(shut).is_edit_of(known(Zones()))
     assert known(Zones()).is_edit_of(known(shut))
+
+
+def test_a_process_that_does_not_work_is_told_first_and_without_a_word_of_the_mission() -> None:
+    own = Reason("no way home", Hindrance.NO_WAY, 30.0)
+    assert with_trouble("", own) == own
+    assert with_trouble("dirt_pub_node ended", own) == Reason("dirt_pub_node ended; no way home")
+    assert with_trouble("dirt_pub_node ended", NO_REASON).text == "dirt_pub_node ended"

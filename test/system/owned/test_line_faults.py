@@ -74,13 +74,13 @@ def test_unplugged_it_stands_and_plugged_in_it_goes_on(neato: NeatoEnd, body: Li
     end_of(neato).unplug()
     stands_in_time(neato, body)
     act_until(body, lambda: bool(body.trouble), "it is told")
-    assert "Plug its line in" in body.trouble
+    assert "Plug its line in" in body.trouble.text
     stood = body.read()
     act_until(body, lambda: neato.simulator.time > stood.time + 3.0, "time passes")
     assert body.read().time == stood.time
     end_of(neato).plug()
     act_until(body, lambda: body.read().odometry.x > stood.odometry.x + 0.1, "it goes on by itself")
-    assert body.trouble == ""
+    assert not body.trouble
     # What it rolled after it was told last counts as well.
     told, true = body.read().odometry, begin.inverse().compose(neato.simulator.pose)
     assert told.distance_to(true.x, true.y) < 0.015

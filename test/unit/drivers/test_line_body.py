@@ -9,10 +9,13 @@ import pytest
 from fixtures.waiting import wait_until
 
 from roomba.drivers.body_clock import BodyClock
+from roomba.drivers.create2.obedience import DisobeyedError
 from roomba.drivers.line import LineError
 from roomba.drivers.line_body import LineBody
+from roomba.drivers.neato.questions import UntoldError
 from roomba.robot.command import Command
 from roomba.robot.readings import Readings, ScanReading
+from roomba.vocabulary import Hindrance
 
 
 class FaultyDriver:
@@ -67,8 +70,12 @@ def test_a_fault_of_the_driver_is_told_and_the_robot_taken_over_anew() -> None:
     driver = FaultyDriver([OverflowError("too large")], [KeyError("LSIDEBIT")] * 2)
     body = body_by(driver)
     body.start(has_lidar=False)
-    wait_until(lambda: "OverflowError: too large. Please report" in body.trouble, 5.0, "it is told")
-    wait_until(lambda: "KeyError: 'LSIDEBIT'. Please report" in body.trouble, 5.0, "the next one")
+    wait_until(
+        lambda: "OverflowError: too large. Please report" in body.trouble.text, 5.0, "it is told"
+    )
+    wait_until(
+        lambda: "KeyError: 'LSIDEBIT'. Please report" in body.trouble.text, 5.0, "the next one"
+    )
     wait_until(lambda: driver.begins == 4 and not body.trouble, 5.0, "it goes on by itself")
     driver.served.append(ZeroDivisionError("division by zero"))
     wait_until(lambda: driver.begins == 5 and not body.trouble, 5.0, "and so it does again")
@@ -104,7 +111,7 @@ def test_stopped_while_it_waits_it_takes_nothing_over(monkeypatch: pytest.Monkey
     driver = FaultyDriver([ValueError("no number")] * 1000, [])
     body = body_by(driver)
     body.start(has_lidar=False)
-    wait_until(lambda: "ValueError" in body.trouble, 5.0, "it is told")
+    wait_until(lambda: "ValueError" in body.trouble.text, 5.0, "it is told")
     began = time.monotonic()
     body.stop()
     assert time.monotonic() - began < 4.0
@@ -118,4 +125,22 @@ def test_a_line_that_is_only_garbled_is_whole_again_at_once() -> None:
     body.start(has_lidar=False)
     wait_until(lambda: driver.begins == 6, 5.0, "it goes on")
     assert time.monotonic() - began < 2.0
+    body.stop()
+
+
+@pytest.mark.parametrize(
+    ("error", "hindrance"),
+    [
+        (LineError("the line is gone"), Hindrance.UNREACHABLE),
+        (UntoldError("expected GetLDSScan"), Hindrance.SENSOR_SILENT),
+        (DisobeyedError("it drives on"), Hindrance.DISOBEYS),
+    ],
+)
+def test_programs_are_told_what_is_wrong_by_a_word(error: LineError, hindrance: Hindrance) -> None:
+    driver = FaultyDriver([error], [error] * 1000)
+    body = body_by(driver)
+    body.start(has_lidar=False)
+    wait_until(lambda: bool(body.trouble), 5.0, "it is told")
+    assert body.trouble.hindrance is hindrance
+    assert str(error) in body.trouble.text
     body.stop()

@@ -19,7 +19,7 @@ from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Event
 from roomba.mission.transitions import BIN_FULL, RELEASED
 from roomba.robot.readings import Readings
-from roomba.vocabulary import Phase
+from roomba.vocabulary import Hindrance, Phase
 from roomba.world.home.home import DirtSource
 
 DUST = DirtSource("dust", 1.5, 1.25, 2.2, 4.0, 0.0)
@@ -103,7 +103,8 @@ def test_a_full_bin_is_told_after_an_emergency_stop_and_it_does_not_drive_out_wi
     assert_stands(robot)
     command(robot, Event.RELEASE)
     assert robot.mission.state.phase is Phase.PAUSED
-    assert robot.mission.message == f"{BIN_FULL}; {RELEASED}"
+    assert robot.mission.message == f"{BIN_FULL.text}; {RELEASED.text}"
+    assert robot.mission.reason.hindrance is Hindrance.BIN_FULL
     command(robot, Event.RESUME)
     until(robot, in_phase(robot, Phase.BIN_FULL), 1.0)
     assert robot.seen.battery.is_docked
@@ -112,7 +113,7 @@ def test_a_full_bin_is_told_after_an_emergency_stop_and_it_does_not_drive_out_wi
     robot.simulator.empty_bin()
     robot.look()
     robot.mission.command(Event.EMPTIED, robot.senses())
-    assert robot.mission.message == RELEASED
+    assert robot.mission.reason == RELEASED
     command(robot, Event.RESUME)
     until(robot, in_phase(robot, Phase.CLEANING), 60.0)
 

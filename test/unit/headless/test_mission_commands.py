@@ -150,7 +150,7 @@ def test_the_emergency_stop_holds_until_it_is_released_and_the_clean_goes_on_whe
     assert_stands(robot, 2.0)
     command(robot, Event.RELEASE)
     assert robot.mission.state.phase is Phase.PAUSED
-    assert robot.mission.message == RELEASED
+    assert robot.mission.reason == RELEASED
     assert_stands(robot, 20.0)
     assert robot.mission.take_result() is None
     command(robot, Event.RESUME)

@@ -32,7 +32,7 @@ def made_figures() -> RunFigures:
         6.5,
         3.25,
         float("nan"),
-        (MissedFloor(1.0, 3.5, 2.5, "hall", "a thing <stood> in the way"),),
+        (MissedFloor(1.0, 3.5, 2.5, "hall", "a thing <stood> in the way", "thing"),),
         TimeSpent(least=18.5, straight=20.0, turning=12.0, station=20.0, waiting=8.0),
         (OpenEdge(1.5, 4.0, 1.0, EdgeReason.NO_ECHO),),
     )

@@ -170,10 +170,13 @@ def test_rows_of_an_older_journal_come_back(tmp_path: Path, figures: RunFigures)
     (journal,) = tmp_path.glob("*.journal")
     (row,) = read_lines(journal)
     added = ("times", "mapped", "open_edges")
-    write_lines(journal, [{name: value for name, value in row.items() if name not in added}])
+    older = {name: value for name, value in row.items() if name not in added}
+    write_lines(journal, [{**older, "missed": [miss[:5] for miss in older["missed"]]}])
     history.path.write_bytes(b"no database")
     (kept,) = history.runs()
-    assert repr(kept.figures) == repr(replace(figures, times=TimeSpent(), open_edges=()))
+    missed = tuple(replace(miss, code="") for miss in figures.missed)
+    older_figures = replace(figures, missed=missed, times=TimeSpent(), open_edges=())
+    assert repr(kept.figures) == repr(older_figures)
 
 
 def test_a_damaged_journal_costs_nothing_while_the_database_is_whole(

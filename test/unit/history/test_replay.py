@@ -17,7 +17,7 @@ from roomba.history.replay import RecordedRobot
 from roomba.history.run import TRACE, RunFigures, RunRecording
 from roomba.history.run_file import RunFileError
 from roomba.history.unfinished import INTERRUPTED, WHY
-from roomba.vocabulary import EdgeReason
+from roomba.vocabulary import EdgeReason, Hindrance
 
 
 @pytest.fixture
@@ -50,6 +50,18 @@ def test_it_is_where_it_was_at_the_time(robot: RecordedRobot) -> None:
     assert last.outcome.value == "completed"
     assert last.missed[0].room == "hall"
     assert last.open_edges[0].reason is EdgeReason.NO_ECHO
+
+
+@pytest.mark.parametrize(
+    ("word", "hindrance"),
+    [("no way", Hindrance.NO_WAY), ("", Hindrance.NONE), ("of a newer program", Hindrance.NONE)],
+)
+def test_what_hindered_it_is_shown_as_far_as_it_is_known(
+    figures: RunFigures, recording: RunRecording, word: str, hindrance: Hindrance
+) -> None:
+    words = tuple(replace(said, hindrance=word) for said in recording.words)
+    robot = RecordedRobot(figures, replace(recording, words=words))
+    assert robot.robot().vacuum.hindrance is hindrance
 
 
 def test_a_run_that_was_interrupted_is_shown_to_its_end(

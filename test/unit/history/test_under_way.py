@@ -10,6 +10,7 @@ from unit.history.seen import HOME, REPORT, SOURCE, layer, view
 
 from roomba.history.under_way import RunUnderWay, cells_of
 from roomba.history.unfinished import RunSoFar
+from roomba.vocabulary import Hindrance
 
 
 def seen_at(times: Iterable[float]) -> RunUnderWay:
@@ -41,6 +42,15 @@ def test_a_run_goes_on_with_what_was_seen_before() -> None:
     assert ended is not None
     assert ended[1].duration == 5.0
     assert seen_at([0.0]).interrupted() is None
+
+
+def test_what_hinders_a_robot_is_kept_as_its_word() -> None:
+    shut = view(0.0, "cleaning")
+    shut = replace(shut, vacuum=replace(shut.vacuum, hindrance=Hindrance.NO_WAY))
+    run = RunUnderWay(shut, SOURCE)
+    run.take(shut)
+    (word,) = run.recording(HOME, layer).words
+    assert word.hindrance == "no way"
 
 
 def test_the_cells_that_are_kept_are_copies_of_what_there_is() -> None:

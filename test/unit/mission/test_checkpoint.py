@@ -22,13 +22,14 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Errand, MissionState
 from roomba.perception.swept.dirt_map import DirtMap
-from roomba.vocabulary import EdgeReason, OpenEdge, Phase
+from roomba.vocabulary import NO_REASON, EdgeReason, Hindrance, OpenEdge, Phase, Reason
 
 SITE = PlanningContext(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
 SENSES = Senses(100.0, Pose(1.0, 0.6, 0.0))
 CLEANING = MissionState(Phase.CLEANING, Errand.CLEAN)
 
 
+REASON = Reason("a message", Hindrance.STOP_RELEASED)
 EDGE = OpenEdge(2.0, 1.0, -3.0, EdgeReason.NO_ECHO)
 
 
@@ -47,14 +48,14 @@ def job() -> Job:
 
 
 def values(**changes: Any) -> Values:
-    made = checkpoint_of(CLEANING, "a message", job(), SENSES.now)
+    made = checkpoint_of(CLEANING, REASON, job(), SENSES.now)
     assert made is not None
     return json.loads(json.dumps(made)) | changes  # type: ignore[no-any-return]
 
 
 def test_all_that_matters_comes_back() -> None:
     found = remembered(values(outcome="COMPLETED"), begin, MissionConfig().exploring)
-    assert (found.state, found.message) == (CLEANING, "a message")
+    assert (found.state, found.reason) == (CLEANING, REASON)
     again, now = Job(DirtMap(HOME.map), MissionConfig(), 100.0, SENSES), 7.0
     take_up(found, again, Senses(now, SENSES.pose))
     assert again.cleaning is not None
@@ -70,14 +71,15 @@ def test_all_that_matters_comes_back() -> None:
 
 def test_a_checkpoint_of_an_older_program_goes_on() -> None:
     older = values()
-    del older["open_edges"], older["rough_way"]
+    del older["open_edges"], older["rough_way"], older["hindrance"]
     found = remembered(older, begin, MissionConfig().exploring)
     assert (found.open_edges, found.rough_way) == ((), 0.0)
+    assert found.reason == Reason("a message")
 
 
 @pytest.mark.parametrize("errand", [Errand.NONE, Errand.UNDOCK])
 def test_without_an_errand_there_is_nothing_to_remember(errand: Errand) -> None:
-    assert checkpoint_of(MissionState(Phase.IDLE, errand), "", job(), 0.0) is None
+    assert checkpoint_of(MissionState(Phase.IDLE, errand), NO_REASON, job(), 0.0) is None
 
 
 @pytest.mark.parametrize(
@@ -97,6 +99,7 @@ def test_without_an_errand_there_is_nothing_to_remember(errand: Errand) -> None:
         {"times": {"turning": "long"}},
         {"times": 3},
         {"outcome": "WONDERFUL"},
+        {"hindrance": "WONDERFUL"},
     ],
 )
 def test_junk_is_refused(changes: Values) -> None:

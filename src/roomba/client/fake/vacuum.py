@@ -23,7 +23,7 @@ from roomba.client.protocol import (
     RobotUnavailableError,
     VacuumSnapshot,
 )
-from roomba.vocabulary import OVERTAKEN, CleanMode, Phase, RoomWay
+from roomba.vocabulary import OVERTAKEN, CleanMode, Hindrance, Phase, RoomWay
 
 if TYPE_CHECKING:
     from roomba.client.clock import Clock
@@ -154,6 +154,7 @@ class FakeVacuum(CleaningClient):
             seconds_to_go=0.0 if progress is None else progress.seconds_to_go,
             battery=self._battery,
             queue=self._queue(errand),
+            hindrance=Hindrance.BIN_FULL if self.is_bin_full else Hindrance.NONE,
         )
 
     def _queue(self, errand: FakeErrand | None) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -24,7 +25,6 @@ from roomba.history.run import (
     RunFigures,
     RunRecording,
     RunSource,
-    Word,
 )
 from roomba.mission.cleaning.checkpoint import request_values
 from roomba.mission.cleaning.result import CleanOutcome
@@ -62,7 +62,7 @@ def figures_of(figures: Figures, source: RunSource) -> RunFigures:
         figures.dirt_g,
         figures.energy_wh,
         tuple(
-            MissedFloor(each.area_m2, each.x, each.y, each.room, each.reason)
+            MissedFloor(each.area_m2, each.x, each.y, each.room, each.reason, each.code)
             for each in figures.missed
         ),
         figures.times,
@@ -72,10 +72,7 @@ def figures_of(figures: Figures, source: RunSource) -> RunFigures:
 def recording_of(run: Run, samples: StateSamples) -> RunRecording:
     """Return what was seen: true poses, and the state as of the last look at it."""
     began = float(run.trajectory[0, 0])
-    words = tuple(
-        Word(max(word.time - began, 0.0), word.state, word.phase, word.message, word.room)
-        for word in samples.words
-    )
+    words = tuple(replace(word, time=max(word.time - began, 0.0)) for word in samples.words)
     visits = Visits(run.home.map.frame, run.figures.tool_width_m)
     visits.sweep_all(run.trajectory[::_COVERAGE_STRIDE, :3])
     layers = {

@@ -42,7 +42,10 @@ class StateSamples:
                 float(robot.mission.sweeps),
             )
         )
-        word = Word(now, snapshot.state, phase, snapshot.message, snapshot.room)
+        hindrance = snapshot.hindrance.value
+        word = Word(
+            now, snapshot.state, phase, snapshot.message, snapshot.room, hindrance=hindrance
+        )
         if not self.words or not word.is_as(self.words[-1]):
             self.words.append(word)
         self._robot = robot

@@ -10,13 +10,17 @@ from roomba.time_spent import NOT_COUNTED, TimeSpent, square_metres_a_minute
 
 @dataclass(frozen=True, slots=True)
 class MissedShare:
-    """Floor that was wanted and is not clean, as the robot tells it: m2, m, and why."""
+    """Floor that was wanted and is not clean, as the robot tells it: m2, m, and why.
+
+    ``code`` is the reason for programs, as of :func:`roomba.vocabulary.code_of`.
+    """
 
     area_m2: float
     x: float
     y: float
     room: str
     reason: str
+    code: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,6 +38,7 @@ from roomba.headless.odometry import odometry_error
 from roomba.headless.records import CleanRecord
 from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.swept.coverage_map import CoverageMap
+from roomba.vocabulary import code_of
 from roomba.world.home.home import Home
 from roomba.world.home.raster import largest_component, where_body_fits
 
@@ -143,7 +144,9 @@ class TrialSetup:
             tool_width_m=robot.context.tool_width,
             hits=record.hits,
             missed=tuple(
-                MissedShare(each.area, each.x, each.y, each.room, each.reason.value)
+                MissedShare(
+                    each.area, each.x, each.y, each.room, each.reason.value, code_of(each.reason)
+                )
                 for each in result.missed
             ),
             calibration=str(measured),

@@ -7,6 +7,7 @@ from typing import Final
 
 from roomba.drivers.line import LineError
 from roomba.geometry import STANDSTILL, Twist
+from roomba.vocabulary import Hindrance
 
 _LEAST_DISOBEDIENCE: Final = 0.05
 """m/s; a wheel that turns by so much faster than it is told, or the other way, does not obey."""
@@ -21,6 +22,7 @@ class DisobeyedError(LineError):
 
     trouble = "the robot does not obey"
     remedy = "Switch it off, look whether the wire to it is broken, and switch it on"
+    hindrance = Hindrance.DISOBEYS
 
 
 class Obedience:

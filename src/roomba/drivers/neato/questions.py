@@ -10,6 +10,7 @@ from typing import Final
 from roomba.drivers.line import LineError
 from roomba.drivers.neato.answers import AnswerError
 from roomba.drivers.neato.conversation import Conversation, SilenceError
+from roomba.vocabulary import Hindrance
 
 ANSWER: Final = 0.3
 """s; the longest wait for a short answer."""
@@ -22,6 +23,7 @@ class UntoldError(LineError):
 
     trouble = "the robot stands, as it does not tell what it senses"
     remedy = "Look at that sensor, or switch the robot off and on"
+    hindrance = Hindrance.SENSOR_SILENT
 
 
 @dataclass(slots=True, eq=False)

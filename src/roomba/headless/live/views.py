@@ -44,7 +44,7 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.shares import share_of
-from roomba.vocabulary import Phase
+from roomba.vocabulary import Phase, code_of
 from roomba.world.home.home import Home
 from roomba.world.home.materials import MATERIALS
 from roomba.world.home.raster import footprint, outline
@@ -91,11 +91,11 @@ def vacuum_snapshot(robot: Embodied) -> VacuumSnapshot:
         wanted = cleaning.ledger.coverage.wanted_area
         fraction = share_of(covered, wanted)
     pose = robot.brain.pose
-    phase = mission.state.phase
+    phase, reason = mission.state.phase, robot.body.trouble or mission.reason
     return VacuumSnapshot(
         VACUUM_STATES[phase],
         phase.value,
-        robot.body.trouble or mission.message,
+        reason.text,
         mission.context.room_at(pose.x, pose.y),
         covered,
         wanted,
@@ -104,6 +104,8 @@ def vacuum_snapshot(robot: Embodied) -> VacuumSnapshot:
         robot.now.battery.level,
         mission.queue,
         mission.is_on_carpet,
+        reason.hindrance,
+        reason.looks_within,
     )
 
 
@@ -215,7 +217,14 @@ def clean_report(result: CleanResult) -> CleanReport:
         result.duration,
         result.energy,
         tuple(
-            MissedFloor(missed.area, missed.x, missed.y, missed.room, missed.reason.value)
+            MissedFloor(
+                missed.area,
+                missed.x,
+                missed.y,
+                missed.room,
+                missed.reason.value,
+                code_of(missed.reason),
+            )
             for missed in result.missed
         ),
         result.times,

@@ -16,6 +16,7 @@ from roomba.mission.inputs.senses import EmptyingTold, Senses
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
+from roomba.vocabulary import Hindrance, Reason
 
 _NO_ANSWER: Final = "its station does not empty the bin: see whether its way in is free"
 
@@ -118,10 +119,14 @@ class AtStation:
             job.bin.emptied()
             return PhaseStep(event=Event.EMPTIED)
         elif reason := why_not_emptied(told):
-            return PhaseStep(event=Event.FAILED, message=reason)
+            return _not_emptied(reason)
         elif self._stood.elapsed > self._config.emptying_timeout:
-            return PhaseStep(event=Event.FAILED, message=_NO_ANSWER)
+            return _not_emptied(_NO_ANSWER)
         return PhaseStep(empties=True)
+
+
+def _not_emptied(why: str) -> PhaseStep:
+    return PhaseStep(event=Event.FAILED, reason=Reason(why, Hindrance.NOT_EMPTIED))
 
 
 def why_not_emptied(told: EmptyingTold | None) -> str:

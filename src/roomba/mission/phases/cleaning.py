@@ -22,8 +22,9 @@ from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.planning.path.planner import NoPathError
+from roomba.vocabulary import NO_REASON, Reason
 
-_WAITS: Final = "all is seen; it waits for the map to be finished"
+_WAITS: Final = Reason("all is seen; it waits for the map to be finished")
 _NO_WHOLE_MAP: Final = (
     "the map is not finished: put the robot on its station once, so that the map knows where that "
     "is, or call map/finish; then resume"
@@ -68,7 +69,7 @@ class CleanPhase:
         ended = None
         if not drives.begin_to_leave_zone(senses):
             ended = self._begin_path(cleaning, senses)
-        return ended or replace(self._drive_on(cleaning, senses, limit), message="")
+        return ended or replace(self._drive_on(cleaning, senses, limit), reason=NO_REASON)
 
     def _begin_path(self, cleaning: Cleaning, senses: Senses) -> PhaseStep | None:
         """Begin the next path, or return what is to be done where there is none."""
@@ -134,7 +135,7 @@ class CleanPhase:
             reason = "no way leads out of where it is"
             return returning.try_home_again(reason, drives, self._retries, senses)
         self._seen_all_of, self._waited = drives.context, RobotTime(senses.now)
-        return PhaseStep(message=_WAITS, wants_whole_map=True)
+        return PhaseStep(reason=_WAITS, wants_whole_map=True)
 
     def _turns_to_see(self, senses: Senses) -> bool:
         """Begin to turn where a map in the making shows no way; tell whether it does."""

@@ -14,6 +14,7 @@ from roomba.mission.phases.charges import when_low
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
+from roomba.vocabulary import NO_REASON
 
 _MOST_SHUT_IN: Final = 3
 """Times that it forgets what shuts it in, before it takes what it knows for all."""
@@ -42,7 +43,7 @@ def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: 
             exploration.give_up_all(senses.pose, drives.context)
         return PhaseStep(event=Event.FINISHED)
     drives.begin(points, senses)
-    return replace(look_on(exploration, drives, senses, limit, most_stuck), message="")
+    return replace(look_on(exploration, drives, senses, limit, most_stuck), reason=NO_REASON)
 
 
 def _forgets_what_shuts_in(exploration: Exploration, drives: Drives, senses: Senses) -> bool:

@@ -12,6 +12,7 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.planning.path.planner import NoPathError
+from roomba.vocabulary import NO_REASON, Hindrance, Reason
 
 
 def go_home(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) -> PhaseStep:
@@ -33,7 +34,7 @@ def go_home(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) 
             return try_home_again(f"no way home: {error}", drives, retries, senses)
         drives.begin(points, senses)
     step = _go_home_on(drives, retries, senses, limit)
-    return step if step.message else replace(step, message="")
+    return step if step.reason else replace(step, reason=NO_REASON)
 
 
 def _go_home_on(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) -> PhaseStep:
@@ -67,8 +68,8 @@ def wait(reason: str, drives: Drives, retries: RetryPolicy, senses: Senses) -> P
     retries.wait(senses.now)
     drives.make_room(senses)
     drives.obstacles.forget()
-    looks = f"looks again within {retries.length:g} s"
-    return PhaseStep(message=f"{reason}; it waits for a way to open, and {looks}")
+    text = f"{reason}; it waits for a way to open, and looks again within {retries.length:g} s"
+    return PhaseStep(reason=Reason(text, Hindrance.NO_WAY, retries.length))
 
 
 def wait_on(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) -> PhaseStep | None:

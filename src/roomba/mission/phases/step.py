@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from roomba.geometry import STANDSTILL, Twist
 from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.phases.machine import Event
+from roomba.vocabulary import Reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +22,7 @@ class Failure:
 class PhaseStep:
     """The twist wanted, and what ends the phase: an ``event`` or a ``failure``.
 
-    ``message`` is what is told from now on; None leaves that as it is. ``wants_whole_map``: all
+    ``reason`` is what is told from now on; None leaves that as it is. ``wants_whole_map``: all
     that can be seen was seen, and it waits for the map to be finished. ``empties``: its
     station is to empty its bin.
     """
@@ -29,6 +30,6 @@ class PhaseStep:
     twist: Twist = STANDSTILL
     event: Event | None = None
     failure: Failure | None = None
-    message: str | None = None
+    reason: Reason | None = None
     wants_whole_map: bool = False
     empties: bool = False

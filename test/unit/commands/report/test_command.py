@@ -62,7 +62,7 @@ def test_a_real_run_is_reported(
 def test_runs_are_told_to_programs(
     history: History, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    missed = MissedFloor(0.25, 1.0, 2.0, "den", "a door is shut")
+    missed = MissedFloor(0.25, 1.0, 2.0, "den", "a door is shut", "shut")
     edge = OpenEdge(1.5, 4.0, 1.0, EdgeReason.NO_ECHO)
     history.add(replace(figures("flat", 18.0), missed=(missed,)))
     explored = replace(figures("loft", math.nan), energy=math.inf, mapped=20.5)
@@ -72,7 +72,14 @@ def test_runs_are_told_to_programs(
     told = [flat[name] for name in ("run", "home", "covered_m2", "missed_m2", "mapped_m2")]
     assert told == [1, "flat", 18.0, 0.25, None]
     assert flat["missed"] == [
-        {"area_m2": 0.25, "x": 1.0, "y": 2.0, "room": "den", "reason": "a door is shut"}
+        {
+            "area_m2": 0.25,
+            "x": 1.0,
+            "y": 2.0,
+            "room": "den",
+            "reason": "a door is shut",
+            "code": "shut",
+        }
     ]
     told = [loft[name] for name in ("run", "covered_m2", "energy_wh", "mapped_m2", "open_m")]
     assert told == [2, None, None, 20.5, 1.5]

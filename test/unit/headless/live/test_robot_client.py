@@ -23,7 +23,7 @@ from roomba.client.protocol import (
 from roomba.commands.play.living import live_client
 from roomba.headless.live.client import LiveClient
 from roomba.headless.live.robot_client import LiveRobotClient
-from roomba.vocabulary import CleanMode
+from roomba.vocabulary import CleanMode, Hindrance
 
 DEADLINE = 20.0
 """s of wall time."""
@@ -304,6 +304,7 @@ def test_a_full_bin_is_emptied_and_the_clean_goes_on(tmp_path: Path) -> None:
         clean = robot.clean()
         become(robot, "bin full")
         assert "empty" in robot.vacuum().message
+        assert robot.vacuum().hindrance is Hindrance.BIN_FULL
         assert clean.report() is None
         robot.empty_bin()
         wait_until(lambda: phase(robot) != "bin full", DEADLINE, "the clean to go on")

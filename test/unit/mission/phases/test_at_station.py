@@ -16,13 +16,14 @@ from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.docking.docking import Docking, DockState
 from roomba.mission.docking.step import DockStep
 from roomba.mission.docking.undocking import Undocking, UndockState, UndockStep
-from roomba.mission.inputs.senses import Battery, Senses
+from roomba.mission.inputs.senses import Battery, EmptyingTold, Senses
 from roomba.mission.phases import at_station
 from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.perception.swept.dirt_map import DirtMap
+from roomba.vocabulary import Hindrance
 
 DOCKED = Senses(0.0, STATION, battery=Battery(0.5, 26.0, is_docked=True))
 BEFORE = Senses(0.0, Pose(0.9, 1.25, 0.0))
@@ -153,3 +154,14 @@ def test_it_stands_again_before_it_undocks_another_time() -> None:
     station.undock(DOCKED, STATION)
     station.forget()
     assert station.undock(replace(DOCKED, now=9.0), STATION, 2.0).twist == STANDSTILL
+
+
+@pytest.mark.parametrize("told", [None, EmptyingTold(is_at_work=False, bag=1.0)])
+def test_a_bin_that_its_station_does_not_empty_is_emptied_by_hand(
+    told: EmptyingTold | None,
+) -> None:
+    job = Job(DirtMap(HOME.map), MissionConfig(), 100.0, DOCKED)
+    step = at_the_station().empty(replace(DOCKED, emptying=told), job)
+    assert step.event is Event.FAILED
+    assert step.reason is not None
+    assert step.reason.hindrance is Hindrance.NOT_EMPTIED

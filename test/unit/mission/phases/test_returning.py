@@ -21,6 +21,7 @@ from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.returning import go_home
 from roomba.mission.phases.step import PhaseStep
+from roomba.vocabulary import NO_REASON, Hindrance
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
 SITE = PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
@@ -58,8 +59,8 @@ def test_with_a_way_home_it_drives() -> None:
     step = rig.go_home()
     assert step.twist != STANDSTILL
     # What was told before is over.
-    assert step.message == ""
-    assert rig.go_home(replace(IN_THE_DEN, now=0.05)).message is None
+    assert step.reason == NO_REASON
+    assert rig.go_home(replace(IN_THE_DEN, now=0.05)).reason is None
 
 
 def test_shut_in_it_waits_twenty_minutes_for_a_way_and_then_says_that_there_is_none() -> None:
@@ -67,7 +68,7 @@ def test_shut_in_it_waits_twenty_minutes_for_a_way_and_then_says_that_there_is_n
     told, step = set(), PhaseStep()
     while step.failure is None and now < 60.0 * MINUTE:
         step = rig.go_home(replace(IN_THE_DEN, now=now))
-        told.add(step.message)
+        told.add(step.reason)
         now += 0.5
     assert step.failure is not None
     assert step.failure.outcome is CleanOutcome.NOT_DOCKED
@@ -75,29 +76,31 @@ def test_shut_in_it_waits_twenty_minutes_for_a_way_and_then_says_that_there_is_n
     # Two short waits, and then long ones; each says when it is over at the latest.
     for seconds in (10, 30):
         ends = f"; it waits for a way to open, and looks again within {seconds} s"
-        assert any(message and message.endswith(ends) for message in told)
+        (reason,) = (reason for reason in told if reason and reason.looks_within == seconds)
+        assert reason.hindrance is Hindrance.NO_WAY
+        assert reason.text.endswith(ends)
     assert now == pytest.approx(20.0 * MINUTE, abs=0.5 * MINUTE)
 
 
 def test_a_door_that_is_opened_meanwhile_is_driven_through() -> None:
     rig, now, waited = Rig(), 0.0, PhaseStep()
-    while not waited.message:
+    while not waited.reason:
         waited = rig.go_home(replace(IN_THE_DEN, now=now))
         now += 0.05
     rig.obstacles.things = []
     # It has time, and makes room for a person who may stand there.
     assert rig.makes_room
     aside = rig.go_home(replace(IN_THE_DEN, now=now + 5.0))
-    assert (aside.twist == STANDSTILL, aside.message) == (False, None)
+    assert (aside.twist == STANDSTILL, aside.reason) == (False, None)
     step = rig.go_home(replace(IN_THE_DEN, now=now + 11.0))
     assert step.twist != STANDSTILL
-    assert step.message == ""
+    assert step.reason == NO_REASON
     assert not rig.makes_room
 
 
 def test_it_waits_no_longer_than_there_is_no_way() -> None:
     rig, now = Rig(), 0.0
-    while not rig.go_home(replace(IN_THE_DEN, now=now)).message:
+    while not rig.go_home(replace(IN_THE_DEN, now=now)).reason:
         now += 0.05
     rig.drives.driver = None
     assert rig.go_home(replace(IN_THE_DEN, now=now + 2.5)) == PhaseStep()

@@ -44,25 +44,26 @@ def view_of(
 ) -> RobotView:
     """Return the robot as it is now; ``held`` is why the emergency stop holds the drive."""
     now, brain = robot.now, robot.brain
-    pose, phase = brain.compass.pose, phase_of(brain.state)
+    pose, phase, trouble = brain.compass.pose, phase_of(brain.state), robot.body.trouble
     swept = brain.floor.coverage.swept_area
     return RobotView(
         time=now.time,
         pose=(pose.x, pose.y, pose.theta),
-        doubt=robot.body.trouble or BY_WHEELS,
+        doubt=trouble.text or BY_WHEELS,
         speed=abs(now.twist.linear),
         dirt=math.nan,
         held=held,
         vacuum=VacuumSnapshot(
             VACUUM_STATES[phase],
             phase.value,
-            robot.body.trouble or (brain.state.value if phase is Phase.ERROR else ""),
+            trouble.text or (brain.state.value if phase is Phase.ERROR else ""),
             "",
             swept,
             0.0,
             0.0,
             0.0,
             now.battery.level,
+            hindrance=trouble.hindrance,
         ),
         scan=NO_POINTS,
         path=NO_POINTS,

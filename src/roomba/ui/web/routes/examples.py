@@ -58,6 +58,8 @@ ANSWERS: Final[dict[str, dict[str, Any]]] = {
             "state": "cleaning",
             "phase": "cleaning",
             "message": "",
+            "hindrance": "",
+            "looks_within": 0.0,
             "room": "Kitchen",
             "covered": 4.2,
             "wanted": 38.5,
