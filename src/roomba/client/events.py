@@ -13,7 +13,8 @@ from roomba.vocabulary import AT_REST
 
 EVENT_KINDS: Final = ("state", "begun", "ended", "trouble")
 """``state``: what it does changed; ``begun`` and ``ended``: a run; ``trouble``: what is wrong, in
-words, which are empty when all is well again."""
+words, which are empty when all is well again. One that goes on is told once, though its words
+change."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +40,7 @@ class EventFinder:
 
     def gone(self, reason: str) -> list[RobotEvent]:
         """Return what changed: the robot does not answer, for this reason."""
-        return list(self._troubles(None, reason))
+        return list(self._troubles(None, reason, reason))
 
     def _changes(self, view: RobotView) -> Iterator[RobotEvent]:
         vacuum = view.vacuum
@@ -54,12 +55,14 @@ class EventFinder:
             if view.last is not None and view.last != self._last:
                 yield RobotEvent("ended", {"time": round(view.time, 2), **report_of(view.last)})
         self._is_running, self._last = is_running, view.last
-        yield from self._troubles(view.time, vacuum.message or view.held or view.doubt)
+        told = vacuum.message or view.held or view.doubt
+        yield from self._troubles(view.time, vacuum.hindrance.value or told, told)
 
-    def _troubles(self, at: float | None, trouble: str) -> Iterator[RobotEvent]:
+    def _troubles(self, at: float | None, trouble: str, told: str) -> Iterator[RobotEvent]:
+        """Tell of a trouble that is another one than before, by its words if it has no code."""
         if trouble != self._trouble:
             self._trouble = trouble
-            yield RobotEvent("trouble", {"time": at, "message": trouble})
+            yield RobotEvent("trouble", {"time": at, "message": told})
 
 
 def _where(view: RobotView) -> dict[str, Any]:

@@ -25,6 +25,7 @@ from roomba.ui.web.bounded.limits import MOST_LISTENERS
 from roomba.ui.web.guard import Guard
 from roomba.ui.web.server import PageServer, listen
 from roomba.ui.web.streams.events import MOST_KEPT, Events
+from roomba.vocabulary import Hindrance
 
 REPORT = CleanReport(ErrandOutcome.COMPLETED, "", 4.0, 4.0, 1.0, 9.0, 60.0, float("nan"))
 _REQUEST = b"GET /api/v1/events HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
@@ -85,6 +86,22 @@ def test_a_run_begins_meets_trouble_and_ends() -> None:
     ]
     (end,) = (event for event in found if event["type"] == "ended")
     assert (end["outcome"], end["covered"], end["energy"]) == ("completed", 4.0, None)
+
+
+def hindered(message: str, hindrance: Hindrance) -> RobotView:
+    vacuum = replace(VIEW.vacuum, message=message, hindrance=hindrance)
+    return replace(VIEW, vacuum=vacuum)
+
+
+def test_a_hindrance_that_goes_on_is_told_once_though_its_words_change() -> None:
+    events = Events()
+    for seconds in range(1, 5):
+        events.note(hindered(f"got none for {seconds} s", Hindrance.SENSOR_SILENT))
+    events.note(hindered("the line is gone", Hindrance.UNREACHABLE))
+    events.note(VIEW)
+    assert [event.get("message") for event in told(events, 1, 3)] == [
+        *("got none for 1 s", "the line is gone", ""),
+    ]
 
 
 def test_a_run_that_ended_before_is_no_news() -> None:
