@@ -174,7 +174,7 @@ def test_a_room_gets_another_name_and_a_cut_that_is_none_is_refused(opened: Open
     page.get_by_role("button", name="kitchen").click()
     page.get_by_role("button", name="Rename").click()
     name, fault = page.get_by_role("textbox", name="Name"), page.locator("#ask-fault")
-    taken, unseen = "There is a room “hallway” already.", "all of which can be seen"
+    taken, unseen = "There is a room 'hallway' already", "of 1 to 80 printable characters"
     for wrong, why in (("hallway", taken), ("a\u202eb", unseen)):
         name.fill(wrong)
         page.get_by_role("button", name="OK").click()

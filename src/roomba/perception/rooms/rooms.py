@@ -155,8 +155,10 @@ class Rooms:
 
     def renamed(self, name: str, new_name: str) -> Rooms:
         """Return the rooms with another name for one. Raises RoomsError."""
-        index = self.label_of(name) - 1
-        names = (*self.names[:index], new_name.strip(), *self.names[index + 1 :])
+        index, new = self.label_of(name) - 1, new_name.strip()
+        if new != name and new in self.names:
+            raise RoomsError(f"there is a room {new!r} already; choose another name")
+        names = (*self.names[:index], new, *self.names[index + 1 :])
         return replace(self, names=names)
 
     def joined(self, *names: str) -> Rooms:

@@ -95,6 +95,15 @@ def test_commands_reach_the_robot(page: TestClient, robot: WrittenRobot) -> None
     assert paused == ("pause", ())
 
 
+@pytest.mark.parametrize(("phase", "status"), [("paused", 200), ("docked", 409)])
+def test_a_robot_that_is_paused_already_is_paused(
+    page: TestClient, robot: WrittenRobot, phase: str, status: int
+) -> None:
+    robot.refusal = f"cannot pause now: the robot is {phase}"
+    robot.view = replace(robot.view, vacuum=replace(robot.view.vacuum, phase=phase))
+    assert page.post("/api/v1/pause", json={}, headers=AUTHORISED).status_code == status
+
+
 def test_a_clean_has_as_many_rooms_as_a_request_takes(
     page: TestClient, robot: WrittenRobot
 ) -> None:

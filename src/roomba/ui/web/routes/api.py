@@ -33,6 +33,7 @@ from roomba.ui.web.routes.wishes import (
     request_of,
     ways_of,
 )
+from roomba.vocabulary import Phase
 
 _Value = TypeVar("_Value")
 Note = Callable[[dict[str, Any] | None], None]
@@ -101,7 +102,7 @@ def _add_errands(api: APIRouter, robot: ObservedRobot, note: Note) -> None:
     plain: tuple[tuple[str, str, Callable[[], None]], ...] = (
         ("explore", "Look at what the map does not show yet", robot.explore),
         ("dock", "Go to the charging station", robot.dock),
-        ("pause", "Stand until told to go on", robot.pause),
+        ("pause", "Stand until told to go on", lambda: _pause(robot)),
         ("resume", "Go on", robot.resume),
         ("stop", "End the errand, and stay", robot.stop),
         ("locate", "Beep", robot.locate),
@@ -130,6 +131,15 @@ def _add_errands(api: APIRouter, robot: ObservedRobot, note: Note) -> None:
     @api.post("/drive", summary="Drive by hand")
     def drive(wish: DriveWish) -> Answer:
         return obeyed(lambda: robot.drive(wish.linear, wish.angular))
+
+
+def _pause(robot: ObservedRobot) -> None:
+    """Pause it; one that is paused already is as it was wished."""
+    try:
+        robot.pause()
+    except RequestRefusedError:
+        if robot.robot().vacuum.phase != Phase.PAUSED:
+            raise
 
 
 def _add_edits(api: APIRouter, robot: ObservedRobot) -> None:

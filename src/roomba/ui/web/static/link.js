@@ -1,7 +1,7 @@
 /** The connection to the server: a stream of snapshots that comes back by itself, and wishes. */
 import { get, set } from "./store.js";
 import { takeTiles } from "./map/grids.js";
-import { plain, sentence } from "./words.js";
+import { sentence } from "./words.js";
 
 const STALE = 1500; // ms without news after which what is shown is told to be old
 const PATIENCE = 10_000; // ms until an answer counts as lost
@@ -134,7 +134,7 @@ async function send(path, body, method) {
     if (answer.ok) return "";
     if (answer.status === 401) return ONLY_LOOKS;
     const told = await answer.json();
-    return plain(typeof told.detail === "string" ? told.detail : told.detail.map((one) => one.msg).join("; "));
+    return typeof told.detail === "string" ? told.detail : told.detail.map((one) => one.msg).join("; ");
   } catch {
     return SILENT;
   }

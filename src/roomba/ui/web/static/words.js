@@ -9,27 +9,17 @@ const MOST_TOLD = 3; // rooms that a sentence lists
 const OPEN = "the map is open"; // how the part of a message begins that tells of open edges
 const UNTOLD = ["stopped", "refused", "disconnected"]; // ends that were wished for, or are told elsewhere
 const EARLY = { interrupted: "interrupted", "not docked": "done, but not docked" }; // how a run ended, where it did not merely end early
-const HELPS = [ // what is to be done: by what stands in the reason
-  ["a door is shut", "Open it or clear the way, then clean there again."],
-  ["something stands there", "Take it away, then clean there again."],
-  ["the program that kept this run ended", "Clean again what is left."],
-  ["it got to no place from which to look there", "Open doors and clear the way before it makes a map anew."],
-];
-const WAITS = "; it waits for a way to open, and "; // what parts why it waits from when it looks again
-const WORK = ["cleaning", "exploring", "returning"]; // phases in which it may wait so
-const TROUBLES = [ // of a robot on a line: how its message begins, and the headline
-  ["the robot cannot be reached", "Cannot reach the robot"],
-  ["the robot stands, as it does not tell what it senses", "The robot stands: a sensor is silent"],
-  ["the robot does not obey", "The robot does not obey"],
-];
-
-const PLAIN = [ // refusals that are made for programs, and how a person says them
-  [/^expected a name of 1 to (\d+) printable characters, got .*/, "a name has 1 to $1 characters, all of which can be seen"],
-  [/^expected different names, got ['"](.*)['"] twice.*/, "there is a room “$1” already"],
-];
-
-/** Return why something is refused as a person says it. */
-export function plain(reason) { return PLAIN.reduce((text, [pattern, words]) => text.replace(pattern, words), reason); }
+const HELPS = { // what is to be done, by why floor was missed, or the map stays open
+  shut: "Open it or clear the way, then clean there again.",
+  thing: "Take it away, then clean there again.",
+  "not looked at": "Open doors and clear the way before it makes a map anew.",
+};
+const GO_ON = "Clean again what is left."; // after a run that was interrupted
+const TROUBLES = { // of a robot on a line: the headline
+  unreachable: "Cannot reach the robot",
+  "sensor silent": "The robot stands: a sensor is silent",
+  disobeys: "The robot does not obey",
+};
 
 /** Return the headline for a state. */
 export function headline(link, state) {
@@ -60,9 +50,7 @@ export function headline(link, state) {
   }
 }
 
-function troubleOf(state) {
-  return TROUBLES.find(([begin]) => [state.vacuum.message, state.doubt].some((told) => told?.startsWith(begin)))?.[1];
-}
+function troubleOf({ vacuum }) { return TROUBLES[vacuum.hindrance]; }
 
 /** Return how long it still cleans; empty when it does not. This changes all the time, and is not read out. */
 export function toGo(link, state) {
@@ -72,12 +60,12 @@ export function toGo(link, state) {
 }
 
 /** Whether it stands before a door that is shut, or something else in its way, until that is gone. */
-function waits({ message, phase }) { return WORK.includes(phase) && message.includes(WAITS); }
+function waits(vacuum) { return vacuum.hindrance === "no way"; }
 
 /** Return why it waits, without the numbers of places, when it looks again, and what helps. */
-function waiting(message) {
-  const [why, looks] = message.split(WAITS);
-  return `${sentence(why.replace(/( from \(|:).*/, ""))} It ${sentence(looks).replace(/^./, (first) => first.toLowerCase())} Open a door or clear the way, and it goes on.`;
+function waiting({ phase, looks_within: seconds }) {
+  const looks = seconds ? ` It looks again within ${duration(seconds)}.` : "";
+  return `${phase === "returning" ? "No way home" : "No way leads on"}.${looks} Open a door or clear the way, and it goes on.`;
 }
 
 function moves(state) { return state.speed > MOVES; }
@@ -97,8 +85,8 @@ export function explanation(link, state, reason, heardAt) {
   if (!state) return "";
   if (state.held) return `The drive is held: ${state.held}. “Release” lets it go; then it stands until “Go on”, or another order.`;
   if (state.truth?.lifted) return "Put it down: drag it, or tap the floor and “Put the robot here”.";
-  if (/^bin full/.test(state.vacuum.message)) return "Empty the dust bin, then press “Bin emptied”.";
-  if (waits(state.vacuum)) return waiting(state.vacuum.message);
+  if (state.vacuum.hindrance === "bin full") return "Empty the dust bin, then press “Bin emptied”.";
+  if (waits(state.vacuum)) return waiting(state.vacuum);
   return sentence(state.vacuum.message || state.doubt);
 }
 
@@ -145,7 +133,15 @@ function nothingDone({ outcome, covered, wanted, message, missed }) {
 export function shortfall(report) {
   if (!report || UNTOLD.includes(report.outcome)) return "";
   const text = nothingDone(report) || (report.outcome === "completed" ? notAll(report) : endedEarly(report));
-  return [text, HELPS.find(([reason]) => text.toLowerCase().includes(reason))?.[1]].filter(Boolean).join(" ");
+  return [text, text && help(report)].filter(Boolean).join(" ");
+}
+
+/** Return what helps where a run fell short; empty where that is not known. */
+function help({ outcome, missed, open_edges: edges }) {
+  if (outcome === "interrupted") return GO_ON;
+  const reasons = missed.length ? missed.slice(0, 1) : edges ?? [];
+  const codes = new Set(reasons.map(({ code }) => code)); // of several, “Last run” tells
+  return outcome === "completed" && codes.size === 1 ? HELPS[[...codes][0]] : "";
 }
 
 /** Return by which letter an open edge of the map is called: rooms have numbers. */

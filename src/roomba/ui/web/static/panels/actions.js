@@ -1,12 +1,13 @@
 /** The buttons: clean, pause, dock, stop, explore; and how is cleaned. */
 import { $, offer, put } from "../dom.js";
-import { askFor, refuse, wish } from "../link.js";
+import { refuse, wish } from "../link.js";
 import { get, isConnected, mayMove, on, set } from "../store.js";
 import { CARPETS, EDGES, MODES } from "../words.js";
 import { askYes } from "./ask.js";
 import * as queue from "./queue.js";
 
 const STANDS = ["docked", "idle"];
+const FULL = ["bin full", "not emptied"]; // hindrances after which a person empties its bin
 const STEP = 0.1; // m/s between two top speeds that can be chosen
 const USUAL = { passes: 1, fan: "standard", carpets: "boost", edges: "any" };
 
@@ -39,8 +40,7 @@ function onceOnly(event) {
 /** Pause, or go on, when the button offers it. */
 export async function pauseOrResume() {
   if ($("pause").disabled) return;
-  const reason = isPaused() ? await askFor("resume") : await askFor("pause");
-  if (reason && !/^cannot pause now: the robot is paused/.test(reason)) refuse(reason); // then it is as it was wished
+  await wish(isPaused() ? "resume" : "pause");
 }
 
 function isPaused() { return ["paused", "error"].includes(get("state")?.vacuum.phase); }
@@ -124,7 +124,7 @@ function show() {
   const state = get("state"), chosen = get("chosen"), phase = state?.vacuum.phase ?? "";
   const stands = STANDS.includes(phase), isHeld = Boolean(state?.held), home = get("home");
   const isHeard = isConnected(), hasNoMap = Boolean(home) && !home.furniture.length && !home.rooms.length;
-  const isFull = phase === "bin full" || /bin/.test(state?.vacuum.message ?? "");
+  const isFull = phase === "bin full" || FULL.includes(state?.vacuum.hindrance);
   put($("clean"), adds() ? "Add what is chosen" : chosen.length ? `Clean ${chosen.length} room${chosen.length > 1 ? "s" : ""}` : "Clean all");
   put($("pause"), isPaused() ? "Go on" : "Pause");
   const isUnderWay = !stands && !isHeld && phase !== "" && !isFull;
