@@ -1,6 +1,12 @@
 """In which order the mission node tells things; no graph is needed for that."""
 
+from __future__ import annotations
+
+import sys
 from dataclasses import replace
+from itertools import count
+from types import FrameType
+from typing import TYPE_CHECKING
 from unittest.mock import MagicMock
 
 import pytest
@@ -28,6 +34,9 @@ from roomba_ros.mission.orders import Cancel, MissionOrders, Order, RoomsOrder
 from roomba_ros.mission.round import MissionRound
 from roomba_ros.mission.topics import MissionTopics
 from roomba_ros.runtime.action_goal import GoalIdentity
+
+if TYPE_CHECKING:
+    from _typeshed import TraceFunction
 
 CONFIG, MISSION_CONFIG = RobotConfig(), MissionConfig()
 SITE = PlanningContext(HOME.map, HOME.station, CONFIG, MISSION_CONFIG, DockingConfig())
@@ -205,38 +214,45 @@ def test_a_clean_that_was_held_is_paused_also_if_that_was_between_two_ticks(
     assert rig.order(Event.RESUME)[0] == "cleaning"
 
 
-class TickedAmid:
-    """What the stop was engaged by; amid its first look at it a release is overtaken by a tick."""
+def released_amid_a_tick(rig: Rig, at: int) -> bool:
+    """Release the stop, with a tick before its instruction of that number; whether it has one."""
+    left = at
 
-    def __init__(self, rig: Rig) -> None:
-        self._rig, self._value, self.is_awaited = rig, "", False
+    def trace(frame: FrameType, event: str, _: object) -> TraceFunction | None:
+        nonlocal left
+        if frame.f_code is not MissionOrders.hold.__code__:
+            return None
+        frame.f_trace_opcodes = True
+        if event == "opcode":
+            if left == 0:
+                rig.tick()
+            left -= 1
+        return trace
 
-    def __get__(self, orders: MissionOrders, kind: type) -> str:
-        value = self._value
-        if self.is_awaited:
-            self.is_awaited = False
-            self._rig.tick()
-        return value
-
-    def __set__(self, orders: MissionOrders, value: str) -> None:
-        self._value = value
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        rig.orders.hold("")
+    finally:
+        sys.settrace(before)
+    return left < 0
 
 
-def test_a_release_during_a_tick_does_not_engage_it_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    rig = Rig(monkeypatch)
-    monkeypatch.setattr(MissionOrders, "_engaged", TickedAmid(rig), raising=False)
-    engaged = MissionOrders.__dict__["_engaged"]
-    rig.ask(CleaningGoal, CleanGoal())
-    rig.orders.hold("a child")
-    rig.orders.ask(Order(Event.RESUME, rig.world.answer))
-    engaged.is_awaited = True
-    rig.orders.hold("")
-    if engaged.is_awaited:
-        engaged.is_awaited = False
+def test_a_release_amid_a_tick_does_not_engage_it_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    were_released = []
+    for at in count():
+        rig = Rig(monkeypatch)
+        rig.ask(CleaningGoal, CleanGoal())
+        rig.orders.hold("a child")
+        rig.orders.ask(Order(Event.RESUME, rig.world.answer))
+        if not released_amid_a_tick(rig, at):
+            break
+        was_released = rig.mission.state.phase is Phase.CLEANING
         rig.tick()
-    assert rig.mission.state.phase is Phase.CLEANING
-    rig.tick()
-    assert rig.mission.state.phase is Phase.CLEANING
+        assert rig.mission.state.phase is (Phase.CLEANING if was_released else Phase.PAUSED), at
+        were_released.append(was_released)
+    assert were_released[0] is False
+    assert were_released[-1] is True
 
 
 def test_the_clean_floor_is_counted_once_for_a_state(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -244,5 +260,5 @@ def test_the_clean_floor_is_counted_once_for_a_state(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(CoverageLedger, "clean_area", property(lambda _: next(areas)))
     rig.ask(CleaningGoal, CleanGoal())
     told = [call.args[0] for call in rig.world.state.publish.call_args_list]
-    assert [state.covered for state in told] == [1.0, 1.5][: len(told)]
+    assert [state.covered for state in told] == [1.0, 1.5]
     assert all(state.fraction == state.covered / state.wanted for state in told)
