@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 from roomba_robot.msg import (
@@ -108,13 +107,11 @@ class CleaningGoal(MissionGoal):
 
     name, action = "clean", CleanAction
 
-    @cached_property
-    def _request(self) -> CleanRequest:
-        return request_of(self._handle.get_goal())
+    _request: CleanRequest
 
     def check(self) -> None:
-        """Raise MessageError if the request makes no sense."""
-        assert self._request
+        """Take the request; raise MessageError if it makes no sense."""
+        self._request = request_of(self._handle.get_goal())
 
     def begin(self, mission: Mission, senses: Senses) -> None:
         """Let the mission clean."""

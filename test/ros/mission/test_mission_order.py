@@ -108,7 +108,9 @@ class Rig:
 
     def ask(self, kind: type[MissionGoal], goal: object) -> list[str]:
         self.world.handle.get_goal.return_value = goal
-        self.orders.ask(kind(self.world.handle))
+        asked = kind(self.world.handle)
+        asked.check()
+        self.orders.ask(asked)
         return self.tick()
 
     def order(self, event: Event) -> list[str]:
