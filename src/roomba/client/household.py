@@ -60,7 +60,7 @@ class PlanView:
     reason: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class PlansView:
     """The plans, and what comes of them; ``version`` grows by one with each change.
 

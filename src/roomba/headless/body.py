@@ -104,19 +104,19 @@ def readings_of(seen: Observation, scan: ScanReading | None) -> Readings:
     return Readings(
         seen.time,
         seen.odometry,
-        seen.odometry_twist,
-        seen.angular_velocity,
-        scan,
-        seen.bumper.left,
-        seen.bumper.right,
-        CliffReading(cliff.left, cliff.front_left, cliff.front_right, cliff.right),
-        wheels.dropped_left,
-        wheels.dropped_right,
-        StationBeams(
+        twist=seen.odometry_twist,
+        turning=seen.angular_velocity,
+        scan=scan,
+        bumper_left=seen.bumper.left,
+        bumper_right=seen.bumper.right,
+        cliff=CliffReading(cliff.left, cliff.front_left, cliff.front_right, cliff.right),
+        dropped_left=wheels.dropped_left,
+        dropped_right=wheels.dropped_right,
+        beams=StationBeams(
             Infrared.HALO in infrared, Infrared.GREEN in infrared, Infrared.RED in infrared
         ),
-        Battery(battery.level, battery.capacity, battery.is_docked),
-        seen.grains,
-        seen.in_bin,
-        seen.brush_current,
+        battery=Battery(battery.level, battery.capacity, battery.is_docked),
+        grains=seen.grains,
+        in_bin=seen.in_bin,
+        brush_current=seen.brush_current,
     )

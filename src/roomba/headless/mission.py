@@ -131,16 +131,16 @@ class HeadlessMission(Embodied):
             self.advance()
         now_distance, now_turning = self._driven
         return CleanRecord(
-            result,
-            self.passed[:, POSES],
-            self.truth,
-            self._hits - hits,
-            now_distance - distance,
-            now_turning - turning,
-            self._planned.seconds - planning,
-            self._planned.plans - plans,
-            self.mission.context.occupancy,
-            self.seen.time if self.whole_at is None else self.whole_at,
+            result=result,
+            poses=self.passed[:, POSES],
+            truth=self.truth,
+            hits=self._hits - hits,
+            distance=now_distance - distance,
+            turning=now_turning - turning,
+            planning=self._planned.seconds - planning,
+            plans=self._planned.plans - plans,
+            occupancy=self.mission.context.occupancy,
+            whole_at=self.seen.time if self.whole_at is None else self.whole_at,
         )
 
     def explore(self) -> ExploreRecord:

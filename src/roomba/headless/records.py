@@ -22,7 +22,7 @@ _LONGEST_PER_AREA: Final = 150.0
 ten charges."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class CleanRecord:
     """What happened on a clean.
 

@@ -250,15 +250,15 @@ class PlanKeeper:
         memory, household = self._memory, self._household
         following = next_of(memory)
         self._view_of_version = PlansView(
-            self._version,
-            household,
-            tuple(self._plan_view(plan.name) for plan in household.plans),
-            "" if memory.running is None else memory.running.plan,
-            memory.running is not None and memory.running.held is not None,
-            "" if following is None else following[0],
-            None if following is None else following[1],
-            memory.notes,
-            self._shown_needs(),
+            version=self._version,
+            household=household,
+            plans=tuple(self._plan_view(plan.name) for plan in household.plans),
+            running="" if memory.running is None else memory.running.plan,
+            is_held=memory.running is not None and memory.running.held is not None,
+            next="" if following is None else following[0],
+            next_at=None if following is None else following[1],
+            notes=memory.notes,
+            needs=self._shown_needs(),
         )
 
     def _plan_view(self, name: str) -> PlanView:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -62,6 +62,7 @@ class Readings:
 
     time: float
     odometry: Pose
+    _: KW_ONLY
     twist: Twist = STANDSTILL
     turning: float | None = None
     scan: ScanReading | None = None
@@ -109,19 +110,19 @@ def senses_of(
     return Senses(
         readings.time,
         pose,
-        Twist(readings.twist.linear, turning),
-        knowledge,
-        trouble,
-        readings.bumper_left,
-        readings.bumper_right,
-        readings.cliff.left or readings.cliff.front_left,
-        readings.cliff.right or readings.cliff.front_right,
-        readings.dropped_left or readings.dropped_right,
-        readings.beams,
-        readings.battery,
-        readings.grains,
-        readings.in_bin,
-        readings.brush_current,
-        readings.emptying,
-        unsure,
+        twist=Twist(readings.twist.linear, turning),
+        knowledge=knowledge,
+        trouble=trouble,
+        bumper_left=readings.bumper_left,
+        bumper_right=readings.bumper_right,
+        cliff_left=readings.cliff.left or readings.cliff.front_left,
+        cliff_right=readings.cliff.right or readings.cliff.front_right,
+        lifted=readings.dropped_left or readings.dropped_right,
+        beams=readings.beams,
+        battery=readings.battery,
+        grains=readings.grains,
+        in_bin=readings.in_bin,
+        brush_current=readings.brush_current,
+        emptying=readings.emptying,
+        unsure=unsure,
     )

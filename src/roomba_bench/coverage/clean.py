@@ -56,7 +56,7 @@ class Task:
     change: Change | None = None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Clean:
     """What came of a clean: m, m2, rad, s; shares 0..1.
 
@@ -176,25 +176,25 @@ def clean(task: Task, keeps_poses: bool = False) -> Clean:
     left = floor.floor & ~drawn(floor.frame, poses[:, 1:3])
     result = record.result
     return Clean(
-        task,
-        result.outcome,
-        result.message,
-        robot.seen.battery.is_docked,
-        floor.area,
-        1.0 - float(np.count_nonzero(left)) / np.count_nonzero(floor.floor),
-        exact_share(floor, poses[:, 1:3]),
-        length(poses[:, 1:3]),
-        turning(poses[:, 3]),
-        record.hits,
-        result.duration,
-        setup,
-        wall,
-        cpu,
-        record.planning,
-        record.plans,
-        tuple((each.reason, Patch(each.area, each.x, each.y)) for each in result.missed),
-        patches(floor.frame, left, LEAST_PATCH),
-        robot.wrong,
-        there.what,
-        poses if keeps_poses else np.zeros((0, 4)),
+        task=task,
+        outcome=result.outcome,
+        message=result.message,
+        is_docked=robot.seen.battery.is_docked,
+        area=floor.area,
+        share=1.0 - float(np.count_nonzero(left)) / np.count_nonzero(floor.floor),
+        exact=exact_share(floor, poses[:, 1:3]),
+        path=length(poses[:, 1:3]),
+        turning=turning(poses[:, 3]),
+        hits=record.hits,
+        seconds=result.duration,
+        setup=setup,
+        wall=wall,
+        cpu=cpu,
+        planning=record.planning,
+        plans=record.plans,
+        told=tuple((each.reason, Patch(each.area, each.x, each.y)) for each in result.missed),
+        missed=patches(floor.frame, left, LEAST_PATCH),
+        wrong=robot.wrong,
+        what=there.what,
+        poses=poses if keeps_poses else np.zeros((0, 4)),
     )

@@ -85,24 +85,23 @@ def body_of(message: BodyState, bin_capacity: float) -> Readings:
     return Readings(
         message.header.stamp.to_sec(),
         Pose(message.x, message.y, wrap_angle(message.theta)),
-        Twist(message.linear, message.angular),
-        None if math.isnan(message.turning) else message.turning,
-        None,
-        message.is_left_pressed,
-        message.is_right_pressed,
-        CliffReading(
+        twist=Twist(message.linear, message.angular),
+        turning=None if math.isnan(message.turning) else message.turning,
+        bumper_left=message.is_left_pressed,
+        bumper_right=message.is_right_pressed,
+        cliff=CliffReading(
             message.is_cliff_left,
             message.is_cliff_front_left,
             message.is_cliff_front_right,
             message.is_cliff_right,
         ),
-        message.is_left_dropped,
-        message.is_right_dropped,
-        beams_of(message.ir_omni),
-        Battery(message.battery, message.battery_capacity, message.is_docked),
-        message.dirt_detect,
-        message.bin_level * bin_capacity,
-        message.brush_current,
+        dropped_left=message.is_left_dropped,
+        dropped_right=message.is_right_dropped,
+        beams=beams_of(message.ir_omni),
+        battery=Battery(message.battery, message.battery_capacity, message.is_docked),
+        grains=message.dirt_detect,
+        in_bin=message.bin_level * bin_capacity,
+        brush_current=message.brush_current,
     )
 
 

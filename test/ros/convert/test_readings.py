@@ -261,8 +261,8 @@ def test_what_hinders_the_robot_is_told_by_its_code() -> None:
 TOLD = Readings(
     12.5,
     Pose(1.0, -2.0, 0.5),
-    Twist(0.2, -0.3),
-    -0.25,
+    twist=Twist(0.2, -0.3),
+    turning=-0.25,
     bumper_left=True,
     cliff=CliffReading(front_left=True, right=True),
     dropped_right=True,

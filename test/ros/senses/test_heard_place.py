@@ -39,7 +39,7 @@ def drive(heard: HeardPlace, start: float, ticks: int) -> None:
     """Let the wheels tell that it drives ahead, from the odometry's beginning on."""
     for tick in range(ticks):
         time = start + tick * TICK
-        heard.move(Readings(time, Pose(0.2 * tick * TICK, 0.0, 0.0), AHEAD))
+        heard.move(Readings(time, Pose(0.2 * tick * TICK, 0.0, 0.0), twist=AHEAD))
 
 
 def is_at(pose: Pose | None, x: float, y: float, theta: float) -> bool:
@@ -72,7 +72,7 @@ def test_on_wheels_that_slip_the_gyro_tells_how_it_turned(ros: Lockstep) -> None
     for tick in range(5):
         # The wheels tell of no turn.
         turning = 0.0 if tick == 0 else 1.0
-        heard.move(Readings(10.0 + tick * TICK, Pose(), Twist(), turning))
+        heard.move(Readings(10.0 + tick * TICK, Pose(), twist=Twist(), turning=turning))
     ros.publish("/pose", pose_message(10.0, Pose(3.0, 1.0, 0.0), "map"))
     turned = heard.at(10.2)
     assert turned is not None
@@ -86,7 +86,7 @@ def test_a_pose_waits_for_the_odometry_that_it_follows_from(ros: Lockstep) -> No
     assert is_at(heard.at(10.1), 1.0, 0.0, 0.0)
     ros.publish("/pose", pose_message(10.3, Pose(7.0, 0.0, 0.0), "map"))
     assert is_at(heard.at(10.1), 1.0, 0.0, 0.0)
-    heard.move(Readings(10.3, Pose(0.06, 0.0, 0.0), AHEAD))
+    heard.move(Readings(10.3, Pose(0.06, 0.0, 0.0), twist=AHEAD))
     assert is_at(heard.at(10.3), 7.0, 0.0, 0.0)
 
 

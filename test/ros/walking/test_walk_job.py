@@ -24,7 +24,7 @@ END = NODES.walk_end
 FASTEST = 0.4
 """m/s."""
 HERE = Pose(0.5, 0.25, 1.0)
-DRIVING = Senses(10.0, HERE, Twist(0.2, 0.0))
+DRIVING = Senses(10.0, HERE, twist=Twist(0.2, 0.0))
 UNDER_WAY = WalkStep(WalkState.WALKING, (0.75, 0.25), 0.3, 1.5)
 
 

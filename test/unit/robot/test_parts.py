@@ -124,8 +124,10 @@ def test_what_brush_and_station_tell_comes_through() -> None:
 def test_without_a_gyro_the_wheels_tell_how_it_turns() -> None:
     known = Pose(), Knowledge.KNOWN
     wheels = Twist(0.2, 0.5)
-    assert senses_of(Readings(1.0, Pose(), wheels), *known).twist == wheels
-    assert senses_of(Readings(1.0, Pose(), wheels, 0.4), *known).twist == Twist(0.2, 0.4)
+    assert senses_of(Readings(1.0, Pose(), twist=wheels), *known).twist == wheels
+    assert senses_of(Readings(1.0, Pose(), twist=wheels, turning=0.4), *known).twist == Twist(
+        0.2, 0.4
+    )
 
 
 @pytest.mark.parametrize(

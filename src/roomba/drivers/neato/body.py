@@ -130,14 +130,13 @@ class NeatoBody:
             return Readings(
                 now,
                 self._pose_at(now),
-                self._odometry.twist,
-                None,
-                scan,
-                touches.bumper_left,
-                touches.bumper_right,
-                CliffReading(drops.left > _NO_FLOOR, False, False, drops.right > _NO_FLOOR),
-                touches.dropped_left,
-                touches.dropped_right,
+                twist=self._odometry.twist,
+                scan=scan,
+                bumper_left=touches.bumper_left,
+                bumper_right=touches.bumper_right,
+                cliff=CliffReading(drops.left > _NO_FLOOR, False, False, drops.right > _NO_FLOOR),
+                dropped_left=touches.dropped_left,
+                dropped_right=touches.dropped_right,
                 battery=Battery(charge.level, self._config.battery.capacity, charge.has_power),
             )
 

@@ -58,15 +58,15 @@ class Exploration:
         """Begin with nothing given up."""
         self._config = config
         self._choice = FrontierChoice(
-            config.least_unknown,
-            config.same_frontier,
-            config.look_from,
-            config.nearer_worth,
-            config.small_frontier,
-            config.small_cost,
-            config.least_cells,
-            config.frontier_stride,
-            config.tight_cost,
+            least_unknown=config.least_unknown,
+            away=config.same_frontier,
+            look_from=config.look_from,
+            nearer_worth=config.nearer_worth,
+            small=config.small_frontier,
+            small_cost=config.small_cost,
+            least_cells=config.least_cells,
+            stride=config.frontier_stride,
+            tight_cost=config.tight_cost,
         )
         self.goal: Frontier | None = None
         self.given_up: dict[Point, GivenUp] = {}

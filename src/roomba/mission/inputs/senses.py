@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.mission.docking.beams import NO_BEAMS, StationBeams
@@ -50,6 +50,7 @@ class Senses:
 
     now: float
     pose: Pose
+    _: KW_ONLY
     twist: Twist = STANDSTILL
     knowledge: Knowledge = Knowledge.KNOWN
     trouble: str = ""

@@ -18,7 +18,7 @@ from roomba.planning.frontiers.kernels import clusters, frontier_cells, seen_fro
 from roomba.planning.path.costmap import Point
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FrontierChoice:
     """Which frontiers count, from where they are looked at, and which come first.
 

@@ -215,7 +215,9 @@ def test_it_slows_for_corners() -> None:
 
 def test_a_walk_that_passed_its_goal_at_speed_has_not_arrived() -> None:
     walk, _ = stuck_walk()
-    assert walk.tick(Senses(101.0, Pose(4.0, 3.0), Twist(0.5)), 0.5).state is WalkState.WALKING
+    assert (
+        walk.tick(Senses(101.0, Pose(4.0, 3.0), twist=Twist(0.5)), 0.5).state is WalkState.WALKING
+    )
     assert walk.tick(Senses(101.1, Pose(4.0, 3.0)), 0.5).state is WalkState.ARRIVED
 
 

@@ -22,7 +22,15 @@ Point = tuple[float, float]
 
 LEAST = 3
 CHOICE = FrontierChoice(
-    0.03, 0.3, 1.2, 2.0, small=0.4, small_cost=1.0, least_cells=LEAST, stride=0.3, tight_cost=0.5
+    least_unknown=0.03,
+    away=0.3,
+    look_from=1.2,
+    nearer_worth=2.0,
+    small=0.4,
+    small_cost=1.0,
+    least_cells=LEAST,
+    stride=0.3,
+    tight_cost=0.5,
 )
 
 
