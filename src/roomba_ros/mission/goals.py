@@ -53,6 +53,11 @@ class Ended:
     clean: CleanResult | None = None
     exploration: ExploreResult | None = None
 
+    @classmethod
+    def taken_from(cls, mission: Mission) -> Ended:
+        """Take the results of a mission, which tells each of them once."""
+        return cls(mission.take_result(), mission.take_exploration())
+
 
 class MissionGoal(ActionGoal):
     """One thing that the mission is to do."""

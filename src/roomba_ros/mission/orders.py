@@ -6,9 +6,6 @@ import queue
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import partial
-from typing import Final
 
 import rospy
 from roomba_robot.msg import VacuumState
@@ -22,45 +19,21 @@ from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event
 from roomba.storage.checkpoint import Goal
-from roomba.vocabulary import OVERTAKEN, Phase, RoomWay, listed
+from roomba.vocabulary import Phase
 from roomba_ros.convert.mission import ways_of
 from roomba_ros.convert.values import data_of
-from roomba_ros.mission.goals import GOALS, Ended, MissionGoal
+from roomba_ros.mission.asked import (
+    Cancel,
+    CommandOrder,
+    GoalOrder,
+    GoalUnderWay,
+    Order,
+    RoomsOrder,
+)
+from roomba_ros.mission.goals import GOALS, Ended
 from roomba_ros.runtime.action_goal import GoalIdentity, server_of
 from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe
-
-_DONE: Final = {
-    Event.PAUSE: "paused",
-    Event.RESUME: "going on",
-    Event.STOP: "stopped",
-    Event.EMPTIED: "the bin counts as empty now",
-    Event.EMPTY: "its station empties the bin",
-}
-
-
-@dataclass(frozen=True, slots=True)
-class Order:
-    """A command by service; the caller waits for the answer."""
-
-    event: Event
-    answer: queue.SimpleQueue[tuple[bool, str]] = field(default_factory=queue.SimpleQueue)
-
-
-@dataclass(frozen=True, slots=True)
-class RoomsOrder:
-    """The rooms that the clean under way is to go on with; the caller waits for the answer."""
-
-    rooms: tuple[str, ...]
-    each: tuple[RoomWay, ...]
-    answer: queue.SimpleQueue[tuple[bool, str]] = field(default_factory=queue.SimpleQueue)
-
-
-@dataclass(frozen=True, slots=True)
-class Cancel:
-    """A goal's client wants it to end."""
-
-    identity: GoalIdentity
 
 
 class MissionOrders:
@@ -79,10 +52,8 @@ class MissionOrders:
 
     def __init__(self, takes_drive: Callable[[], None], deadlines: DeadlinesConfig) -> None:
         """Connect nothing yet; ``takes_drive`` is called when the mission is about to drive."""
-        self._takes_drive, self._answer_within = takes_drive, deadlines.answer
-        self._asked: deque[MissionGoal | Order | RoomsOrder | Cancel] = deque()
-        self._goal: MissionGoal | None = None
-        self._answers: list[Callable[[], object]] = []
+        self._under_way, self._answer_within = GoalUnderWay(takes_drive), deadlines.answer
+        self._asked: deque[Order] = deque()
         self._emergency: str | None = None
         self._engaged = ""
         self._serves = False
@@ -91,7 +62,12 @@ class MissionOrders:
     def start(self) -> None:
         """Connect; goals are taken from the first :meth:`serve` on."""
         self._servers = [
-            server_of(kind, self.ask, lambda identity: self.ask(Cancel(identity))) for kind in GOALS
+            server_of(
+                kind,
+                lambda goal: self.ask(GoalOrder(goal)),
+                lambda identity: self.ask(Cancel(identity)),
+            )
+            for kind in GOALS
         ]
         self._beep = rospy.Publisher("beep", Empty, queue_size=1)
         drive = OnlyFrom(SPEED_NODE)
@@ -107,7 +83,7 @@ class MissionOrders:
         rospy.Service("locate", Trigger, self._on_locate)
         rospy.Service("change_rooms", ChangeRooms, self._on_rooms)
 
-    def ask(self, asked: MissionGoal | Order | RoomsOrder | Cancel) -> None:
+    def ask(self, asked: Order) -> None:
         """Take what the next :meth:`obey` is to do."""
         self._asked.append(asked)
 
@@ -121,7 +97,7 @@ class MissionOrders:
     @property
     def goal(self) -> GoalIdentity | None:
         """The goal of the errand that is under way, if a client gave it."""
-        return None if self._goal is None else self._goal.identity
+        return None if self._under_way.goal is None else self._under_way.goal.identity
 
     def adopt(self, goal: Goal | None) -> None:
         """Serve the goal of an errand that was taken up: its client waits for the end of it."""
@@ -130,7 +106,7 @@ class MissionOrders:
         identity = GoalIdentity(*goal)
         for kind, server in zip(GOALS, self._servers, strict=True):
             if kind.name == identity.action:
-                self._goal = kind(server.adopt(identity))
+                self._under_way.goal = kind(server.adopt(identity))
 
     def serve(self, is_ready: bool) -> None:
         """Take goals from now on, if the mission is ready or did not become so in time."""
@@ -143,11 +119,7 @@ class MissionOrders:
     def refuse(self, reason: str) -> None:
         """Refuse what was ordered: there is no mission yet."""
         while self._asked:
-            asked = self._asked.popleft()
-            if isinstance(asked, MissionGoal):
-                _reject(asked, reason)
-            elif isinstance(asked, Order | RoomsOrder):
-                asked.answer.put((False, reason))
+            self._asked.popleft().refuse(reason)
 
     def obey(self, mission: Mission, senses: Senses, *, begins: bool = True) -> None:
         """Let the mission do what was ordered since the last call; unless it ``begins`` goals wait.
@@ -155,76 +127,31 @@ class MissionOrders:
         So a clean after an edit of zones finds these in use, and no order waits for that.
         """
         self._obey_emergency_stop(mission, senses)
-        waiting: list[MissionGoal] = []
+        waiting = []
         while self._asked:
             asked = self._asked.popleft()
-            if isinstance(asked, MissionGoal) and not begins:
+            if asked.waits and not begins:
                 waiting.append(asked)
-            elif isinstance(asked, MissionGoal):
-                self._begin(asked, mission, senses)
-            elif isinstance(asked, Order):
-                answer = self._command(asked.event, mission, senses)
-                self._answers.append(partial(asked.answer.put, answer))
-            elif isinstance(asked, RoomsOrder):
-                self._answers.append(partial(asked.answer.put, _changed(asked, mission)))
-            elif self._goal is not None and self._goal.identity == asked.identity:
-                self._command(Event.STOP, mission, senses)
+            else:
+                asked.obey(self._under_way, mission, senses)
         self._asked.extendleft(reversed(waiting))
 
     def answer(self) -> None:
         """Tell what came of what was obeyed."""
-        answers, self._answers = self._answers, []
-        for tell in answers:
-            tell()
+        self._under_way.answer()
 
     def follow(self, mission: Mission, senses: Senses) -> Ended:
         """Tell the end of what ended; return the results of what did, ordered or not."""
-        ended = _take_ended(mission)
-        if self._goal is not None and self._goal.follow(mission, senses, ended):
-            self._goal = None
-        return ended
+        return self._under_way.follow(mission, senses)
 
     def tell(self, state: VacuumState) -> None:
         """Tell the progress to the client of the present errand."""
-        if self._goal is not None:
-            self._goal.tell(state)
+        if self._under_way.goal is not None:
+            self._under_way.goal.tell(state)
 
     def give_up(self, reason: str) -> None:
         """End what was ordered; its order is not fulfilled."""
-        goal, self._goal = self._goal, None
-        if goal is not None:
-            goal.given_up(reason)
-
-    def _begin(self, goal: MissionGoal, mission: Mission, senses: Senses) -> None:
-        if goal.is_recalled:
-            goal.stopped(Ended(), "cancelled before it began")
-            return
-        try:
-            goal.begin(mission, senses)
-        except RoombaError as error:
-            _reject(goal, str(error))
-            return
-        old, self._goal = self._goal, goal
-        # Of what was under way; no client waits for one that was resumed after an error.
-        ended = _take_ended(mission)
-        if old is not None:
-            self._answers.append(partial(old.stopped, ended, OVERTAKEN))
-        goal.accept()
-        self._takes_drive()
-
-    def _command(self, event: Event, mission: Mission, senses: Senses) -> tuple[bool, str]:
-        try:
-            mission.command(event, senses)
-        except RoombaError as error:
-            return False, str(error)
-        if event is Event.STOP:
-            goal, self._goal = self._goal, None
-            ended = _take_ended(mission)
-            if goal is not None:
-                self._answers.append(partial(goal.stopped, ended, "it was told to stop"))
-        elif event is Event.RESUME:
-            self._takes_drive()
-        return True, _DONE.get(event, event.value)
+        self._under_way.give_up(reason)
 
     def _obey_emergency_stop(self, mission: Mission, senses: Senses) -> None:
         """Hold the mission, or release it; one that was held between two ticks was held, too."""
@@ -236,7 +163,7 @@ class MissionOrders:
             mission.command(Event.RELEASE, senses)
 
     def _on_order(self, event: Event) -> TriggerResponse:
-        return TriggerResponse(*self._answer_to(Order(event)))
+        return TriggerResponse(*self._answer_to(CommandOrder(event)))
 
     def _on_rooms(self, request: ChangeRoomsRequest) -> ChangeRoomsResponse:
         try:
@@ -245,7 +172,7 @@ class MissionOrders:
             return ChangeRoomsResponse(False, str(error))
         return ChangeRoomsResponse(*self._answer_to(RoomsOrder(tuple(request.rooms), each)))
 
-    def _answer_to(self, order: Order | RoomsOrder) -> tuple[bool, str]:
+    def _answer_to(self, order: CommandOrder | RoomsOrder) -> tuple[bool, str]:
         self.ask(order)
         try:
             return order.answer.get(timeout=self._answer_within)
@@ -257,21 +184,3 @@ class MissionOrders:
         rospy.loginfo("beep, beep: here is the robot")
         self._beep.publish()
         return TriggerResponse(True, "it beeped")
-
-
-def _changed(order: RoomsOrder, mission: Mission) -> tuple[bool, str]:
-    """Let the clean under way go on with other rooms, and return the answer."""
-    try:
-        mission.change_rooms(order.rooms, order.each)
-    except RoombaError as error:
-        return False, str(error)
-    return True, f"it goes on with {listed(order.rooms)}"
-
-
-def _take_ended(mission: Mission) -> Ended:
-    return Ended(mission.take_result(), mission.take_exploration())
-
-
-def _reject(goal: MissionGoal, reason: str) -> None:
-    rospy.logwarn("goal of %s rejected: %s", goal.name, reason)
-    goal.reject(reason)

@@ -29,8 +29,9 @@ from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
 from roomba.vocabulary import Phase, RoomWay
+from roomba_ros.mission.asked import Cancel, CommandOrder, GoalOrder, RoomsOrder
 from roomba_ros.mission.goals import CleaningGoal, DockingGoal, MissionGoal
-from roomba_ros.mission.orders import Cancel, MissionOrders, Order, RoomsOrder
+from roomba_ros.mission.orders import MissionOrders
 from roomba_ros.mission.round import MissionRound
 from roomba_ros.mission.topics import MissionTopics
 from roomba_ros.runtime.action_goal import GoalIdentity
@@ -110,11 +111,11 @@ class Rig:
         self.world.handle.get_goal.return_value = goal
         asked = kind(self.world.handle)
         asked.check()
-        self.orders.ask(asked)
+        self.orders.ask(GoalOrder(asked))
         return self.tick()
 
     def order(self, event: Event) -> list[str]:
-        self.orders.ask(Order(event, self.world.answer))
+        self.orders.ask(CommandOrder(event, self.world.answer))
         return self.tick()
 
 
@@ -137,8 +138,8 @@ def test_a_goal_waits_for_zones_that_were_changed_and_no_order_waits_for_it(
     rig = Rig(monkeypatch)
     rig.ask(DockingGoal, DockGoal())
     rig.world.handle.get_goal.return_value = DockGoal()
-    rig.orders.ask(DockingGoal(rig.world.handle))
-    rig.orders.ask(Order(Event.PAUSE, rig.world.answer))
+    rig.orders.ask(GoalOrder(DockingGoal(rig.world.handle)))
+    rig.orders.ask(CommandOrder(Event.PAUSE, rig.world.answer))
     assert rig.tick(begins=False) == ["paused", "feedback", "answer"]
     assert rig.tick(begins=False) == []
     assert "returning" in rig.tick()
@@ -246,7 +247,7 @@ def test_a_release_amid_a_tick_does_not_engage_it_again(monkeypatch: pytest.Monk
         rig = Rig(monkeypatch)
         rig.ask(CleaningGoal, CleanGoal())
         rig.orders.hold("a child")
-        rig.orders.ask(Order(Event.RESUME, rig.world.answer))
+        rig.orders.ask(CommandOrder(Event.RESUME, rig.world.answer))
         if not released_amid_a_tick(rig, at):
             break
         was_released = rig.mission.state.phase is Phase.CLEANING
