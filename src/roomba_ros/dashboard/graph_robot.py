@@ -150,7 +150,7 @@ class GraphRobot(GraphMaps):
             doubt=self._topics.trouble or self._topics.doubt,
             speed=self._topics.speed,
             dirt=self._topics.in_bin,
-            held=self._topics.held,
+            held=self._topics.held.reason,
             vacuum=self._topics.reached(self._vacuum.vacuum(0.0)),
             scan=self._topics.scan_at(pose),
             path=self._topics.path(),
@@ -248,7 +248,7 @@ class GraphRobot(GraphMaps):
 
     def drive(self, linear: float, angular: float) -> None:
         """Drive by hand; the mission pauses for it by itself."""
-        if self._topics.held:
+        if self._topics.held.reason:
             raise RequestRefusedError("the emergency stop holds the drive; release it first")
         with self._hand_lock:
             self._by_hand, self._hand_heard = Twist(linear, angular), time.monotonic()

@@ -73,10 +73,10 @@ from roomba_ros.convert.page import (
 from roomba_ros.convert.readings import bag_of
 from roomba_ros.convert.scan import ScanDecoder
 from roomba_ros.convert.values import data_of, number_of
+from roomba_ros.runtime.held_drive import HeldDrive
 from roomba_ros.runtime.node import frame_id
 from roomba_ros.runtime.senders import (
     SELDOM_SILENT_AFTER,
-    SPEED_NODE,
     SUPERVISOR,
     OneSender,
     OnlyFrom,
@@ -112,7 +112,8 @@ class PageTopics:
             0, "home", (0.0, 0.0, 0.0), (), (), (), config.body.radius, config.brush.width
         )
         self._layers: dict[LayerName, GridLayer] = {}
-        self.doubt, self.held, self.trouble, self.unreached = "", "", "", NO_REASON
+        self.doubt, self.trouble, self.unreached = "", "", NO_REASON
+        self.held = HeldDrive()
         self.last: CleanReport | None = None
         self.speed, self.in_bin, self.battery_seconds = 0.0, 0.0, math.nan
         self.charges = False
@@ -133,10 +134,10 @@ class PageTopics:
         seconds, charges = partial(self._set, "battery_seconds"), partial(self._set, "charges")
         subscribe("battery_state", BatteryState, battery_seconds_of, seconds, senders=_one())
         subscribe("battery_state", BatteryState, charges_of, charges, senders=_one())
-        drive, supervisor = OnlyFrom(SPEED_NODE), OnlyFrom(SUPERVISOR)
+        supervisor = OnlyFrom(SUPERVISOR)
         subscribe("trouble", String, data_of, partial(self._set, "trouble"), senders=supervisor)
         subscribe("line_trouble", LineTrouble, line_trouble_of, partial(self._set, "unreached"))
-        subscribe("emergency_stop", String, data_of, partial(self._set, "held"), senders=drive)
+        self.held.start()
         subscribe("scan", LaserScan, self._decoder.decode, self._on_scan)
         subscribe("plan", Path, shown_path_of, self._on_path)
         subscribe("station_pose", PoseStamped, pose_in_map, self._on_station)

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import rospy
 from roomba_robot.msg import VacuumState
 from roomba_robot.srv import ChangeRooms, ChangeRoomsRequest, ChangeRoomsResponse
-from std_msgs.msg import Empty, String
+from std_msgs.msg import Empty
 from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 
 from roomba.configuration.nodes import DeadlinesConfig
@@ -21,7 +21,6 @@ from roomba.mission.phases.machine import Event
 from roomba.storage.checkpoint import Goal
 from roomba.vocabulary import Phase
 from roomba_ros.convert.mission import ways_of
-from roomba_ros.convert.values import data_of
 from roomba_ros.mission.asked import (
     Cancel,
     CommandOrder,
@@ -32,8 +31,7 @@ from roomba_ros.mission.asked import (
 )
 from roomba_ros.mission.goals import GOALS, Ended
 from roomba_ros.runtime.action_goal import GoalIdentity, server_of
-from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
-from roomba_ros.runtime.subscriptions import subscribe
+from roomba_ros.runtime.held_drive import HeldDrive
 
 
 class MissionOrders:
@@ -70,8 +68,7 @@ class MissionOrders:
             for kind in GOALS
         ]
         self._beep = rospy.Publisher("beep", Empty, queue_size=1)
-        drive = OnlyFrom(SPEED_NODE)
-        subscribe("emergency_stop", String, data_of, self.hold, queue_size=10, senders=drive)
+        HeldDrive(self.hold).start()
         for name, event in (
             ("pause", Event.PAUSE),
             ("resume", Event.RESUME),

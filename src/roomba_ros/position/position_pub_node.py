@@ -8,7 +8,7 @@ import threading
 import rospy
 from geometry_msgs.msg import Twist as TwistMessage
 from roomba_robot.msg import RobotPosition
-from std_msgs.msg import Bool, Float32, String
+from std_msgs.msg import Bool, Float32
 
 from roomba.clock import is_recent
 from roomba.control.position_loop import PositionLoop
@@ -22,6 +22,7 @@ from roomba_ros.convert.values import data_of, number_of
 from roomba_ros.localization.topics import LocalizationTopics
 from roomba_ros.maps.map_topics import MapTopics
 from roomba_ros.rooms.topics import RoomTopics
+from roomba_ros.runtime.held_drive import HeldDrive
 from roomba_ros.runtime.node import run_node
 from roomba_ros.runtime.parameters import (
     LiveSeedParameters,
@@ -29,7 +30,6 @@ from roomba_ros.runtime.parameters import (
     read_nodes_config,
     read_robot_config,
 )
-from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe
 
 _AHEAD = 10.0
@@ -75,7 +75,7 @@ class PositionPubNode:
         self._stops_left = 0
         self._look_asked = -math.inf
         self._heading = (-math.inf, 0.0)
-        self._held = ""
+        self._held = HeldDrive()
         self._place = LocalizationTopics(self._config, nodes)
         self._place.start()
         self._rooms = RoomTopics()
@@ -88,8 +88,7 @@ class PositionPubNode:
         )
         subscribe("change_heading", Float32, number_of, self._on_heading, tcp_nodelay=True)
         subscribe("look_around", Bool, data_of, self._on_look_around)
-        drive = OnlyFrom(SPEED_NODE)
-        subscribe("emergency_stop", String, data_of, self._on_hold, queue_size=10, senders=drive)
+        self._held.start()
 
     def tick(self, now: float) -> None:
         """Publish the pose, and drive towards the setpoint."""
@@ -99,7 +98,7 @@ class PositionPubNode:
             return
         self._maps.tick(now, estimate)
         self._drop_vanished_wish(now)
-        if self._held:
+        if self._held.reason:
             # Releasing the stop is no order to drive on.
             self._forget_wish()
             twist = None
@@ -189,9 +188,9 @@ class PositionPubNode:
             self._command.publish(TwistMessage())
 
     def _on_wish(self, target: tuple[float, float]) -> None:
-        if self._held:
+        if held := self._held.reason:
             raise MessageError(
-                f"the emergency stop holds the drive ({self._held}); release it, and tell it again"
+                f"the emergency stop holds the drive ({held}); release it, and tell it again"
             )
         values = self._parameters.values
         if not values.allows(*target):
@@ -204,9 +203,6 @@ class PositionPubNode:
 
     def _on_heading(self, heading: float) -> None:
         self._heading = (rospy.get_time(), heading)
-
-    def _on_hold(self, reason: str) -> None:
-        self._held = reason
 
     def _on_look_around(self, is_wanted: bool) -> None:
         self._look_asked = rospy.get_time() if is_wanted else -math.inf

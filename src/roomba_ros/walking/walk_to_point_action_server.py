@@ -10,23 +10,21 @@ import rospy
 from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseActionGoal
 from move_base_msgs.msg import MoveBaseGoal as MoveBaseGoalMessage
-from std_msgs.msg import String
 
 from roomba.errors import RoombaError
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.walking.walk import Walk
 from roomba.vocabulary import OVERTAKEN
 from roomba_ros.convert.common import header
-from roomba_ros.convert.values import data_of
 from roomba_ros.runtime.action_goal import GoalIdentity, server_of
 from roomba_ros.runtime.alone import refuse_second
+from roomba_ros.runtime.held_drive import HeldDrive
 from roomba_ros.runtime.node import require_master, run_node
 from roomba_ros.runtime.parameters import (
     LiveSeedParameters,
     read_nodes_config,
     read_robot_config,
 )
-from roomba_ros.runtime.senders import SPEED_NODE, OnlyFrom
 from roomba_ros.runtime.subscriptions import subscribe
 from roomba_ros.senses.senses import HeardSenses
 from roomba_ros.walking.plan_service import PlanService
@@ -72,11 +70,10 @@ class WalkToPointActionServer:
         self._goals: deque[WalkGoal] = deque()
         self._cancels: deque[GoalIdentity] = deque()
         self._job: WalkJob | None = None
-        self._held = ""
+        self._held = HeldDrive()
         self._topics = WalkTopics()
         self._topics.start()
-        drive = OnlyFrom(SPEED_NODE)
-        subscribe("emergency_stop", String, data_of, self._on_hold, queue_size=10, senders=drive)
+        self._held.start()
         self._senses.start()
         self._plans.start()
         self._servers = [
@@ -149,10 +146,8 @@ class WalkToPointActionServer:
 
     def _begin(self, goal: tuple[float, float], senses: Senses | None) -> Walk:
         self._plans.require_allowed(*goal)
-        if self._held:
-            raise RoombaError(
-                f"the emergency stop holds the drive ({self._held}); release it first"
-            )
+        if held := self._held.reason:
+            raise RoombaError(f"the emergency stop holds the drive ({held}); release it first")
         if senses is None:
             raise RoombaError(
                 "the robot does not know its map and position yet; is home_sim_node running?"
@@ -179,7 +174,7 @@ class WalkToPointActionServer:
 
     def _obey_emergency_stop(self) -> None:
         """Give the walk under way up: releasing the stop is no order to drive on."""
-        if reason := self._held:
+        if reason := self._held.reason:
             self._give_up(f"the emergency stop holds the drive: {reason}")
 
     def _walk_on(self, job: WalkJob, senses: Senses) -> None:
@@ -194,9 +189,6 @@ class WalkToPointActionServer:
         goal.goal_id.stamp = goal.header.stamp
         goal.goal_id.id = f"{rospy.get_name()}-simple-{uuid.uuid4().hex}"
         self._simple_goals.publish(goal)
-
-    def _on_hold(self, reason: str) -> None:
-        self._held = reason
 
 
 def main() -> None:
