@@ -22,7 +22,6 @@ from roomba.mission.cleaning.dirty.watch_kernels import WATCH
 from roomba.mission.driving.progress_kernels import PROGRESS
 from roomba.mission.driving.way_ahead_kernels import AHEAD
 from roomba.mission.steady import Steady
-from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.sweep import SWEEP_WORK
 from roomba.perception.slam.mapper import Mapper
 from roomba.perception.swept.coverage_map import CoverageMap
@@ -155,7 +154,6 @@ class Burst:
         sights = None if localizer is None else localizer.sights(self._body.lidar.beams)
         following = None if mapper is None else mapper.following
         place = brain.keeper.place
-        assert isinstance(place, Localizer | Mapper)
         return PlaceParts(
             place.belief, place.numbers, place.path, beams, sights, following, *self._sweep
         )

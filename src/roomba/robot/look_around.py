@@ -7,7 +7,7 @@ that each scan shows something new.
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,9 @@ from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import LookingAroundConfig
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.perception.localization.estimate import Knowledge
-from roomba.perception.localization.localizer import Localizer
+
+if TYPE_CHECKING:
+    from roomba.robot.place import Place
 
 _DIRECTIONS: Final = 36
 """Directions to go that are compared, 10 degrees apart."""
@@ -101,20 +103,21 @@ class LookAround:
 
 
 class SearchDrive:
-    """Lets the robot look around whenever its localizer needs to see more."""
+    """Lets the robot look around whenever more must be seen to find its place."""
 
     def __init__(self, body: BodyConfig, config: LookingAroundConfig) -> None:
         """Begin with nothing to search."""
         self._body, self._config = body, config
         self._look_around: LookAround | None = None
 
-    def tick(self, now: float, localizer: Localizer, touches: bool) -> Twist | None:
+    def tick(self, now: float, place: Place, touches: bool) -> Twist | None:
         """Return the wanted twist while it looks around, else None; ``touches`` as LookAround."""
-        if localizer.estimate.knowledge is not Knowledge.SEARCHING:
+        if place.estimate.knowledge is not Knowledge.SEARCHING:
             self._look_around = None
             return None
-        if localizer.view is None or not localizer.needs_to_look_around:
+        sight = place.sight_to_look_around
+        if sight is None:
             return None
         if self._look_around is None:
             self._look_around = LookAround(self._body, self._config)
-        return self._look_around.tick(now, localizer.reckoned, localizer.view.ends, touches)
+        return self._look_around.tick(now, *sight, touches)

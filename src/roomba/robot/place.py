@@ -9,13 +9,14 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.configuration.robot import RobotConfig, TimingConfig
 from roomba.geometry import Pose, Twist
 from roomba.perception.calibration.lidar import CorrectedLidar, lidar_correction
+from roomba.perception.localization.belief.belief import Rows
 from roomba.perception.localization.estimate import Estimate
-from roomba.perception.localization.localizer import Localizer
+from roomba.perception.matching.reckoned_path import ReckonedPath
 from roomba.perception.matching.scan_view import LidarModel, PlacedScan
-from roomba.perception.slam.mapper import Mapper
 from roomba.robot.look_around import SearchDrive
 from roomba.robot.readings import Readings, ScanReading
 
@@ -23,8 +24,14 @@ from roomba.robot.readings import Readings, ScanReading
 class Place(Protocol):
     """What knows where the robot is: a localizer on its map, or a mapper on the one it makes."""
 
-    belief: NDArray[np.void]
-    """What is reckoned by wheels and gyro, BELIEF [1]."""
+    belief: Rows
+    """What is reckoned by wheels and gyro, BELIEF [1];"""
+
+    numbers: Rows
+    """by which numbers,"""
+
+    path: ReckonedPath
+    """and on which way."""
 
     placed: PlacedScan | None
     """The newest scan where it was taken, if that is known."""
@@ -37,6 +44,13 @@ class Place(Protocol):
     def is_calm(self) -> bool:
         """Whether the place is known and nothing else waits to be done for it."""
 
+    @property
+    def sight_to_look_around(self) -> tuple[Pose, Floats] | None:
+        """Where it is reckoned to be and what it sees, if driving a little helps to find its place.
+
+        What it sees are the ends of beams, float64 [n, 2 or more], m, robot's frame.
+        """
+
     def lift(self, is_lifted: bool) -> None:
         """Tell whether the wheels hang in the air."""
 
@@ -45,6 +59,15 @@ class Place(Protocol):
 
     def see(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
         """Take a scan, float32 [beams], m."""
+
+    def feel(self, radius: float, first: float, last: float) -> None:
+        """Take a touch of the robot's round body, of ``radius``, m.
+
+        ``first`` and ``last``, rad, robot's frame, are the bearings between which it was pressed.
+        """
+
+    def go_by_lidar(self) -> None:
+        """Take the lidar for where it is, if that is known better by now and it can be moved."""
 
 
 class ScanSelection:
@@ -93,9 +116,9 @@ class PlaceKeeper:
         return self.recalibrated(scan)
 
     def _feel(self, readings: Readings) -> None:
-        """Pass on what the bumper begins to feel, to a mapper: it may be a mirror."""
+        """Pass on what the bumper begins to feel: it may be a mirror."""
         is_new, self._was_touching = readings.bumps and not self._was_touching, readings.bumps
-        if is_new and isinstance(self.place, Mapper):
+        if is_new:
             left, right = readings.bumper_left, readings.bumper_right
             self.place.feel(self._body.radius, *self._body.pressed(left, right))
 
@@ -105,20 +128,14 @@ class PlaceKeeper:
         return self._lidars.of(told)
 
     def recalibrated(self, scan: ScanReading) -> ScanReading:
-        """Go by the lidar's pose if it is known better by now; return a scan as the lidar is.
-
-        A robot that makes its map keeps the lidar where it is: the map is what the lidar saw.
-        """
-        if isinstance(self.place, Localizer):
-            self.place.go_by_lidar()
+        """Go by the lidar's pose if it is known better by now; return a scan as the lidar is."""
+        self.place.go_by_lidar()
         return replace(scan, lidar=self.lidar(scan.lidar))
 
     def look_around(self, now: float, *, touches: bool) -> Twist | None:
         """Return what is to be driven to find the place; None while that does not help.
 
         ``now`` is in s of the robot's clock; ``touches`` tells whether bumper or cliff sensors
-        found something. A robot that makes its map has no other place to find.
+        found something.
         """
-        if not isinstance(self.place, Localizer):
-            return None
         return self._search.tick(now, self.place, touches)

@@ -20,8 +20,10 @@ from roomba.geometry import Pose, Twist
 from roomba.headless.body import SimulatedBody
 from roomba.mission.docking.beams import StationBeams
 from roomba.mission.inputs.senses import EmptyingTold
-from roomba.perception.localization.belief.belief import unknown_belief
+from roomba.perception.localization.belief.belief import numbers_of, unknown_belief
 from roomba.perception.localization.estimate import Estimate, Knowledge
+from roomba.perception.localization.localizer import Localizer
+from roomba.perception.matching.reckoned_path import ReckonedPath
 from roomba.perception.matching.scan_view import LidarModel, PlacedScan
 from roomba.perception.slam.mapper import Mapper
 from roomba.robot.command import Command
@@ -37,9 +39,11 @@ class Noted:
 
     is_calm = True
     placed: PlacedScan | None = None
+    sight_to_look_around = None
 
     def __init__(self) -> None:
         self.belief = unknown_belief()
+        self.numbers, self.path = numbers_of(NOISY.localization, NOISY.gyro), ReckonedPath.empty()
         self.lifts: list[bool] = []
         self.moves: list[float] = []
         self.scans: list[float] = []
@@ -56,6 +60,12 @@ class Noted:
 
     def see(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
         self.scans.append(stamp)
+
+    def feel(self, radius: float, first: float, last: float) -> None:
+        """Nothing that is asked for."""
+
+    def go_by_lidar(self) -> None:
+        """Nothing that is asked for."""
 
 
 def body(start: Pose | None = None) -> SimulatedBody:
@@ -211,6 +221,30 @@ def test_a_mapper_is_told_what_the_bumper_begins_to_feel(monkeypatch: pytest.Mon
     keeper.follow(Readings(5.0, Pose()))
     keeper.follow(Readings(6.0, Pose(), bumper_right=True))
     assert told[2:] == [(radius, -quarter, 0.0)]
-    # A localizer goes by its map.
-    PlaceKeeper(Noted(), NOISY).follow(Readings(1.0, Pose(), bumper_left=True))
-    assert len(told) == 3
+
+
+def test_a_localizer_learns_nothing_of_what_the_bumper_feels() -> None:
+    felt, free = (
+        Localizer(HOME.map, NOISY.localization, NOISY.gyro, NOISY.body.radius, HOME.station)
+        for _ in range(2)
+    )
+    for localizer, touches in ((felt, True), (free, False)):
+        PlaceKeeper(localizer, NOISY).follow(Readings(1.0, Pose(), bumper_left=touches))
+    assert felt.pose == free.pose
+    assert felt.estimate.position_deviation == free.estimate.position_deviation
+
+
+def test_a_robot_that_makes_its_map_has_no_other_place_to_find() -> None:
+    mapper = Mapper(MappingConfig(), NOISY.localization, NOISY.gyro, Pose())
+    keeper = PlaceKeeper(mapper, NOISY)
+    for is_lifted in (True, False):
+        mapper.lift(is_lifted)
+        assert keeper.look_around(1.0, touches=True) is None
+    assert mapper.estimate.knowledge is Knowledge.LOST
+
+
+def test_a_robot_that_makes_its_map_keeps_its_lidar_where_it_is() -> None:
+    mapper = Mapper(MappingConfig(), NOISY.localization, NOISY.gyro, Pose())
+    before = mapper.belief.tobytes()
+    PlaceKeeper(mapper, NOISY).recalibrated(scan_at(1.0))
+    assert mapper.belief.tobytes() == before

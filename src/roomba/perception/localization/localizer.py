@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats
 from roomba.clock import ClockJumps
 from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.sensors import GyroConfig
@@ -30,13 +31,7 @@ from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.localization.search.near_search import better_near
 from roomba.perception.localization.search.relocation import Expectation
 from roomba.perception.localization.tracker import Tracker
-from roomba.perception.matching.scan_view import (
-    Fit,
-    LidarModel,
-    PlacedScan,
-    ScanView,
-    plain_ranges,
-)
+from roomba.perception.matching.scan_view import Fit, LidarModel, PlacedScan, ScanView, plain_ranges
 from roomba.perception.matching.surface_field import SurfaceField
 
 _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
@@ -178,6 +173,9 @@ class Localizer:
             self._followed.pose_then(reckoned), still, plain_ranges(ranges), lidar
         )
 
+    def feel(self, radius: float, first: float, last: float) -> None:
+        """Learn nothing of a touch: it goes by its map."""
+
     def go_by_lidar(self) -> None:
         """Take the lidar for where it is, if that is known better by now; call it between scans.
 
@@ -260,13 +258,15 @@ class Localizer:
         return Estimate(tracker.pose, covariance, knowledge, agreement, reason)
 
     @property
-    def needs_to_look_around(self) -> bool:
-        """Whether more must be seen to find the robot's place, so that driving a little helps."""
+    def sight_to_look_around(self) -> tuple[Pose, Floats] | None:
+        """Where it is reckoned to be and what it sees, if driving a little helps to find it."""
         knowledge, _ = self._knowledge()
         sees_nothing = self._map is None or self._is_blind or self._is_late
         if knowledge is not Knowledge.SEARCHING or self._is_lifted or sees_nothing:
-            return False
-        return self._search is not None and self._search.needs_views(self._now)
+            return None
+        if self.view is None or self._search is None or not self._search.needs_views(self._now):
+            return None
+        return self.reckoned, self.view.ends
 
     @property
     def reckoned(self) -> Pose:

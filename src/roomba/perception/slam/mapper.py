@@ -194,6 +194,9 @@ class Mapper:
             newest = PlacedPoints(self._follower.points, self.at_scan.as_array())
             self._map.feel(Touch(here.x, here.y, radius, *turned), newest)
 
+    def go_by_lidar(self) -> None:
+        """Keep the lidar where it is: the map is what the lidar saw."""
+
     def set_down(self) -> None:
         """Go on where it was set down, wherever that is: the map goes on in a piece of its own.
 
@@ -255,6 +258,10 @@ class Mapper:
     def hypotheses(self) -> list[Pose]:
         """Where the robot may be: it knows of no other place than the one where it came along."""
         return [self.pose]
+
+    @property
+    def sight_to_look_around(self) -> None:
+        """Nothing: it has no other place to find."""
 
     @property
     def newest_keyframe(self) -> tuple[int, Pose]:

@@ -67,14 +67,14 @@ def test_in_the_air_it_says_so_whatever_it_sees() -> None:
         robot.localizer.see(robot.world.time, robot.world.ranges, LIDAR)
         assert robot.estimate.knowledge is Knowledge.SEARCHING
         assert "wheels hang in the air" in robot.estimate.reason
-        assert not robot.localizer.needs_to_look_around
+        assert robot.localizer.sight_to_look_around is None
     assert robot.estimate.pose == before
     robot.localizer.lift(False)
     assert "lifted and set down again" in robot.estimate.reason
     # The next scan may tell; if none comes, nothing says where there is room to go.
-    assert not robot.localizer.needs_to_look_around
+    assert robot.localizer.sight_to_look_around is None
     robot.localizer.pass_time(robot.world.time + 2.0)
-    assert not robot.localizer.needs_to_look_around
+    assert robot.localizer.sight_to_look_around is None
 
 
 @pytest.mark.parametrize("seed", range(examples(3)))
@@ -153,7 +153,7 @@ def test_where_all_sides_look_alike_it_is_searched_for_and_then_lost_and_never_k
     assert estimate.knowledge is Knowledge.LOST
     assert "several places fit" in estimate.reason
     assert "tell where it is" in estimate.reason
-    assert not robot.localizer.needs_to_look_around
+    assert robot.localizer.sight_to_look_around is None
     # The true place is among the four.
     truth = robot.world.pose
     hypotheses = robot.localizer.hypotheses
