@@ -7,16 +7,14 @@ Ours searches for a short round trip. This one never looks ahead, and shows what
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Polyline
 from roomba.configuration.coverage import CoverageConfig
-
-Line = NDArray[np.float64]
 
 
 def order(
-    net: object, lines: list[Line], first: Line, last: Line | None, config: CoverageConfig
-) -> list[Line]:
+    net: object, lines: list[Polyline], first: Floats, last: Floats | None, config: CoverageConfig
+) -> list[Polyline]:
     """Return all ``lines``, float64 [n, 2], in the order and direction in which they are driven.
 
     The way begins at ``first``, float64 [2]. Places in cells; distances as the crow flies.

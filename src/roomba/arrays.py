@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Polyline = Floats
+"""The points of a line, [n, 2]."""
 Floats32 = NDArray[np.float32]
 Ints32 = NDArray[np.int32]
 Ints64 = NDArray[np.int64]

@@ -11,6 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+Point = tuple[float, float]
+"""x, y, m."""
+
 TWO_PI = 2.0 * math.pi
 FARTHEST = 1e5
 """m; from the origin of its frame no place of a home is farther."""

@@ -15,6 +15,7 @@ import shapely
 from shapely.geometry.polygon import orient
 
 from roomba.arrays import Floats, Mask
+from roomba.geometry import Point
 from roomba.grid import GridFrame
 
 _CHORDS = 8
@@ -24,8 +25,6 @@ _TOUCH = 1e-6
 """cells; a line may touch what it passes."""
 
 _ROUNDING = 1e-12
-
-Point = tuple[float, float]
 
 
 class ShortestWays:

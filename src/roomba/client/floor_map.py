@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from roomba.client.view import GridLayer, HomeView, Point, RoomView
+from roomba.client.view import GridLayer, HomeView, RoomView
 from roomba.files.valetudo.home import ValetudoHome
 from roomba.files.valetudo.writing import compose
-from roomba.geometry import Pose
+from roomba.geometry import Point, Pose
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 
 _VALUES = np.array([UNKNOWN, FREE, OCCUPIED, OCCUPIED], np.int8)

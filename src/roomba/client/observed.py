@@ -7,6 +7,7 @@ from typing import Final, Protocol, runtime_checkable
 
 from roomba.clean_request import CleanRequest
 from roomba.client import view
+from roomba.geometry import Point
 from roomba.vocabulary import RoomWay
 
 HAND_SILENCE: Final = 0.5
@@ -96,7 +97,7 @@ class ObservedRobot(Protocol):
     def join_rooms(self, names: tuple[str, ...]) -> None:
         """Make rooms that touch one, by the first one's name."""
 
-    def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
+    def split_room(self, name: str, start: Point, end: Point) -> None:
         """Cut a room along a line between two points."""
 
     def undo_rooms(self) -> None:
@@ -133,7 +134,7 @@ class Timeline(Protocol):
     def set_speed(self, speed: float) -> None:
         """Play at so many of its seconds per second."""
 
-    def way(self) -> list[view.Point]:
+    def way(self) -> list[Point]:
         """Return the places up to now, m."""
 
 

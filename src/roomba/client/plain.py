@@ -8,7 +8,8 @@ from typing import Any
 
 from roomba.client.observed import TimelineView
 from roomba.client.protocol import CleanReport
-from roomba.client.view import HomeView, Point, RobotView, RoomView, TruthView, ZoneView
+from roomba.client.view import HomeView, RobotView, RoomView, TruthView, ZoneView
+from roomba.geometry import Point
 from roomba.time_spent import square_metres_a_minute
 from roomba.vocabulary import code_of
 

@@ -17,7 +17,7 @@ from roomba.client.protocol import (
     RequestRefusedError,
     VacuumSnapshot,
 )
-from roomba.geometry import Twist
+from roomba.geometry import Point, Twist
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.vocabulary import (
     LONGEST_NAME,
@@ -29,9 +29,6 @@ from roomba.vocabulary import (
     EdgeOrder,
     FanLevel,
 )
-
-Point = tuple[float, float]
-"""x and y, m."""
 
 MOST_PATH: Final = 400
 """Points of the path that are shown."""

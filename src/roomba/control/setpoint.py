@@ -10,8 +10,7 @@ from __future__ import annotations
 import math
 
 from roomba.clock import LONGEST_TICK, ClockJumps, is_recent
-
-Point = tuple[float, float]
+from roomba.geometry import Point
 
 
 class Setpoint:

@@ -17,7 +17,7 @@ from roomba.client.protocol import (
     RequestRefusedError,
     VacuumSnapshot,
 )
-from roomba.geometry import wrap_angle
+from roomba.geometry import Point, wrap_angle
 from roomba.grid import GridFrame
 from roomba.history.run import TRACE, RunFigures, RunRecording, Word, told
 from roomba.history.run_file import RunFileError
@@ -82,7 +82,7 @@ class RecordedRobot:
             self._pass_time()
             self._speed = min(max(speed, SPEEDS[0]), SPEEDS[1])
 
-    def way(self) -> list[view.Point]:
+    def way(self) -> list[Point]:
         """Return the places up to now."""
         count = bisect_right(self._times, self.timeline().at)
         return [(float(x), float(y)) for x, y in self._recording.trace[:count, 1:3]]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from roomba.client.view import Point, RoomView
+from roomba.client.view import RoomView
 from roomba.configuration.frozen import Frozen
+from roomba.geometry import Point
 from roomba.plans.due import DirtRecords
 from roomba.plans.plan import HouseholdPlans
 

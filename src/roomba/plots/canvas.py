@@ -15,8 +15,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from roomba.geometry import Point
+
 Colour = tuple[int, int, int]
-Points = Sequence[tuple[float, float]]
 Picture = NDArray[np.uint8]
 Paint = Colour | Callable[[NDArray[np.float64], NDArray[np.float64]], Picture]
 
@@ -69,15 +70,17 @@ class Canvas:
         """Return an empty mask of the canvas' size."""
         return np.zeros(self.pixels.shape[:2], np.uint8)
 
-    def fill(self, points: Points, colour: Colour) -> None:
+    def fill(self, points: Sequence[Point], colour: Colour) -> None:
         """Fill a polygon."""
         cv2.fillPoly(self.pixels, [self._fixed(points)], colour, cv2.LINE_AA, _SHIFT)
 
-    def fill_mask(self, mask: NDArray[np.uint8], points: Points) -> None:
+    def fill_mask(self, mask: NDArray[np.uint8], points: Sequence[Point]) -> None:
         """Set a mask to 255 inside a polygon."""
         cv2.fillPoly(mask, [self._fixed(points)], (255,), cv2.LINE_8, _SHIFT)
 
-    def line(self, points: Points, colour: Colour, width: float, closed: bool = False) -> None:
+    def line(
+        self, points: Sequence[Point], colour: Colour, width: float, closed: bool = False
+    ) -> None:
         """Draw a line of a width in m, at least a shown pixel wide."""
         thickness = max(FINENESS, round(width * self.scale))
         cv2.polylines(
@@ -133,7 +136,7 @@ class Canvas:
         """Return (column, row) of a point, in drawn pixels."""
         return (x - self.x_min) * self.scale, (self.y_max - y) * self.scale
 
-    def _fixed(self, points: Points) -> NDArray[np.int32]:
+    def _fixed(self, points: Sequence[Point]) -> NDArray[np.int32]:
         array = np.asarray(points, np.float64)
         column = (array[:, 0] - self.x_min) * self.scale - 0.5
         row = (self.y_max - array[:, 1]) * self.scale - 0.5
@@ -163,13 +166,13 @@ def _window_of(mask: NDArray[np.uint8]) -> tuple[slice, slice] | None:
 
 def circle(
     x: float, y: float, radius: float, start: float = 0.0, end: float = 2.0 * np.pi
-) -> Points:
+) -> Sequence[Point]:
     """Return points along a circle's arc from angle ``start`` to ``end``, rad."""
     angles = np.linspace(start, end, 49)
     return [(float(x + radius * np.cos(a)), float(y + radius * np.sin(a))) for a in angles]
 
 
-def rounded(polygon: shapely.Polygon, radius: float) -> Points:
+def rounded(polygon: shapely.Polygon, radius: float) -> Sequence[Point]:
     """Return the outline of a convex polygon with round corners."""
     inner = shapely.buffer(polygon, -radius, join_style="mitre")
     if radius <= 0.0 or inner.is_empty:

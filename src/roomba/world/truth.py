@@ -10,14 +10,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.geometry import Pose
+from roomba.geometry import Point, Pose
 from roomba.grid import GridFrame
 from roomba.world.home.home import Box, Home, MovingKind
 from roomba.world.home.raster import footprint
 from roomba.world.simulator import Simulator
-
-Point = tuple[float, float]
-"""x and y, m, in the home's frame."""
 
 _ROUND: Final = 12
 """Corners of what is round, as drawn."""

@@ -10,7 +10,7 @@ import numpy as np
 from roomba.arrays import Mask
 from roomba.configuration.robot import RobotConfig
 from roomba.files.shipped import HOMES
-from roomba.planning.path.costmap import Point
+from roomba.geometry import Point
 from roomba.planning.path.planner import PathPlanner
 from roomba.planning.path.search.grid_path import shortest_grid_path
 from roomba.world.layers.layer import load_home

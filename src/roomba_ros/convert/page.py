@@ -33,13 +33,13 @@ from roomba.client.view import (
     ChangeView,
     DoorView,
     LowThingView,
-    Point,
     RoomView,
     ZoneView,
     battery_seconds,
     exploration_as_clean,
     known_cells,
 )
+from roomba.geometry import Point
 from roomba.grid import GridFrame, OccupancyMap
 from roomba_ros.convert.client import clean_end_of, exploration_end_of, outcome_of
 from roomba_ros.convert.common import map_of, path_of

@@ -36,7 +36,7 @@ from roomba.client.protocol import (
     WalkOutcome,
 )
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import STANDSTILL, Pose, Twist
+from roomba.geometry import STANDSTILL, Point, Pose, Twist
 from roomba.vocabulary import RoomWay
 from roomba_ros.client.ros_client import RosCamera, RosRobot
 from roomba_ros.convert.common import twist_message
@@ -280,7 +280,7 @@ class GraphRobot(GraphMaps):
         """Make rooms that touch one."""
         self._call("rooms/join", list(names))
 
-    def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
+    def split_room(self, name: str, start: Point, end: Point) -> None:
         """Cut a room along a line."""
         self._call("rooms/split", name, PointMessage(*start, 0.0), PointMessage(*end, 0.0))
 

@@ -39,13 +39,12 @@ from roomba.client.view import (
     HomeView,
     LayerName,
     LowThingView,
-    Point,
     RoomView,
     TruthView,
     ZoneView,
 )
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import Pose
+from roomba.geometry import Point, Pose
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.robot.readings import ScanReading
 from roomba.vocabulary import NO_REASON

@@ -9,13 +9,11 @@ from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseFeedback, MoveBaseResult
 from roomba_robot.msg import WalkToPointAction, WalkToPointFeedback, WalkToPointResult
 
-from roomba.geometry import Pose
+from roomba.geometry import Point, Pose
 from roomba.mission.walking.walk import feedback_period
 from roomba_ros.convert.common import pose_in_map, pose_message, theta_of
 from roomba_ros.convert.errors import require_finite
 from roomba_ros.runtime.action_goal import ActionGoal
-
-Point = tuple[float, float]
 
 
 class WalkGoal(ActionGoal):

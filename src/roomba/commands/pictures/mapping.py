@@ -16,10 +16,9 @@ from roomba.commands.map.runs import run_trial
 from roomba.commands.output import clock
 from roomba.commands.trials.trial import Trial
 from roomba.configuration.mapping import MappingConfig
-from roomba.geometry import Pose
+from roomba.geometry import Point, Pose
 from roomba.grid import FREE, OccupancyMap
 from roomba.headless.mission import HeadlessMission
-from roomba.planning.path.costmap import Point
 from roomba.plots.canvas import Picture
 from roomba.plots.style import BLUE, INK, ORANGE, Area, draw_robot, drawn, empty_figure
 from roomba.world.home.home import Home

@@ -12,9 +12,10 @@ from PIL import Image
 
 from roomba.clean_request import CleanRequest
 from roomba.client.floor_map import FloorMap
-from roomba.client.view import LayerName, Point
+from roomba.client.view import LayerName
 from roomba.commands.play.living import live_client
 from roomba.errors import RoombaError
+from roomba.geometry import Point
 from roomba.plots.canvas import Picture
 from roomba.ui.smart_home.map_picture import picture_of
 from roomba.world.home.home import Home

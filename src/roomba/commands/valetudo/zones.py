@@ -6,7 +6,8 @@ from typing import Final, NamedTuple
 
 import shapely
 
-from roomba.files.valetudo.home import Points, ValetudoHome
+from roomba.files.valetudo.home import ValetudoHome
+from roomba.geometry import Point
 from roomba.perception.rooms.zones import LEAST_AREA, Zone, ZoneKind, Zones, ZonesError
 from roomba.vocabulary import MOST_ZONES, listed
 
@@ -48,7 +49,7 @@ def taken_zones(found: ValetudoHome) -> TakenZones:
     return TakenZones(Zones(tuple(zone for zone in zones.values() if zone)), left_out)
 
 
-def _zone_of(name: str, kind: ZoneKind, points: Points) -> Zone | None:
+def _zone_of(name: str, kind: ZoneKind, points: tuple[Point, ...]) -> Zone | None:
     """Return a zone, None for one of no size; raises ZonesError."""
     hull = shapely.MultiPoint(points).convex_hull
     if hull.area < LEAST_AREA if kind.is_area else hull.length == 0.0:

@@ -7,10 +7,8 @@ from typing import Final
 
 from roomba.arrays import Mask
 from roomba.errors import RoombaError
-from roomba.geometry import Pose
+from roomba.geometry import Point, Pose
 from roomba.grid import OccupancyMap
-
-Points = tuple[tuple[float, float], ...]
 
 VERSION: Final = 2
 """Of the format, as it is written."""
@@ -38,8 +36,8 @@ class ValetudoHome:
     occupancy: OccupancyMap
     rooms: tuple[tuple[str, Mask], ...] = ()
     station: Pose | None = None
-    no_go: tuple[Points, ...] = ()
-    walls: tuple[Points, ...] = ()
+    no_go: tuple[tuple[Point, ...], ...] = ()
+    walls: tuple[tuple[Point, ...], ...] = ()
     has_own_frame: bool = True
     robot: Pose | None = None
-    way: Points = ()
+    way: tuple[Point, ...] = ()

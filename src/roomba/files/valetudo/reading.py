@@ -11,8 +11,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from roomba.arrays import Mask
 from roomba.files.plain_json import load_json
-from roomba.files.valetudo.home import CM, VERSION, Points, ValetudoError, ValetudoHome
-from roomba.geometry import Pose
+from roomba.files.valetudo.home import CM, VERSION, ValetudoError, ValetudoHome
+from roomba.geometry import Point, Pose
 from roomba.grid import FREE, MOST_CELLS, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.raster.seams import without_seams
 from roomba.vocabulary import another_name, cleaned_name
@@ -217,7 +217,7 @@ def _placed(found: _Map, values: NDArray[np.int8], rooms: list[tuple[str, Mask]]
     frame = GridFrame(cell, origin[0], origin[1], *values[cut].shape)
     corner = origin[0] - cut[1].start * cell, origin[1] - cut[0].start * cell
 
-    def points_of(entity: _Entity) -> Points:
+    def points_of(entity: _Entity) -> tuple[Point, ...]:
         if len(entity.points) % 2:
             raise ValetudoError(
                 f"entities: expected points of two numbers each, got {entity.points}"

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.arrays import Mask
-from roomba.files.valetudo.home import CM, VERSION, Points, ValetudoError, ValetudoHome
+from roomba.files.valetudo.home import CM, VERSION, ValetudoError, ValetudoHome
+from roomba.geometry import Point
 from roomba.grid import FREE, OCCUPIED
 
 _NAMES: Final = uuid.UUID("6f1c1a3e-2f0a-4f57-9d52-6a1f5d0b7c11")
@@ -104,7 +105,7 @@ def _entity(kind: str, name: str, points: list[int], meta: dict[str, Any]) -> di
     return {"__class": kind, "metaData": meta, "points": points, "type": name}
 
 
-def _points(home: ValetudoHome, points: Points) -> list[int]:
+def _points(home: ValetudoHome, points: tuple[Point, ...]) -> list[int]:
     frame = home.occupancy.frame
     top = frame.origin_y + frame.rows * frame.resolution
     return [round(value / CM) for x, y in points for value in (x - frame.origin_x, top - y)]

@@ -15,7 +15,7 @@ from roomba.client.observed import SPILL, TickTimes
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.configuration.mapping import FloorsConfig
 from roomba.errors import RoombaError, RoomsError
-from roomba.geometry import STANDSTILL, Pose
+from roomba.geometry import STANDSTILL, Point, Pose
 from roomba.headless.embodied import Embodied
 from roomba.headless.live import playing
 from roomba.headless.live.errands import begin_exploring
@@ -294,7 +294,7 @@ class LiveClient:
         """Make rooms that touch one."""
         self._edit(lambda plan: plan.with_joined(names))
 
-    def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
+    def split_room(self, name: str, start: Point, end: Point) -> None:
         """Cut a room along a line."""
         self._edit(lambda plan: plan.with_cut(name, start, end))
 

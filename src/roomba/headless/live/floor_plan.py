@@ -7,8 +7,9 @@ from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 from roomba.client.protocol import RequestRefusedError
-from roomba.client.view import Point, ZoneView, require_another_zone
+from roomba.client.view import ZoneView, require_another_zone
 from roomba.errors import RoombaError
+from roomba.geometry import Point
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 

@@ -23,7 +23,6 @@ from roomba.client.view import (
     GridLayer,
     HomeView,
     LowThingView,
-    Point,
     RobotView,
     RoomView,
     TruthView,
@@ -32,6 +31,7 @@ from roomba.client.view import (
     battery_seconds,
     known_cells,
 )
+from roomba.geometry import Point
 from roomba.grid import OccupancyMap
 from roomba.headless.embodied import Embodied
 from roomba.headless.live.live_home import LiveHome

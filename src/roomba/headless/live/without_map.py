@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from roomba.client import view
 from roomba.client.protocol import RequestRefusedError
+from roomba.geometry import Point
 from roomba.vocabulary import RoomWay
 
 
@@ -39,7 +40,7 @@ class WithoutMap:
         """Refuse it."""
         raise RequestRefusedError(self.no_map)
 
-    def split_room(self, name: str, start: view.Point, end: view.Point) -> None:
+    def split_room(self, name: str, start: Point, end: Point) -> None:
         """Refuse it."""
         raise RequestRefusedError(self.no_map)
 

@@ -6,13 +6,12 @@ import numpy as np
 
 from roomba.arrays import Mask
 from roomba.configuration.mission import CleaningConfig
-from roomba.geometry import RoundObstacle
+from roomba.geometry import Point, RoundObstacle
 from roomba.grid import GridFrame
 from roomba.mission.cleaning.missed import is_hidden
 from roomba.mission.cleaning.worth import PlanOver, is_worth_its_way
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import patches_of
-from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError
 from roomba.raster.regions import large_regions
 

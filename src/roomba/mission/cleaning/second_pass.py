@@ -6,13 +6,12 @@ import numpy as np
 
 from roomba.arrays import Floats, Mask
 from roomba.configuration.mission import CleaningConfig
-from roomba.geometry import RoundObstacle
+from roomba.geometry import Point, RoundObstacle
 from roomba.mission.cleaning.dirty.detour import with_detour
 from roomba.mission.cleaning.dirty.dirty_floor import DirtyFloor, DirtyPatch
 from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.worth import PlanOver, is_worth_its_way, way_worth
 from roomba.mission.inputs.planning_context import PlanningContext
-from roomba.planning.path.costmap import Point
 
 
 class SecondPass:

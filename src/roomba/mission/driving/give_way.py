@@ -9,12 +9,11 @@ import numpy as np
 
 from roomba.arrays import Floats
 from roomba.configuration.mission import GivingWayConfig
-from roomba.geometry import RoundObstacle
+from roomba.geometry import Point, RoundObstacle
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.trail import Trail
 from roomba.mission.inputs.senses import Senses
 from roomba.planning.frontiers.kernels import ways_from
-from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError, PathPlanner
 
 

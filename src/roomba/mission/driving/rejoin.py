@@ -13,13 +13,12 @@ from numpy.typing import NDArray
 from roomba.arrays import Floats
 from roomba.configuration.mission import DrivingConfig
 from roomba.control.path_tracker import PathTracker
-from roomba.geometry import RoundObstacle
+from roomba.geometry import Point, RoundObstacle
 from roomba.mission.driving.nudge import nudged
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.trail import Trail
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
-from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError, NoPathReason
 
 Bools = NDArray[np.bool_]

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from roomba.arrays import Floats
 from roomba.compilation import entry
-from roomba.geometry import Pose
+from roomba.geometry import Point, Pose
 from roomba.perception.swept.coverage_kernels import LONGEST_STEP
-from roomba.planning.path.costmap import Point
 
 _STEP: Final = 0.05
 """m; between two places that are remembered."""

@@ -15,13 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.configuration.mission import ExploringConfig
-from roomba.geometry import Pose, RoundObstacle
+from roomba.geometry import Point, Pose, RoundObstacle
 from roomba.grid import FREE, OccupancyMap
 from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.exploring.open_edges import GivenUp, open_edges
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.planning.frontiers.frontiers import Frontier, FrontierChoice, frontiers, is_frontier
-from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError
 from roomba.vocabulary import OpenEdge
 

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
 from roomba.configuration.mission import ExploringConfig
+from roomba.geometry import Point
 from roomba.grid import OccupancyMap
 from roomba.planning.frontiers.frontiers import lengths_near
-from roomba.planning.path.costmap import Point
 from roomba.vocabulary import EdgeReason, OpenEdge
 
 _MOST_TOLD: Final = 3

@@ -16,7 +16,7 @@ from roomba.arrays import Mask
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import Pose, RoundObstacle
+from roomba.geometry import Point, Pose, RoundObstacle
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.mission.docking.docking import staging_pose
 from roomba.mission.inputs.gaps import closed_gaps
@@ -27,7 +27,6 @@ from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.coverage.planner import UNWATCHED, CoveragePlanner
 from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 from roomba.planning.path.careful import CarefulPathPlanner
-from roomba.planning.path.costmap import Point
 from roomba.planning.path.new_walls import is_walled
 from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
 

@@ -15,14 +15,13 @@ import numpy as np
 
 from roomba.clock import LONGEST_TICK, ClockJumps
 from roomba.configuration.robot import RobotConfig
+from roomba.geometry import Point
 from roomba.mission.driving.obstacles import Obstacles
 from roomba.mission.driving.way_ahead import LEAVING, WayAhead
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.walking.path_follower import PathFollower
 from roomba.perception.localization.estimate import Knowledge
 from roomba.planning.path.planner import NoPathError, NoPathReason, Path, PathPlanner
-
-Point = tuple[float, float]
 
 _UNKNOWN = "something that the map does not show stands"
 

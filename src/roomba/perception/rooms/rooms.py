@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from roomba.configuration.rooms import RoomsConfig
 from roomba.errors import RoomsError
+from roomba.geometry import Point
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.perception.rooms import edits as rooms_edits
 from roomba.perception.rooms.floor_kernels import contacts
@@ -19,8 +20,6 @@ from roomba.perception.rooms.outlines import cells_inside, line_on, outline_of
 from roomba.perception.rooms.segmentation import room_labels
 from roomba.raster.distance import distance_to_nearest
 from roomba.vocabulary import LONGEST_NAME, another_name, fault_of_name, listed
-
-Point = tuple[float, float]
 
 SMALLEST_PIECE = 0.5
 """m²; a cut that leaves less is a slip of the finger: the robot alone covers 0.1 m²."""

@@ -6,16 +6,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from roomba.arrays import Mask
+from roomba.arrays import Floats, Mask, Polyline
 from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.passes.edges import rings
 from roomba.planning.coverage.passes.solid_cells import SolidCells
 from roomba.planning.coverage.passes.sweep import unswept
 from roomba.planning.coverage.tour.net import Net, net_over
-
-Line = NDArray[np.float64]
 
 _MARGIN = 2
 """cells around what can be swept."""
@@ -58,24 +55,24 @@ class Ground:
         rows, columns = self.middles.shape
         return bool(0 <= row < rows and 0 <= column < columns and self.middles[row, column])
 
-    def place_of(self, cell: tuple[int, int]) -> Line:
+    def place_of(self, cell: tuple[int, int]) -> Floats:
         """Return the place, float64 [2], of a (row, column) of the floor's frame."""
         return np.array(
             (cell[1] - self.window[1].start, cell[0] - self.window[0].start), np.float64
         )
 
-    def metres(self, places: Line) -> Line:
+    def metres(self, places: Floats) -> Floats:
         """Return places, float64 [n, 2], in m in the map frame."""
         rows = places[:, 1] + self.window[0].start
         columns = places[:, 0] + self.window[1].start
         return np.column_stack(self.floor.frame.centres(rows, columns))
 
-    def places(self, points: Line) -> Line:
+    def places(self, points: Floats) -> Floats:
         """Return points, float64 [n, 2], m in the map frame, as places."""
         frame = self.floor.frame
         first = np.array((self.window[1].start, self.window[0].start), np.float64)
         corner = np.array((frame.origin_x, frame.origin_y))
-        places: Line = (points - corner) / frame.resolution - 0.5 - first
+        places: Floats = (points - corner) / frame.resolution - 0.5 - first
         return places
 
     @property
@@ -89,7 +86,7 @@ class Ground:
         return net_over(self.middles)
 
     @cached_property
-    def rings(self) -> list[Line]:
+    def rings(self) -> list[Polyline]:
         """The outlines of ``middles``, straightened."""
         floor, size = self.floor, self.floor.frame.resolution
         things = np.array(floor.obstacles, np.float64).reshape(-1, 3)

@@ -18,11 +18,10 @@ from contextlib import AbstractContextManager
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from roomba.arrays import Mask
+from roomba.arrays import Floats, Mask, Polyline
 from roomba.configuration.coverage import CoverageConfig
-from roomba.geometry import RoundObstacle
+from roomba.geometry import Point, RoundObstacle
 from roomba.grid import OccupancyMap
 from roomba.planning.coverage.floor.floor import CoverageFloor
 from roomba.planning.coverage.floor.masks import way_fits
@@ -31,12 +30,10 @@ from roomba.planning.coverage.passes.sweep import unswept
 from roomba.planning.coverage.plan import CoveragePlan
 from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 from roomba.planning.coverage.tour.connection import tidy
-from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError, NoPathReason
 
 __all__ = ["CoverageFloor", "CoveragePlan", "CoveragePlanner"]
 
-Line = NDArray[np.float64]
 
 _OFF_MIDDLES = 0.2
 """cells; the tool is a whole number of cells wide, so that seams would lie on their middles, where
@@ -111,7 +108,7 @@ class CoveragePlanner:
         config, radius, stages = self._config, ground.radius, self._stages
         length = config.piece * 2 * radius
         edge_pieces = stages.edges(ground.rings, need, ground.middles, radius, length, config)
-        swath_pieces: list[Line] = []
+        swath_pieces: list[Polyline] = []
         if not edges_only:
             left = unswept(need, edge_pieces, radius) & ground.middles
             swath_pieces = [
@@ -139,7 +136,9 @@ class CoveragePlanner:
         left[ground.window] = ground.rounded_off
         return left
 
-    def _ground_from(self, start: Point, obstacles: Iterable[RoundObstacle]) -> tuple[Ground, Line]:
+    def _ground_from(
+        self, start: Point, obstacles: Iterable[RoundObstacle]
+    ) -> tuple[Ground, Floats]:
         """Return the ground around a start, and the place on it where the way begins.
 
         The last ground is kept, and serves again for the same obstacles from anywhere on it.
@@ -157,7 +156,7 @@ class CoveragePlanner:
         return known, known.place_of(seed)
 
 
-def _off_middles(line: Line, middles: Mask) -> Line:
+def _off_middles(line: Polyline, middles: Mask) -> Polyline:
     """Return a swath shifted a little, so that no seam between two lies on centres of cells.
 
     It is shifted to the side on which it fits, and not at all where there is none. Slanted ones
@@ -167,11 +166,11 @@ def _off_middles(line: Line, middles: Mask) -> Line:
     if along.all():
         return line
     aside = np.array([0.0, _OFF_MIDDLES]) if along[0] >= along[1] else np.array([_OFF_MIDDLES, 0.0])
-    sides: tuple[Line, Line] = line + aside, line - aside
+    sides: tuple[Polyline, Polyline] = line + aside, line - aside
     return next((moved for moved in sides if way_fits(middles, *moved.ravel().tolist())), line)
 
 
-def _end_on(ground: Ground, end: Point) -> Line:
+def _end_on(ground: Ground, end: Point) -> Floats:
     """Return the place where the way ends."""
     cell = ground.floor.cell_near(end)
     if cell is None or not ground.holds(cell):
@@ -179,7 +178,7 @@ def _end_on(ground: Ground, end: Point) -> Line:
     return ground.place_of(cell)
 
 
-def _from_to(ground: Ground, line: Line, start: Point, end: Point | None) -> Line:
+def _from_to(ground: Ground, line: Polyline, start: Point, end: Point | None) -> Polyline:
     """Return the line in m, with exactly these ends and without redundant points."""
     ends = np.array([start] if end is None else [start, end], np.float64)
     places = ground.places(ends)

@@ -10,10 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
-from roomba.arrays import Mask
+from roomba.arrays import Floats, Mask, Polyline
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.passes.edges import edges as our_edges
 from roomba.planning.coverage.passes.swaths import swaths as our_swaths
@@ -23,19 +20,17 @@ from roomba.planning.coverage.tour.order import ordered as our_order
 from roomba.planning.coverage.tour.polish import polished as our_polish
 from roomba.planning.coverage.tour.rounding import rounded as our_rounding
 
-Line = NDArray[np.float64]
-
-Edges = Callable[[list[Line], Mask, Mask, float, float, CoverageConfig], list[Line]]
+Edges = Callable[[list[Polyline], Mask, Mask, float, float, CoverageConfig], list[Polyline]]
 """rings, need, middles, radius, length of a piece, configuration: lines along walls."""
-Swaths = Callable[[Mask, Mask, float, CoverageConfig], list[Line]]
+Swaths = Callable[[Mask, Mask, float, CoverageConfig], list[Polyline]]
 """left, middles, radius, configuration: straight lines that sweep what is left."""
-Order = Callable[[Net, list[Line], Line, Line | None, CoverageConfig], list[Line]]
+Order = Callable[[Net, list[Polyline], Floats, Floats | None, CoverageConfig], list[Polyline]]
 """net, lines, first place, last place, configuration: all lines in order and direction."""
-Connection = Callable[[Net, list[Line], Line, Line | None], Line]
+Connection = Callable[[Net, list[Polyline], Floats, Floats | None], Polyline]
 """net, lines in order, first place, last place: one line."""
-Polish = Callable[[Line, Mask, Mask, float, CoverageConfig], Line]
+Polish = Callable[[Polyline, Mask, Mask, float, CoverageConfig], Polyline]
 """line, need, middles, radius, configuration: a shorter and straighter line."""
-Rounding = Callable[[Line, Mask, Mask, float, float, CoverageConfig], Line]
+Rounding = Callable[[Polyline, Mask, Mask, float, float, CoverageConfig], Polyline]
 """line, need, middles, radius, sharp corner in rad, configuration: a line with bends in place of
 sharp corners."""
 

@@ -13,9 +13,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.geometry import Point
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.frontiers.kernels import clusters, frontier_cells, seen_from, ways_from
-from roomba.planning.path.costmap import Point
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import cached_property
 
-from roomba.geometry import RoundObstacle
+from roomba.geometry import Point, RoundObstacle
 from roomba.grid import OccupancyMap
-from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError, Path, PathPlanner
 
 

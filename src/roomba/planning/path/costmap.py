@@ -15,12 +15,10 @@ from numpy.typing import NDArray
 
 from roomba.arrays import Mask
 from roomba.compilation import entry, part
-from roomba.geometry import RoundObstacle
+from roomba.geometry import Point, RoundObstacle
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.path.straight_walls import has_shares, solid_parts
 from roomba.raster.regions import dilated, numbered_regions
-
-Point = tuple[float, float]
 
 _PARTS = 5
 """To a side of a cell that may be solid in part; odd: one of them is in the cell's middle."""

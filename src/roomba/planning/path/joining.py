@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from roomba.planning.path.costmap import FitMap, Point
+from roomba.geometry import Point
+from roomba.planning.path.costmap import FitMap
 from roomba.planning.path.search.any_angle import Joints
 
 _NEAR = 2.0

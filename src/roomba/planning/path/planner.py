@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 
 from roomba.arrays import Mask
 from roomba.errors import RoombaError
-from roomba.geometry import RoundObstacle
+from roomba.geometry import Point, RoundObstacle
 from roomba.grid import GridFrame, OccupancyMap
-from roomba.planning.path.costmap import FitMap, Point
+from roomba.planning.path.costmap import FitMap
 from roomba.planning.path.joining import join_goal, join_start
 from roomba.planning.path.polyline import Path
 from roomba.planning.path.search.any_angle import AnyAngleSearch, FreeSpace, Joints

@@ -15,7 +15,8 @@ from PIL import Image, ImageDraw, ImageFont
 from PIL.PngImagePlugin import PngInfo
 
 from roomba.client.floor_map import FloorMap
-from roomba.client.view import GridLayer, Point
+from roomba.client.view import GridLayer
+from roomba.geometry import Point
 from roomba.history.report.picture import COVERAGE_COLOURS, MAP_COLOURS
 
 _AROUND: Final = 0.2

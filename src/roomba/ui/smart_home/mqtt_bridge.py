@@ -17,8 +17,9 @@ from typing import Final
 
 from roomba.client.floor_map import FloorMap, valetudo_of
 from roomba.client.observed import ObservedRobot
-from roomba.client.view import GridLayer, HomeView, LayerName, Point, RobotView
+from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
 from roomba.files.valetudo.home import ValetudoError
+from roomba.geometry import Point
 from roomba.ui.smart_home.announcement import announcements
 from roomba.ui.smart_home.broker import Broker
 from roomba.ui.smart_home.commands import SmartCommands

@@ -16,6 +16,7 @@ import shapely
 from numpy.typing import NDArray
 
 from roomba.arrays import Mask
+from roomba.geometry import Point
 from roomba.grid import GridFrame
 from roomba.world.home.surface import Surface
 
@@ -23,8 +24,6 @@ ROUND_ERROR: Final = 5e-4
 """m; how far the pieces of a round wall are off the circle, at most."""
 LONGEST_PIECE: Final = 0.06
 """m; of a round wall: the camera draws an edge between longer ones."""
-
-Points = tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +36,8 @@ class FreeWall:
     It stands on the robot's map if it is ``on_map``.
     """
 
-    outline: Points
-    line: Points = ()
+    outline: tuple[Point, ...]
+    line: tuple[Point, ...] = ()
     thickness: float = 0.0
     material: str = "wall"
     surface: Surface | None = None
@@ -94,7 +93,7 @@ def arc_outline(
     return shapely.Polygon([*outer, *inner])
 
 
-def counter_clockwise(polygon: shapely.Polygon) -> Points:
+def counter_clockwise(polygon: shapely.Polygon) -> tuple[Point, ...]:
     """Return the corners of a polygon without holes, counter-clockwise, each once."""
     ring = shapely.geometry.polygon.orient(polygon).exterior
     return tuple((float(x), float(y)) for x, y in list(ring.coords)[:-1])

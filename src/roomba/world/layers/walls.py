@@ -10,9 +10,9 @@ from shapely.validation import explain_validity
 
 from roomba.files.home_layer import Layer, WallEntry
 from roomba.files.strict_yaml import Location
+from roomba.geometry import Point
 from roomba.world.home.free_wall import (
     FreeWall,
-    Points,
     arc_outline,
     arc_points,
     counter_clockwise,
@@ -95,7 +95,7 @@ def _free_wall(location: Location, entry: WallEntry, check: Checker) -> FreeWall
     )
 
 
-def _middle(area: Rectangle) -> Points:
+def _middle(area: Rectangle) -> tuple[Point, ...]:
     x, y = 0.5 * (area.x_min + area.x_max), 0.5 * (area.y_min + area.y_max)
     if area.x_max - area.x_min >= area.y_max - area.y_min:
         return (area.x_min, y), (area.x_max, y)

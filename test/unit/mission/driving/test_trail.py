@@ -7,9 +7,8 @@ import pytest
 from numpy.typing import NDArray
 
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import Pose
+from roomba.geometry import Point, Pose
 from roomba.mission.driving.trail import Trail
-from roomba.planning.path.costmap import Point
 
 CONFIG = RobotConfig()
 LONGEST = 5.0

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from roomba.configuration.mission import MissionConfig
+from roomba.geometry import Point
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.mission.exploring.exploration import Exploration
 from roomba.mission.exploring.open_edges import GivenUp, open_edges, what_is_not_seen
-from roomba.planning.path.costmap import Point
 from roomba.vocabulary import EdgeReason, OpenEdge
 
 CONFIG = MissionConfig().exploring

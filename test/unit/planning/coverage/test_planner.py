@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from roomba.arrays import Mask
 from roomba.configuration.coverage import CoverageConfig
-from roomba.geometry import RoundObstacle
+from roomba.geometry import Point, RoundObstacle
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.planning.coverage.planner import CoverageFloor, CoveragePlan, CoveragePlanner
 from roomba.planning.coverage.stages import OUR_STAGES
-from roomba.planning.path.costmap import FitMap, Point
+from roomba.planning.path.costmap import FitMap
 from roomba.planning.path.planner import NoPathError, NoPathReason
 
 REACH, TOOL, CONFIG = 0.169, 0.2, CoverageConfig()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from roomba.geometry import Point
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.planning.frontiers.frontiers import (
     Frontier,
@@ -18,7 +19,6 @@ from roomba.planning.frontiers.frontiers import (
 )
 
 CELL = 0.05
-Point = tuple[float, float]
 
 LEAST = 3
 CHOICE = FrontierChoice(

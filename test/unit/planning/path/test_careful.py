@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from fixtures.homes.planned_rooms import RADIUS, SAGITTA, TIGHT, Point, room, samples, two_rooms
+from fixtures.homes.planned_rooms import RADIUS, SAGITTA, TIGHT, room, samples, two_rooms
 
+from roomba.geometry import Point
 from roomba.grid import OccupancyMap
 from roomba.planning.path.careful import CarefulPathPlanner
 from roomba.planning.path.costmap import FitMap

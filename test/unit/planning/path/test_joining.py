@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from roomba.arrays import Mask
-from roomba.geometry import RoundObstacle
+from roomba.geometry import Point, RoundObstacle
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
-from roomba.planning.path.costmap import FitMap, Point
+from roomba.planning.path.costmap import FitMap
 from roomba.planning.path.joining import join_goal, join_start
 from roomba.planning.path.search.any_angle import Joints
 

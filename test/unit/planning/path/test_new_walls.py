@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fixtures.homes.planned_rooms import RADIUS, TIGHT, Point, room
+from fixtures.homes.planned_rooms import RADIUS, TIGHT, room
 from numpy.typing import NDArray
 
+from roomba.geometry import Point
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.planning.path.new_walls import is_walled
 

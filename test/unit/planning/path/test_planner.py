@@ -12,7 +12,6 @@ from fixtures.homes.planned_rooms import (
     RADIUS,
     SAGITTA,
     TIGHT,
-    Point,
     occupancy,
     planner_for,
     room,
@@ -23,6 +22,7 @@ from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from roomba.geometry import Point
 from roomba.grid import OccupancyMap
 from roomba.planning.path.costmap import FitMap
 from roomba.planning.path.joining import join_goal, join_start

@@ -9,9 +9,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fixtures.homes.planned_rooms import Point, occupancy
+from fixtures.homes.planned_rooms import occupancy
 
 from roomba.arrays import Mask
+from roomba.geometry import Point
 from roomba.planning.path.planner import NoPathError, NoPathReason, Path, PathPlanner
 
 

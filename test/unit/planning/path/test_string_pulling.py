@@ -8,12 +8,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
-from fixtures.homes.planned_rooms import CHORD, CLEARANCE, RADIUS, Point, occupancy, room
+from fixtures.homes.planned_rooms import CHORD, CLEARANCE, RADIUS, occupancy, room
 from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from roomba.geometry import Point
 from roomba.grid import OccupancyMap
 from roomba.planning.path.costmap import FitMap
 from roomba.planning.path.string_kernels import QUARTER

@@ -14,7 +14,8 @@ from unit.history.seen import HOME, view
 
 from roomba.client.observed import ObservedRobot, TimelineView
 from roomba.client.protocol import RobotUnavailableError
-from roomba.client.view import GridLayer, HomeView, LayerName, Point, RobotView
+from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
+from roomba.geometry import Point
 from roomba.ui.web.feed import Feed
 from roomba.ui.web.streams.trail import Place
 

@@ -12,7 +12,8 @@ from matplotlib.patches import Circle
 
 from roomba.arrays import Floats
 from roomba.configuration.robot import RobotConfig
-from roomba.planning.path.costmap import FitMap, Point
+from roomba.geometry import Point
+from roomba.planning.path.costmap import FitMap
 from roomba.planning.path.joining import join_goal
 from roomba.planning.path.search.any_angle import AnyAngleSearch, FreeSpace
 from roomba.planning.path.string_pulling import StringPulling

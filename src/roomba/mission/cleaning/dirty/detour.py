@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 
 from roomba.arrays import Floats
+from roomba.geometry import Point
 from roomba.planning.coverage.plan import CoveragePlan
-from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError
 from roomba.planning.path.polyline import Path
 

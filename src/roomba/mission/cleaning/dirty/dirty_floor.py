@@ -11,10 +11,10 @@ import numpy as np
 from roomba.arrays import Floats, Mask
 from roomba.clock import is_recent
 from roomba.configuration.mission import CleaningConfig
+from roomba.geometry import Point
 from roomba.mission.cleaning.dirty.watch_kernels import WATCH, may_be_dirty
 from roomba.perception.swept.coverage_map import CoverageMap
 from roomba.perception.swept.dirt_map import CELL, DirtMap
-from roomba.planning.path.costmap import Point
 from roomba.raster.regions import Labels, dilated, large_regions, numbered_regions
 
 _AROUND: Final = np.ones((3, 3), np.bool_)

@@ -6,12 +6,12 @@ from typing import Final
 
 import numpy as np
 
-from roomba.arrays import Floats
+from roomba.arrays import Floats, Floats32
 from roomba.configuration.mapping import MappingConfig
 from roomba.grid import OccupancyMap
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.slam.drawing.occupancy_counts import OccupancyCounts
-from roomba.perception.slam.mirrors.cutting import Points, cut_at
+from roomba.perception.slam.mirrors.cutting import cut_at
 from roomba.perception.slam.mirrors.mirrors import Mirrors
 from roomba.perception.slam.submaps.pose_graph import relative_to
 from roomba.perception.slam.submaps.submap import Keyframe
@@ -78,7 +78,7 @@ class SubmapDrawing:
         points, ways = self._cut(frame, pose)
         self._counts.erase(points, self._mount, pose, ways)
 
-    def _cut(self, frame: Keyframe, pose: Floats) -> tuple[Points, Points]:
+    def _cut(self, frame: Keyframe, pose: Floats) -> tuple[Floats32, Floats32]:
         """Return the points of a keyframe and its open ways, with nothing behind mirrors."""
         return cut_at(self._drawn_mirrors, pose, self._mount, frame.points, frame.open)
 

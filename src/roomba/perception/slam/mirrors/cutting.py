@@ -5,20 +5,17 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from roomba.arrays import Floats
+from roomba.arrays import Floats, Floats32
 from roomba.perception.slam.submaps.pose_graph import relative_to
 
 _BESIDE: Final = 0.1
 """m; beams that pass so near beside a mirror's end may have met it: places are not exact."""
 
-Points = NDArray[np.float32]
-
 
 def cut_at(
-    mirrors: Floats, pose: Floats, lidar: Floats, points: Points, open_ways: Points
-) -> tuple[Points, Points]:
+    mirrors: Floats, pose: Floats, lidar: Floats, points: Floats32, open_ways: Floats32
+) -> tuple[Floats32, Floats32]:
     """Return a scan's points, [n, 4], and the ends of its open ways, [m, 2], robot's frame, as they
     are with nothing behind the mirrors.
 
@@ -38,7 +35,7 @@ def _with_headings(mirrors: Floats) -> Floats:
     return np.column_stack((mirrors.reshape(-1, 2), np.zeros(2 * len(mirrors))))
 
 
-def _cut(mirrors: Floats, lidar: Floats, ends: Points) -> Points:
+def _cut(mirrors: Floats, lidar: Floats, ends: Floats32) -> Floats32:
     """Return beams' ends, [n, 2] or with normals [n, 4], with none behind a mirror."""
     beams = ends[:, :2] - lidar
     first, is_doubtful = np.ones(len(ends)), np.zeros(len(ends), np.bool_)

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from roomba.arrays import Mask
 from roomba.configuration.coverage import CoverageConfig
-from roomba.geometry import RoundObstacle
+from roomba.geometry import Point, RoundObstacle
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.coverage.floor.masks import filled_from, grown, half_widths
-from roomba.planning.path.costmap import Point, checked_obstacles, clear_of
+from roomba.planning.path.costmap import checked_obstacles, clear_of
 from roomba.planning.path.straight_walls import solid_parts
 
 _TOUCH = 1e-7

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.angles import wrap_angles
-from roomba.arrays import Mask
+from roomba.arrays import Floats, Mask, Polyline
 from roomba.compilation import allocating_entry
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import way_fits
@@ -26,9 +26,6 @@ from roomba.planning.coverage.passes.sweep import (
     sweep_leg,
 )
 
-Line = NDArray[np.float64]
-"""A polyline, float64 [n >= 2, 2] (x, y)."""
-
 _SIDEWAYS = 0.75
 """cells; how far an edge may be off the outline that it straightens."""
 _ASLANT = 1.25
@@ -39,7 +36,9 @@ _STRETCH = 10.0
 """cells; edges are kept or left out by stretches of this length."""
 
 
-def rings(middles: Mask, walls: SolidCells | None = None, *, is_aslant: bool = False) -> list[Line]:
+def rings(
+    middles: Mask, walls: SolidCells | None = None, *, is_aslant: bool = False
+) -> list[Polyline]:
     """Return the outlines of ``middles``, bool [rows, columns], straightened; each is closed.
 
     With ``walls`` they are smooth along those that are slanted. ``is_aslant``: it is known where
@@ -58,25 +57,25 @@ def rings(middles: Mask, walls: SolidCells | None = None, *, is_aslant: bool = F
     return lines
 
 
-def turning_of(line: Line) -> float:
+def turning_of(line: Polyline) -> float:
     """Return how much a line turns in all, rad."""
     ways = np.diff(line, axis=0)
     return float(np.abs(wrap_angles(np.diff(np.arctan2(ways[:, 1], ways[:, 0])))).sum())
 
 
-def _straight(middles: Mask, chain: Line, sideways: float) -> Line:
-    kept: Line = chain[straightened(middles, chain, sideways)]
+def _straight(middles: Mask, chain: Polyline, sideways: float) -> Polyline:
+    kept: Polyline = chain[straightened(middles, chain, sideways)]
     return kept
 
 
 def edges(
-    rings: list[Line],
+    rings: list[Polyline],
     need: Mask,
     middles: Mask,
     radius: float,
     piece_length: float,
     config: CoverageConfig,
-) -> list[Line]:
+) -> list[Polyline]:
     """Return lines along the rings that together sweep the needed floor there.
 
     ``need`` and ``middles`` are bool [rows, columns]; ``radius`` is half the tool's width, cells.
@@ -84,7 +83,7 @@ def edges(
     their ends all around fits, or they are cells of ``middles``.
     """
     counts = np.zeros(need.shape, np.int16)
-    pieces: list[Line] = []
+    pieces: list[Polyline] = []
     for ring in rings:
         stretches = cut(ring, _STRETCH)
         worth = _claim(need, counts, stretches, radius, config.edge_worth)
@@ -93,7 +92,7 @@ def edges(
     return pieces
 
 
-def cut(line: Line, spacing: float) -> Line:
+def cut(line: Polyline, spacing: float) -> Polyline:
     """Return the line with more points in it, no two more than ``spacing`` apart."""
     legs = np.hypot(*np.diff(line, axis=0).T)
     parts = np.maximum(np.ceil(legs / spacing - 1e-9).astype(np.int64), 1)
@@ -105,7 +104,7 @@ def cut(line: Line, spacing: float) -> Line:
 
 @allocating_entry
 def _claim(
-    need: Mask, counts: Counts, stretches: Line, radius: float, least: float
+    need: Mask, counts: Counts, stretches: Polyline, radius: float, least: float
 ) -> NDArray[np.bool_]:
     """Return which legs sweep ``least`` new cells for a cell of way, bool [n - 1].
 
@@ -135,10 +134,10 @@ def _bridged(worth: NDArray[np.bool_], gap: int) -> NDArray[np.bool_]:
 
 
 def _joined(
-    stretches: Line, kept: NDArray[np.bool_], piece_length: float, middles: Mask
-) -> list[Line]:
+    stretches: Polyline, kept: NDArray[np.bool_], piece_length: float, middles: Mask
+) -> list[Polyline]:
     """Return the kept legs joined to pieces of about a length."""
-    pieces: list[Line] = []
+    pieces: list[Polyline] = []
     runs = np.flatnonzero(np.diff(np.concatenate(([False], kept, [False])).astype(np.int8)))
     for first, last in runs.reshape(-1, 2):
         run = stretches[first : last + 1].copy()
@@ -153,7 +152,7 @@ def _joined(
     return pieces
 
 
-def _roomy(run: Line, at: int, middles: Mask) -> int:
+def _roomy(run: Polyline, at: int, middles: Mask) -> int:
     """Return the index of the point nearest to one, of a line, around which all fits."""
     for step in range(_NEAR_CUT):
         for other in (at - step, at + step):
@@ -162,13 +161,13 @@ def _roomy(run: Line, at: int, middles: Mask) -> int:
     return at
 
 
-def _has_room(place: Line, middles: Mask) -> bool:
+def _has_room(place: Floats, middles: Mask) -> bool:
     x, y = place.tolist()
     has_room: bool = way_fits(middles, x, y, x, y)
     return has_room
 
 
-def _seat(place: Line, middles: Mask) -> Line:
+def _seat(place: Floats, middles: Mask) -> Floats:
     """Return a place around which all fits, or the cell nearest to it that does, float64 [2]."""
     if _has_room(place, middles):
         return place
@@ -178,5 +177,5 @@ def _seat(place: Line, middles: Mask) -> Line:
     if len(fitting) == 0:
         return place
     nearest = int(np.argmin(np.hypot(*(fitting - place).T)))
-    seat: Line = fitting[nearest]
+    seat: Floats = fitting[nearest]
     return seat

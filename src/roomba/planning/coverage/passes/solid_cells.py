@@ -11,12 +11,9 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from roomba.arrays import Ints32, Mask
+from roomba.arrays import Floats, Ints32, Mask
 from roomba.compilation import entry, inner_part
-
-Line = NDArray[np.float64]
 
 
 class Beside(NamedTuple):
@@ -42,7 +39,7 @@ class SolidCells:
     column: int
     row: int
     reach: float
-    things: Line
+    things: Floats
 
     @cached_property
     def beside(self) -> Beside:

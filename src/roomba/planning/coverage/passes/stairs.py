@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.arrays import Floats, Polyline
 from roomba.compilation import allocating_entry, inner_part
 from roomba.planning.coverage.passes.directions import line_along
 from roomba.planning.coverage.passes.solid_cells import Beside, SolidCells, nearest_solid
 
-Line = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
 _WINDOW = 60
@@ -51,10 +51,10 @@ class SmoothWay(NamedTuple):
 
     first: int
     last: int
-    points: Line
+    points: Polyline
 
 
-def smooth_ways(ring: Line, walls: SolidCells) -> list[SmoothWay]:
+def smooth_ways(ring: Polyline, walls: SolidCells) -> list[SmoothWay]:
     """Return smooth ways along all stairs of a closed outline, in its order.
 
     ``ring`` is float64 [n, 2], its last point the first one, what fits on its left. Ways beside
@@ -72,7 +72,7 @@ def smooth_ways(ring: Line, walls: SolidCells) -> list[SmoothWay]:
 
 
 def _smooth_way(
-    ring: Line, nearest: Line, begin: int, end: int, walls: SolidCells
+    ring: Polyline, nearest: Floats, begin: int, end: int, walls: SolidCells
 ) -> SmoothWay | None:
     """Return a smooth way along what is nearest to the points before ``end``, or None."""
     is_corner = nearest[begin:end, 2] > 0.0
@@ -100,7 +100,7 @@ def _smooth_way(
 
 
 @allocating_entry
-def along_stairs(ring: Line) -> NDArray[np.bool_]:
+def along_stairs(ring: Polyline) -> NDArray[np.bool_]:
     """Return which points of a closed outline lie along a slanted wall, bool [n].
 
     ``ring`` is float64 [n, 2], its last point the first one. A slanted wall is straight for more
@@ -115,7 +115,7 @@ def along_stairs(ring: Line) -> NDArray[np.bool_]:
 
 
 @inner_part
-def _is_slanted(ring: Line, first: int) -> bool:
+def _is_slanted(ring: Polyline, first: int) -> bool:
     """Whether the window of points from ``first`` on lies along one slanted line."""
     is_straight, angle = line_along(ring, first, _WINDOW, _BAND)
     off_axis = abs(angle) % (0.5 * math.pi)
@@ -123,7 +123,9 @@ def _is_slanted(ring: Line, first: int) -> bool:
 
 
 @allocating_entry
-def _nearest_corners(ring: Line, wanted: NDArray[np.bool_], beside: Beside, far: float) -> Line:
+def _nearest_corners(
+    ring: Polyline, wanted: NDArray[np.bool_], beside: Beside, far: float
+) -> Floats:
     """Return what of the walls is nearest to the wanted points, float64 [n, 3].
 
     x and y, and 1 for a corner, 0 for a side; NaN for other points, and those from which no wall is
@@ -143,7 +145,7 @@ def _nearest_corners(ring: Line, wanted: NDArray[np.bool_], beside: Beside, far:
 
 
 @allocating_entry
-def _met(way: Line, beside: Beside, near: float) -> Line:
+def _met(way: Polyline, beside: Beside, near: float) -> Polyline:
     """Return where legs of a way come nearer than ``near`` cells to what is solid, float64 [n, 4].
 
     Each is x and y of the worst place of a leg, and of what is nearest to it there.
@@ -168,7 +170,7 @@ def _met(way: Line, beside: Beside, near: float) -> Line:
 
 
 @allocating_entry
-def _nearest_points(line: Line, places: Line) -> NDArray[np.int64]:
+def _nearest_points(line: Polyline, places: Floats) -> NDArray[np.int64]:
     """Return which point of a line is nearest to each of some places, rows of x, y and more."""
     found = np.zeros(len(places), np.int64)
     for place in range(len(places)):
@@ -182,7 +184,7 @@ def _nearest_points(line: Line, places: Line) -> NDArray[np.int64]:
     return found
 
 
-def _is_beside_things(points: Line, walls: SolidCells) -> bool:
+def _is_beside_things(points: Polyline, walls: SolidCells) -> bool:
     """Whether a way comes near to something round."""
     x, y, radius = walls.things.T[:, :, None]
     away = np.hypot(points[:, 0] - x, points[:, 1] - y) - radius
@@ -196,7 +198,7 @@ def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 
 @allocating_entry
-def _around(steps: Line, start: complex, end: complex, reach: float, radius: float) -> Line:
+def _around(steps: Floats, start: complex, end: complex, reach: float, radius: float) -> Polyline:
     """Return a smooth way around the corners of steps, float64 [k, 2], all of them on its right.
 
     It begins and ends beside the places ``start`` and ``end``, as all here complex: x + i y.
@@ -219,7 +221,7 @@ def _around(steps: Line, start: complex, end: complex, reach: float, radius: flo
 
 @inner_part
 def _keep_corners(
-    corners: Complexes, bends: Complexes, steps: Line, reach: float, radius: float
+    corners: Complexes, bends: Complexes, steps: Floats, reach: float, radius: float
 ) -> int:
     """Write the corners that a way around steps touches, and the middles of the bends between them.
 
@@ -255,7 +257,7 @@ def _middle(one: complex, other: complex, reach: float, radius: float) -> comple
 
 @inner_part
 def _write_arc(
-    points: Line, count: int, middle: complex, begin: complex, end: complex, radius: float
+    points: Polyline, count: int, middle: complex, begin: complex, end: complex, radius: float
 ) -> int:
     """Write the corners of sides that touch an arc, from one direction to the other.
 

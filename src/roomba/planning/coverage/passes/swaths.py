@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.arrays import Mask
+from roomba.arrays import Mask, Polyline
 from roomba.compilation import allocating_entry, inner_part
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import transposed
@@ -17,13 +17,11 @@ from roomba.planning.coverage.passes.directions import main_directions
 from roomba.planning.coverage.passes.turned_cells import TurnedCells, turned_mask
 from roomba.raster.growing import with_room
 
-Line = NDArray[np.float64]
-
 _OVERLAP = 0.4
 """cells, of two slanted swaths beside each other."""
 
 
-def swaths(left: Mask, middles: Mask, radius: float, config: CoverageConfig) -> list[Line]:
+def swaths(left: Mask, middles: Mask, radius: float, config: CoverageConfig) -> list[Polyline]:
     """Return lines, float64 [2, 2], that sweep the floor in ``left``, bool [rows, columns].
 
     The lines stay in ``middles``, bool of the same shape. Every cell of ``left`` must be so far
@@ -35,7 +33,7 @@ def swaths(left: Mask, middles: Mask, radius: float, config: CoverageConfig) -> 
     across = transposed(middles)
     directions = main_directions(middles)
     roomy = _roomy(middles) if directions else middles
-    lines: list[Line] = []
+    lines: list[Polyline] = []
     for region in np.flatnonzero(parts.sizes >= config.speck).tolist():
         mask = mask_of(parts, region)
         top, _, left_side, _ = parts.bounds[region].tolist()
@@ -77,7 +75,7 @@ def _slanted(
     radius: float,
     config: CoverageConfig,
     angle: float,
-) -> tuple[Line, float]:
+) -> tuple[Polyline, float]:
     """Return swaths along or across a direction, rad, and what they cost, as :func:`_along_rows`.
 
     The tool is a whole number of rows wide that are a little narrower than cells: seams cross
@@ -99,7 +97,7 @@ def _slanted(
 
 def _along_rows(
     region: Mask, floor: Mask, top: int, left: int, radius: float, config: CoverageConfig
-) -> tuple[Line, float]:
+) -> tuple[Polyline, float]:
     """Return swaths along rows that sweep a region, and what they cost, in cells of way.
 
     float64 [n, 2, 2]. The first cell of ``region`` is the one at (``top``, ``left``) of ``floor``.

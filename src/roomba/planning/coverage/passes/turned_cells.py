@@ -10,12 +10,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from roomba.arrays import Mask
+from roomba.arrays import Floats, Mask
 from roomba.compilation import allocating_entry
-
-Line = NDArray[np.float64]
 
 
 class TurnedCells(NamedTuple):
@@ -51,10 +48,10 @@ class TurnedCells(NamedTuple):
             math.ceil((float(along.max()) - left) / cell) + 1,
         )
 
-    def places(self, cells: Line) -> Line:
+    def places(self, cells: Floats) -> Floats:
         """Return the places of (column, row) of these cells, float64 [..., 2] both."""
         column, row = cells[..., 0], cells[..., 1]
-        places: Line = np.stack(
+        places: Floats = np.stack(
             (
                 self.x + column * self.step_x - row * self.step_y,
                 self.y + column * self.step_y + row * self.step_x,

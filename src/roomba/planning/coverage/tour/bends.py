@@ -12,11 +12,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.arrays import Mask
+from roomba.arrays import Floats, Mask, Polyline
 from roomba.compilation import inner_part, part
 from roomba.planning.coverage.passes.sweep import Counts, Legs
-
-Line = NDArray[np.float64]
 
 _SHARPEST: Final = 2.4
 """rad; sharper corners stay: a bend would begin far before them."""
@@ -42,13 +40,13 @@ class Rounded(NamedTuple):
     on, rad, a corner is sharp, and ``spare`` [1] how many more cells may be left.
     """
 
-    points: Line
+    points: Polyline
     size: NDArray[np.int64]
     counts: Counts
     need: Mask
     fits: Mask
-    old: Line
-    new: Line
+    old: Floats
+    new: Floats
     sizes: NDArray[np.int64]
     legs: Legs
     radius: float
@@ -63,7 +61,7 @@ def _turn(ax: float, ay: float, bx: float, by: float) -> float:
 
 
 @inner_part
-def turn_at(work: Rounded, line: Line, at: int) -> float:
+def turn_at(work: Rounded, line: Polyline, at: int) -> float:
     """Return how much the way turns at a point of the line, rad, from where it is written down."""
     before, here, after = work.points[work.size[0] - 1], line[at], line[at + 1]
     return _turn(here[0] - before[0], here[1] - before[1], after[0] - here[0], after[1] - here[1])
@@ -76,7 +74,7 @@ def is_sharp(work: Rounded, turn: float) -> bool:
 
 
 @inner_part
-def bend_both(work: Rounded, line: Line, at: int, farther: float) -> bool:
+def bend_both(work: Rounded, line: Polyline, at: int, farther: float) -> bool:
     """Lay out the old and the new way around two corners that turn to the same side.
 
     The ways before and behind them go on by ``farther``. False where there is no room for bends.
@@ -112,7 +110,7 @@ def bend_both(work: Rounded, line: Line, at: int, farther: float) -> bool:
 
 
 @inner_part
-def bend_one(work: Rounded, line: Line, at: int, bend: float) -> bool:
+def bend_one(work: Rounded, line: Polyline, at: int, bend: float) -> bool:
     """Lay out the old and the new way around a corner; False where a bend has no room.
 
     Half of the way to the next point is left to the corner there.

@@ -10,14 +10,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.arrays import Mask
+from roomba.arrays import Floats, Mask, Polyline
 from roomba.compilation import allocating_entry
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.tour.net import Net
 from roomba.planning.coverage.tour.ways import taut, way_between
 from roomba.planning.path.search.grid_path import shortest_grid_path
-
-Line = NDArray[np.float64]
 
 _SAME = 0.01
 """cells; points nearer to each other than this are one."""
@@ -27,7 +25,7 @@ _STRAIGHT = 0.02
 """cells; points as near as this to the straight way between their neighbours are left out."""
 
 
-def connected(net: Net, pieces: list[Line], start: Line, end: Line | None) -> Line:
+def connected(net: Net, pieces: list[Polyline], start: Floats, end: Floats | None) -> Polyline:
     """Return the line from ``start``, float64 [2], along the pieces, to ``end`` if there is one."""
     costs = np.full(net.links.size // 8, np.inf)
     parts = [start[None]]
@@ -40,9 +38,9 @@ def connected(net: Net, pieces: list[Line], start: Line, end: Line | None) -> Li
     return _without_needless(np.concatenate(parts))
 
 
-def _way(net: Net, costs: NDArray[np.float64], start: Line, goal: Line) -> Line:
+def _way(net: Net, costs: NDArray[np.float64], start: Floats, goal: Floats) -> Polyline:
     """Return the shortest way; over the cells themselves where the net is too coarse for it."""
-    way: Line = way_between(net, costs, start[0], start[1], goal[0], goal[1])
+    way: Polyline = way_between(net, costs, start[0], start[1], goal[0], goal[1])
     if len(way):
         return way
     column, row = _cell(net, start)
@@ -51,11 +49,11 @@ def _way(net: Net, costs: NDArray[np.float64], start: Line, goal: Line) -> Line:
     if found is None:
         raise ValueError(f"no way between the cells {start} and {goal}, which are connected")
     cells = found.corners[:, ::-1].astype(np.float64)
-    taut_way: Line = taut(net.fits, np.concatenate((start[None], cells, goal[None])))
+    taut_way: Polyline = taut(net.fits, np.concatenate((start[None], cells, goal[None])))
     return taut_way
 
 
-def _cell(net: Net, point: Line) -> tuple[int, int]:
+def _cell(net: Net, point: Floats) -> tuple[int, int]:
     """Return the (column, row) of the cell that fits nearest to a point on the floor."""
     around = [
         (int(np.floor(point[0])) + right, int(np.floor(point[1])) + up)
@@ -67,14 +65,14 @@ def _cell(net: Net, point: Line) -> tuple[int, int]:
     return min(fitting, key=lambda cell: float(np.hypot(*(np.array(cell) - point))))
 
 
-def tidy(fits: Mask, line: Line) -> Line:
+def tidy(fits: Mask, line: Polyline) -> Polyline:
     """Return the line without points that do not bend it, and without legs too short to drive."""
-    tidied: Line = _without_needless(_without_short(fits, line))
+    tidied: Polyline = _without_needless(_without_short(fits, line))
     return tidied
 
 
 @allocating_entry
-def _without_short(fits: Mask, line: Line) -> Line:
+def _without_short(fits: Mask, line: Polyline) -> Polyline:
     """Return the line without legs below ``_SHORT``, wherever the middle fits without them too."""
     points = line.copy()
     size = 1
@@ -94,7 +92,7 @@ def _without_short(fits: Mask, line: Line) -> Line:
 
 
 @allocating_entry
-def _without_needless(line: Line) -> Line:
+def _without_needless(line: Polyline) -> Polyline:
     """Return the line without points that do not bend it."""
     points = np.empty_like(line)
     points[0, 0], points[0, 1] = line[0, 0], line[0, 1]

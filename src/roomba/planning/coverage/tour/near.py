@@ -11,12 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.arrays import Ints32
+from roomba.arrays import Floats, Ints32
 from roomba.compilation import allocating_entry, allocating_part, inner_part
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.tour.net import STEP_X, STEP_Y, UNIT, Net, blocks_near, leg_to
-
-Line = NDArray[np.float64]
 
 _BUCKETS = 128
 _NEVER = np.int32(1 << 30)
@@ -34,7 +32,7 @@ class Places(NamedTuple):
     Those near block b, whose knot they see, are ``of_block[block_first[b]:block_first[b + 1]]``.
     """
 
-    at: Line
+    at: Floats
     block_first: Ints32
     of_block: Ints32
 
@@ -72,7 +70,7 @@ def search_over(net: Net) -> NearestSearch:
 
 
 @allocating_entry
-def places_over(net: Net, places: Line) -> Places:
+def places_over(net: Net, places: Floats) -> Places:
     """Return places, float64 [n, 2], with which of them are near each block."""
     near = np.empty((len(places), 9), np.int32)
     sizes = np.empty(len(places), np.int64)
@@ -258,7 +256,7 @@ def neighbours(
 
 
 @allocating_part
-def _squares(at: Line) -> tuple[int, Ints32, Ints32]:
+def _squares(at: Floats) -> tuple[int, Ints32, Ints32]:
     """Return how many squares there are in a row, and which places lie in each, as of blocks."""
     columns, rows = 1, 1
     for place in range(len(at)):
@@ -281,7 +279,7 @@ def _squares(at: Line) -> tuple[int, Ints32, Ints32]:
 
 @inner_part
 def _as_the_crow_flies(
-    at: Line,
+    at: Floats,
     columns: int,
     first: Ints32,
     inside: Ints32,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.arrays import Mask
+from roomba.arrays import Floats, Mask, Polyline
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.tour.costs import Costs, costs_of, note_pair
 from roomba.planning.coverage.tour.guesses import guesses_measured
@@ -20,8 +20,6 @@ from roomba.planning.coverage.tour.near import (
 from roomba.planning.coverage.tour.net import Net
 from roomba.planning.coverage.tour.tour import greedy_links, iterated_local_search
 
-Line = NDArray[np.float64]
-
 _NEAREST = 20
 _NEAR = 300.0
 """cells; connections longer than this are only made where there is no other."""
@@ -31,8 +29,8 @@ _MOST_SEARCHES = 6
 
 
 def ordered(
-    net: Net, pieces: list[Line], start: Line, end: Line | None, config: CoverageConfig
-) -> list[Line]:
+    net: Net, pieces: list[Polyline], start: Floats, end: Floats | None, config: CoverageConfig
+) -> list[Polyline]:
     """Return the pieces in a good order from ``start`` to ``end``, float64 [2], turned as driven.
 
     Without an ``end`` the last piece may be anywhere.
@@ -58,7 +56,7 @@ def ordered(
     ]
 
 
-def _headings(lines: list[Line]) -> NDArray[np.float64]:
+def _headings(lines: list[Polyline]) -> NDArray[np.float64]:
     """Return where each end leads out of its piece, rad [ends]; not a number for a point."""
     outward = np.concatenate([line[[0, -1]] - line[[1, -2]] for line in lines])
     headings = np.arctan2(outward[:, 1], outward[:, 0])

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.arrays import Mask
+from roomba.arrays import Mask, Polyline
 from roomba.compilation import allocating_entry, inner_part, part
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import way_fits
@@ -26,8 +26,6 @@ from roomba.planning.coverage.passes.sweep import (
     set_leg,
     sweep,
 )
-
-Line = NDArray[np.float64]
 
 _LEG = 24.0
 """cells; longer legs are cut, so that a change concerns little floor."""
@@ -48,7 +46,7 @@ class Bent(NamedTuple):
     ``legs`` those that the change at hand concerns.
     """
 
-    points: Line
+    points: Polyline
     before: NDArray[np.int64]
     after: NDArray[np.int64]
     on_way: Mask
@@ -59,7 +57,9 @@ class Bent(NamedTuple):
     legs: Legs
 
 
-def polished(line: Line, need: Mask, fits: Mask, radius: float, config: CoverageConfig) -> Line:
+def polished(
+    line: Polyline, need: Mask, fits: Mask, radius: float, config: CoverageConfig
+) -> Polyline:
     """Return the line changed to cost less, with the same ends.
 
     Its cost is its length, ``config.polish_turning`` for each radian and ``config.unswept`` for
@@ -89,7 +89,9 @@ def polished(line: Line, need: Mask, fits: Mask, radius: float, config: Coverage
 
 
 @part
-def _turn(points: Line, one: int, two: int, three: int, moved: int, x: float, y: float) -> float:
+def _turn(
+    points: Polyline, one: int, two: int, three: int, moved: int, x: float, y: float
+) -> float:
     """Return how much the way turns at the second of three points, where ``moved`` is at (x, y)."""
     if one < 0 or three < 0:
         return 0.0

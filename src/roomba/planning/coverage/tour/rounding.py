@@ -14,9 +14,8 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from roomba.arrays import Mask
+from roomba.arrays import Floats, Mask, Polyline
 from roomba.compilation import allocating_entry, inner_part, part
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.floor.masks import grown, half_widths, way_fits
@@ -39,8 +38,6 @@ from roomba.planning.coverage.tour.bends import (
 )
 from roomba.planning.coverage.tour.connection import tidy
 
-Line = NDArray[np.float64]
-
 _FARTHER: Final = 0.2
 """Widest radii; in such steps it is tried how much farther swaths go on, ..."""
 _STEPS: Final = 5
@@ -53,8 +50,8 @@ touch takes more time than a stop."""
 
 
 def rounded(
-    line: Line, need: Mask, fits: Mask, radius: float, sharp: float, config: CoverageConfig
-) -> Line:
+    line: Polyline, need: Mask, fits: Mask, radius: float, sharp: float, config: CoverageConfig
+) -> Polyline:
     """Return the line with bends in place of sharp corners, with the same ends.
 
     ``need`` and ``fits`` are bool [rows, columns], ``radius`` is half the tool's width, cells, and
@@ -88,7 +85,7 @@ def rounded(
 
 
 @allocating_entry
-def _round(work: Rounded, line: Line, unswept: float, worth: float) -> None:
+def _round(work: Rounded, line: Polyline, unswept: float, worth: float) -> None:
     """Go along the line, corner by corner, and write it down with bends."""
     sweep(work.counts, line, work.radius)
     last = len(line) - 1
@@ -106,14 +103,14 @@ def _round(work: Rounded, line: Line, unswept: float, worth: float) -> None:
 
 
 @part
-def _write(work: Rounded, place: Line) -> None:
+def _write(work: Rounded, place: Floats) -> None:
     size = work.size[0]
     work.points[size, 0], work.points[size, 1] = place[0], place[1]
     work.size[0] = size + 1
 
 
 @inner_part
-def _try_both(work: Rounded, line: Line, at: int, unswept: float, worth: float) -> bool:
+def _try_both(work: Rounded, line: Polyline, at: int, unswept: float, worth: float) -> bool:
     """Put bends in place of a corner and the next one, and tell whether it was done.
 
     The ways before and behind them go on farther, by what costs least.
@@ -133,7 +130,7 @@ def _try_both(work: Rounded, line: Line, at: int, unswept: float, worth: float) 
 
 
 @inner_part
-def _try_one(work: Rounded, line: Line, at: int, unswept: float, worth: float) -> bool:
+def _try_one(work: Rounded, line: Polyline, at: int, unswept: float, worth: float) -> bool:
     """Put a bend in place of a corner, the widest that is worth it; tell whether it was done."""
     bend = work.radius
     for _ in range(RADII):
@@ -156,7 +153,7 @@ def _cost(work: Rounded, unswept: float, most: float) -> float:
 
 
 @part
-def _length(way: Line, size: int) -> float:
+def _length(way: Polyline, size: int) -> float:
     length = 0.0
     for leg in range(size - 1):
         length += math.hypot(way[leg + 1, 0] - way[leg, 0], way[leg + 1, 1] - way[leg, 1])

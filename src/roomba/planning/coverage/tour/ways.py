@@ -11,19 +11,17 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.arrays import Mask
+from roomba.arrays import Mask, Polyline
 from roomba.compilation import allocating_entry, allocating_part, inner_part
 from roomba.planning.coverage.floor.masks import way_fits
 from roomba.planning.coverage.tour.net import STEP_X, STEP_Y, Net, blocks_near, leg_to
 from roomba.planning.path.search.heap_kernels import heap_pop, heap_push
 
-Line = NDArray[np.float64]
-
 
 @allocating_entry
 def way_between(
     net: Net, costs: NDArray[np.float64], x: float, y: float, to_x: float, to_y: float
-) -> Line:
+) -> Polyline:
     """Return the shortest way over the net from one place to another, pulled straight.
 
     float64 [n, 2] with both ends; empty when there is none. ``costs`` is float64 [blocks], all
@@ -96,7 +94,7 @@ def _search(
 @allocating_part
 def _knots_to(
     net: Net, before: dict[int, int], last: int, x: float, y: float, to_x: float, to_y: float
-) -> Line:
+) -> Polyline:
     """Return a way over the knots of the blocks before the last one, with both its ends."""
     columns = net.links.shape[1]
     count = 2
@@ -116,7 +114,7 @@ def _knots_to(
 
 
 @allocating_entry
-def taut(fits: Mask, way: Line) -> Line:
+def taut(fits: Mask, way: Polyline) -> Polyline:
     """Return a way pulled straight: bends are cut short and moved until none can be."""
     line = _shortcut(fits, way)
     for _ in range(4):
@@ -138,7 +136,7 @@ def taut(fits: Mask, way: Line) -> Line:
 
 
 @inner_part
-def _length(line: Line) -> float:
+def _length(line: Polyline) -> float:
     length = 0.0
     for at in range(1, len(line)):
         length += math.hypot(line[at, 0] - line[at - 1, 0], line[at, 1] - line[at - 1, 1])
@@ -146,7 +144,7 @@ def _length(line: Line) -> float:
 
 
 @inner_part
-def _pull(fits: Mask, line: Line, at: int) -> None:
+def _pull(fits: Mask, line: Polyline, at: int) -> None:
     """Move a bend towards the straight way between its neighbours as far as the legs fit."""
     x, y = line[at - 1]
     to_x, to_y = line[at + 1]
@@ -167,7 +165,7 @@ def _pull(fits: Mask, line: Line, at: int) -> None:
 
 
 @allocating_part
-def _shortcut(fits: Mask, way: Line) -> Line:
+def _shortcut(fits: Mask, way: Polyline) -> Polyline:
     """Return the way without the bends that can be left out, farthest view first."""
     line = np.empty_like(way)
     line[0, 0], line[0, 1] = way[0, 0], way[0, 1]

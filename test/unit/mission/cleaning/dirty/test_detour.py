@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from roomba.geometry import Point
 from roomba.mission.cleaning.dirty.detour import nearest_station, with_detour
 from roomba.planning.coverage.plan import CoveragePlan
-from roomba.planning.path.costmap import Point
 from roomba.planning.path.planner import NoPathError, NoPathReason
 from roomba.planning.path.polyline import Path
 

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roomba.perception.slam.mirrors.cutting import Points, cut_at
+from roomba.arrays import Floats32
+from roomba.perception.slam.mirrors.cutting import cut_at
 
 MIRROR = np.array([[[2.0, -0.5], [2.0, 0.5]]])
 """1 m of it, 2 m ahead of (0, 0)."""
@@ -19,7 +20,7 @@ NO_WAYS = np.zeros((0, 2), np.float32)
 places, headings = st.floats(-5.0, 5.0), st.floats(-math.pi, math.pi)
 
 
-def point(x: float, y: float) -> Points:
+def point(x: float, y: float) -> Floats32:
     return np.array([[x, y, -1.0, 0.0]], np.float32)
 
 

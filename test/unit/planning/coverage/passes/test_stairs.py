@@ -11,6 +11,7 @@ from fixtures.thoroughness import core_first
 from numpy.typing import NDArray
 
 from roomba.angles import wrap_angles
+from roomba.arrays import Floats, Polyline
 from roomba.planning.coverage.floor.masks import grown, half_widths
 from roomba.planning.coverage.passes.contours import outlines
 from roomba.planning.coverage.passes.edges import rings, turning_of
@@ -18,7 +19,6 @@ from roomba.planning.coverage.passes.solid_cells import SolidCells
 from roomba.planning.coverage.passes.stairs import along_stairs, smooth_ways
 
 Mask = NDArray[np.bool_]
-Line = NDArray[np.float64]
 
 PARTS = 5
 """Fine cells to a side of the map's cells, as in a map of 5 cm."""
@@ -46,24 +46,24 @@ def fitting(solid: Mask) -> Mask:
     return fits
 
 
-def walls(solid: Mask, things: Line = NOTHING) -> SolidCells:
+def walls(solid: Mask, things: Floats = NOTHING) -> SolidCells:
     return SolidCells(solid, 0, 0, REACH, things)
 
 
-def ring_of(fits: Mask) -> Line:
+def ring_of(fits: Mask) -> Polyline:
     (chain,) = outlines(fits)
-    ring: Line = np.concatenate((chain, chain[:1])).astype(np.float64)
+    ring: Polyline = np.concatenate((chain, chain[:1])).astype(np.float64)
     return ring
 
 
-def room(solid: Mask, line: Line) -> float:
+def room(solid: Mask, line: Polyline) -> float:
     """How near a line comes to what is solid, and to the outside, cells."""
     rows, columns = np.nonzero(solid)
     squares = shapely.union_all(shapely.box(columns - 0.5, rows - 0.5, columns + 0.5, rows + 0.5))
     return float(shapely.distance(shapely.LineString(line), squares))
 
 
-def largest_turn(line: Line) -> float:
+def largest_turn(line: Polyline) -> float:
     ways = np.diff(line, axis=0)
     return float(np.abs(wrap_angles(np.diff(np.arctan2(ways[:, 1], ways[:, 0])))).max())
 

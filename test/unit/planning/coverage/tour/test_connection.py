@@ -11,7 +11,6 @@ import pytest
 import shapely
 from fixtures.references.drawn_ways import one_part_of, without_boxes
 from fixtures.references.straight_ways import (
-    Line,
     Mask,
     crosses_between_centres_that_fit,
     length_of,
@@ -21,6 +20,7 @@ from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from roomba.arrays import Floats
 from roomba.planning.coverage.tour.connection import connected, tidy
 from roomba.planning.coverage.tour.net import net_over
 
@@ -38,7 +38,7 @@ def floors(draw: st.DrawFn) -> Mask:
     return one_part_of(fits)
 
 
-def length_over_cells(fits: Mask, start: Line, goal: Line) -> float:
+def length_over_cells(fits: Mask, start: Floats, goal: Floats) -> float:
     """The shortest way of steps to eight neighbours that cut no closed corner."""
     first, last = ((int(y), int(x)) for x, y in (start, goal))
     heap = [(0.0, first)]

@@ -7,11 +7,12 @@ from itertools import pairwise, permutations, product
 
 import numpy as np
 import pytest
-from fixtures.references.straight_ways import Line, Mask, connected_to, turning_of
+from fixtures.references.straight_ways import Mask, connected_to, turning_of
 from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from roomba.arrays import Floats, Polyline
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.tour.net import net_over
 from roomba.planning.coverage.tour.order import ordered
@@ -19,7 +20,7 @@ from roomba.planning.coverage.tour.order import ordered
 TURNING = 6.0
 
 
-def cost(start: Line, pieces: list[Line], end: Line | None) -> float:
+def cost(start: Floats, pieces: list[Polyline], end: Floats | None) -> float:
     """Of the connections on open floor: straight, and the turns at their ends."""
     stops = [start[None], *pieces] if end is None else [start[None], *pieces, end[None]]
     total = 0.0
@@ -30,7 +31,7 @@ def cost(start: Line, pieces: list[Line], end: Line | None) -> float:
 
 
 @st.composite
-def few_pieces(draw: st.DrawFn) -> tuple[list[Line], Line, Line | None]:
+def few_pieces(draw: st.DrawFn) -> tuple[list[Polyline], Polyline, Polyline | None]:
     """Up to five straight pieces on open floor, where the way begins, and where it ends."""
     random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     pieces = [random.integers(2, 200, (2, 2)).astype(float) for _ in range(draw(st.integers(1, 5)))]
@@ -42,7 +43,7 @@ def few_pieces(draw: st.DrawFn) -> tuple[list[Line], Line, Line | None]:
 @given(few_pieces())
 @settings(max_examples=examples(40))
 def test_few_pieces_are_ordered_hardly_worse_than_in_the_best_of_all_orders(
-    drawn: tuple[list[Line], Line, Line | None],
+    drawn: tuple[list[Polyline], Polyline, Polyline | None],
 ) -> None:
     pieces, start, end = drawn
     net = net_over(np.ones((204, 204), np.bool_))
@@ -57,7 +58,7 @@ def test_few_pieces_are_ordered_hardly_worse_than_in_the_best_of_all_orders(
     assert best - 0.1 <= cost(start, found, end) <= 1.25 * best + 0.1
 
 
-def names(pieces: list[Line]) -> list[list[list[float]]]:
+def names(pieces: list[Polyline]) -> list[list[list[float]]]:
     """Pieces, whichever way round and in whichever order."""
     return sorted(min(piece.tolist(), piece[::-1].tolist()) for piece in pieces)
 

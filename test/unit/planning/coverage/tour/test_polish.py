@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from fixtures.references.drawn_ways import ways
 from fixtures.references.straight_ways import (
-    Line,
     Mask,
     crosses_between_centres_that_fit,
     length_of,
@@ -16,6 +15,7 @@ from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from roomba.arrays import Polyline
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.tour.polish import polished
 
@@ -24,7 +24,7 @@ SPARE = 0.002
 """Share of the needed floor that may be left, as in the stage."""
 
 
-def left(line: Line, need: Mask) -> int:
+def left(line: Polyline, need: Mask) -> int:
     """How many of the needed cells the line does not sweep."""
     return int((need & ~swept_cells(need.shape, [line], RADIUS)).sum())
 
@@ -33,14 +33,14 @@ def weights(turning: float, unswept: float = FLOOR) -> CoverageConfig:
     return CoverageConfig(polish_turning=turning, unswept=unswept, spare=SPARE)
 
 
-def cost(line: Line, need: Mask, turning: float) -> float:
+def cost(line: Polyline, need: Mask, turning: float) -> float:
     return length_of(line) + turning * turning_of(line) + FLOOR * left(line, need)
 
 
 @given(ways(), st.sampled_from([0.0, TURNING, 100.0]))
 @settings(max_examples=examples(80))
 def test_a_polished_way_costs_no_more_is_no_longer_and_leaves_hardly_more_floor(
-    drawn: tuple[Mask, Line, Mask], turning: float
+    drawn: tuple[Mask, Polyline, Mask], turning: float
 ) -> None:
     fits, line, need = drawn
     found = polished(line.copy(), need, fits, RADIUS, weights(turning))

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from fixtures.references.drawn_ways import ways
 from fixtures.references.straight_ways import (
-    Line,
     Mask,
     crosses_between_centres_that_fit,
     length_of,
@@ -18,6 +17,7 @@ from fixtures.thoroughness import examples
 from hypothesis import given, settings
 
 from roomba.angles import wrap_angles
+from roomba.arrays import Floats, Polyline
 from roomba.configuration.coverage import CoverageConfig
 from roomba.planning.coverage.tour.rounding import rounded
 
@@ -29,24 +29,24 @@ SHARP = 0.5
 """rad; sharper corners become bends."""
 
 
-def turns(line: Line) -> Line:
+def turns(line: Polyline) -> Floats:
     ways = np.diff(line, axis=0)
-    found: Line = np.abs(wrap_angles(np.diff(np.arctan2(ways[:, 1], ways[:, 0]))))
+    found: Floats = np.abs(wrap_angles(np.diff(np.arctan2(ways[:, 1], ways[:, 0]))))
     return found
 
 
-def sharp(line: Line) -> int:
+def sharp(line: Polyline) -> int:
     return int((turns(line) > SHARP).sum())
 
 
-def left(line: Line, need: Mask) -> int:
+def left(line: Polyline, need: Mask) -> int:
     return int((need & ~swept_cells(need.shape, [line], RADIUS)).sum())
 
 
 @given(ways())
 @settings(max_examples=examples(80))
 def test_each_corner_that_goes_costs_no_more_than_it_is_worth(
-    drawn: tuple[Mask, Line, Mask],
+    drawn: tuple[Mask, Polyline, Mask],
 ) -> None:
     fits, line, need = drawn
     found = rounded(line.copy(), need, fits, RADIUS, SHARP, CONFIG)
@@ -104,7 +104,7 @@ def test_from_one_swath_to_the_next_it_is_a_half_circle_that_leaves_hardly_anyth
     assert left(found, need) < left(within, need)
 
 
-def _half_circle(x: float, y: float) -> Line:
+def _half_circle(x: float, y: float) -> Polyline:
     angles = np.linspace(math.pi, 0.0, 30)
     return np.column_stack((x + RADIUS * np.cos(angles), y + RADIUS * np.sin(angles)))
 

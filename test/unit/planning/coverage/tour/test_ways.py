@@ -7,7 +7,6 @@ import math
 
 import numpy as np
 from fixtures.references.straight_ways import (
-    Line,
     Mask,
     connected_to,
     crosses_between_centres_that_fit,
@@ -18,10 +17,10 @@ from fixtures.thoroughness import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from roomba.arrays import Polyline
+from roomba.geometry import Point
 from roomba.planning.coverage.tour.net import STEP_X, STEP_Y, Net, net_over
 from roomba.planning.coverage.tour.ways import taut, way_between
-
-Point = tuple[float, float]
 
 
 @st.composite
@@ -95,7 +94,7 @@ def test_a_way_fits_and_is_no_longer_than_over_the_net(drawn: tuple[Mask, list[P
     )
 
 
-def walk(fits: Mask, seed: int) -> Line:
+def walk(fits: Mask, seed: int) -> Polyline:
     """A way of single steps over cells that fit, to and fro as it comes."""
     random = np.random.default_rng(seed)
     cells = np.argwhere(fits)

@@ -11,13 +11,12 @@ from fixtures.thoroughness import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from roomba.geometry import Point
 from roomba.world.engine.lidar.face_kernels import mirrored, ray_to_faces, way_to_face
 from roomba.world.engine.state.arrays import FACE, Row, Rows
 
 place = st.tuples(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))
 angles = st.floats(-math.pi, math.pi)
-
-Point = tuple[float, float]
 
 
 def faces_between(*ends: tuple[Point, Point]) -> Rows:

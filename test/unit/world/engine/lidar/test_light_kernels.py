@@ -23,7 +23,7 @@ from roomba.configuration.simulation import (
     SimulatedSurroundings,
     SimulationConfig,
 )
-from roomba.geometry import Pose, Twist
+from roomba.geometry import Point, Pose, Twist
 from roomba.world.home.home import Home
 from roomba.world.home.surface import surface_of
 from roomba.world.simulator import Simulator
@@ -32,7 +32,6 @@ NEATO = SimulatedRobotConfig().with_lidar("neato")
 NEATO_IDEAL = NEATO.with_sensors("ideal")
 RADIUS = IDEAL.body.radius
 BLOCKS = ((1.0, 1.0, 1.3, 1.2),)
-Point = tuple[float, float]
 
 
 def quiet(config: SimulatedRobotConfig, **surroundings: float) -> SimulatedRobotConfig:
