@@ -75,13 +75,13 @@ class LiveHousehold:
         zone = local_zone()
         self._plans = PlanKeeper(
             robot,
-            KeptValues(folder / "plans.json", tell),
-            KeptValues(folder / "agenda.json", tell),
-            config.plans,
-            now,
-            zone.name,
-            DirtKeeper(KeptValues(folder / "dirt.json", tell), config.due),
-            KeptValues(folder / "rooms.json", tell),
+            plans=KeptValues(folder / "plans.json", tell),
+            memory=KeptValues(folder / "agenda.json", tell),
+            config=config.plans,
+            now=now,
+            zone=zone.name,
+            dirt=DirtKeeper(KeptValues(folder / "dirt.json", tell), config.due),
+            rooms=KeptValues(folder / "rooms.json", tell),
         )
         if zone.doubt and self.plans().household.zone == zone.name:
             tell(f"{zone.doubt}: plans go by the hours of {zone.name}; set the zone on the page")

@@ -42,6 +42,7 @@ class PlanKeeper:
     def __init__(
         self,
         robot: ObservedRobot,
+        *,
         plans: KeptValues,
         memory: KeptValues,
         config: PlansConfig,

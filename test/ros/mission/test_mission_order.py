@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from _typeshed import TraceFunction
 
 CONFIG, MISSION_CONFIG = RobotConfig(), MissionConfig()
-SITE = PlanningContext(HOME.map, HOME.station, CONFIG, MISSION_CONFIG, DockingConfig())
+CONTEXT = PlanningContext(HOME.map, HOME.station, CONFIG, MISSION_CONFIG, DockingConfig())
 AWAY = Senses(0.0, Pose(1.0, 0.6, 0.0))
 TELLS = {
     "state.publish": "state",
@@ -77,7 +77,7 @@ class Rig:
         self.senses = AWAY
         self.world = MagicMock()
         self.mission = Mission(
-            SITE,
+            CONTEXT,
             CONFIG,
             MISSION_CONFIG,
             DockingConfig(),

@@ -24,7 +24,7 @@ from roomba.mission.phases.machine import Errand, MissionState
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.vocabulary import NO_REASON, EdgeReason, Hindrance, OpenEdge, Phase, Reason
 
-SITE = PlanningContext(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
+CONTEXT = PlanningContext(HOME.map, HOME.station, RobotConfig(), MissionConfig(), DockingConfig())
 SENSES = Senses(100.0, Pose(1.0, 0.6, 0.0))
 CLEANING = MissionState(Phase.CLEANING, Errand.CLEAN)
 
@@ -34,7 +34,7 @@ EDGE = OpenEdge(2.0, 1.0, -3.0, EdgeReason.NO_ECHO)
 
 
 def begin(request: CleanRequest) -> Cleaning:
-    return Cleaning(request, SITE, DirtMap(HOME.map), MissionConfig().cleaning, SENSES.pose)
+    return Cleaning(request, CONTEXT, DirtMap(HOME.map), MissionConfig().cleaning, SENSES.pose)
 
 
 def job() -> Job:

@@ -30,7 +30,7 @@ from roomba.perception.things.layer import ThingLayer
 from roomba.vocabulary import Phase
 
 CONFIG = RobotConfig()
-SITE = PlanningContext(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
+CONTEXT = PlanningContext(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
 FIELD = SurfaceField.of(HOME.map)
 HERE = Pose(1.0, 0.6, 0.0)
 AWAY = Senses(0.0, HERE)
@@ -43,7 +43,7 @@ class Rig(ToldMission):
     def __init__(self, senses: Senses = AWAY) -> None:
         super().__init__(
             Mission(
-                SITE,
+                CONTEXT,
                 CONFIG,
                 MissionConfig(),
                 DockingConfig(),
@@ -122,7 +122,7 @@ def test_speeds_that_the_robot_cannot_do_are_refused() -> None:
     fast = MissionConfig(driving=DrivingConfig(speed=0.8))
     parts = ThingLayer(FIELD), DirtMap(HOME.map)
     with pytest.raises(ConfigError, match=r"driving\.speed: expected at most 0\.5 m/s"):
-        Mission(SITE, CONFIG, fast, DockingConfig(), *parts, AWAY)
+        Mission(CONTEXT, CONFIG, fast, DockingConfig(), *parts, AWAY)
 
 
 def test_knowing_its_place_only_roughly_it_drives_slowly() -> None:

@@ -16,7 +16,7 @@ from roomba.mission.cleaning.result import Missed, MissReason
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_map import patches_of
 
-SITE = PlanningContext(
+CONTEXT = PlanningContext(
     TWO_ROOMS.map, TWO_ROOMS.station, RobotConfig(), MissionConfig(), DockingConfig(), two_rooms()
 )
 FENCE: list[RoundObstacle] = [(WALL_X + 0.05, float(y), 0.05) for y in np.arange(0.85, 1.6, 0.1)]
@@ -25,18 +25,18 @@ IN_THE_HALL: RoundObstacle = (0.9, 2.0, 0.05)
 
 
 def den() -> NDArray[np.bool_]:
-    floor: NDArray[np.bool_] = SITE.coverable() & SITE.in_room(DEN)
+    floor: NDArray[np.bool_] = CONTEXT.coverable() & CONTEXT.in_room(DEN)
     # Without the doorway, where the fence stands.
-    floor[:, : SITE.frame.cell_of(WALL_X + 0.4, 0.0)[1]] = False
+    floor[:, : CONTEXT.frame.cell_of(WALL_X + 0.4, 0.0)[1]] = False
     return floor
 
 
 def reason(
     obstacles: list[RoundObstacle], edges: list[RoundObstacle], *, is_over: bool = True
 ) -> MissReason:
-    (missed,) = missed_floor(den(), 0.01, SITE, obstacles, edges, is_over=is_over)
+    (missed,) = missed_floor(den(), 0.01, CONTEXT, obstacles, edges, is_over=is_over)
     assert missed.room == DEN
-    assert missed.area == pytest.approx(np.count_nonzero(den()) * SITE.frame.resolution**2)
+    assert missed.area == pytest.approx(np.count_nonzero(den()) * CONTEXT.frame.resolution**2)
     return missed.reason
 
 
@@ -57,39 +57,40 @@ def test_what_can_be_reached_is_left_over_or_was_not_its_turn() -> None:
 
 
 def test_a_strip_of_single_cells_along_a_swath_is_no_place_that_was_missed() -> None:
-    row, column = SITE.frame.cell_of(0.9, 1.0)
-    left = np.zeros(SITE.frame.shape, np.bool_)
+    row, column = CONTEXT.frame.cell_of(0.9, 1.0)
+    left = np.zeros(CONTEXT.frame.shape, np.bool_)
     left[row, column : column + 60] = True
     left[row : row + 60, column] = True
-    assert missed_floor(left, 0.004, SITE, [], [], is_over=True) == ()
+    assert missed_floor(left, 0.004, CONTEXT, [], [], is_over=True) == ()
     left[row + 1, column + 30 : column + 32] = True
-    (missed,) = missed_floor(left, 0.004, SITE, [], [], is_over=True)
-    assert missed.area == pytest.approx(np.count_nonzero(left) * SITE.frame.resolution**2)
+    (missed,) = missed_floor(left, 0.004, CONTEXT, [], [], is_over=True)
+    assert missed.area == pytest.approx(np.count_nonzero(left) * CONTEXT.frame.resolution**2)
 
 
 def test_next_to_a_thing_it_is_that_thing_and_next_to_an_edge_the_floor_ends() -> None:
     x, y, _ = IN_THE_HALL
-    rows, columns = np.indices(SITE.frame.shape)
-    row, column = SITE.frame.cell_of(x, y)
-    near = np.hypot(rows - row, columns - column) * SITE.frame.resolution < 0.08
-    assert is_hidden(patches_of(near, SITE.frame, 0.0)[0], SITE, [IN_THE_HALL])
+    rows, columns = np.indices(CONTEXT.frame.shape)
+    row, column = CONTEXT.frame.cell_of(x, y)
+    near = np.hypot(rows - row, columns - column) * CONTEXT.frame.resolution < 0.08
+    assert is_hidden(patches_of(near, CONTEXT.frame, 0.0)[0], CONTEXT, [IN_THE_HALL])
     for edges, expected in (([], MissReason.THING), ([IN_THE_HALL], MissReason.EDGE)):
-        (missed,) = missed_floor(near, 0.01, SITE, [IN_THE_HALL], edges, is_over=True)
+        (missed,) = missed_floor(near, 0.01, CONTEXT, [IN_THE_HALL], edges, is_over=True)
         assert missed.reason is expected
 
 
 def test_only_patches_that_are_large_enough_are_told_the_largest_first() -> None:
-    left = np.zeros(SITE.frame.shape, np.bool_)
+    left = np.zeros(CONTEXT.frame.shape, np.bool_)
     for x, size in ((0.6, 2), (1.0, 12), (1.4, 20)):
-        row, column = SITE.frame.cell_of(x, 1.0)
+        row, column = CONTEXT.frame.cell_of(x, 1.0)
         left[row : row + size, column : column + size] = True
-    areas = [each.area for each in missed_floor(left, 0.01, SITE, [], [], is_over=True)]
+    areas = [each.area for each in missed_floor(left, 0.01, CONTEXT, [], [], is_over=True)]
     assert areas == pytest.approx([0.04, 0.0144])
 
 
 def test_all_clean_there_is_nothing_to_tell() -> None:
     assert (
-        missed_floor(np.zeros(SITE.frame.shape, np.bool_), 0.01, SITE, [], [], is_over=True) == ()
+        missed_floor(np.zeros(CONTEXT.frame.shape, np.bool_), 0.01, CONTEXT, [], [], is_over=True)
+        == ()
     )
     assert what_is_not_clean(4.0, 0.0, ()) == ""
 
@@ -140,20 +141,20 @@ def test_of_a_home_without_rooms_patches_have_no_room() -> None:
 
 
 def test_floor_missed_in_two_rooms_is_told_of_each() -> None:
-    floor = SITE.coverable()
-    told = missed_floor(floor, 0.01, SITE, [], [], is_over=False)
+    floor = CONTEXT.coverable()
+    told = missed_floor(floor, 0.01, CONTEXT, [], [], is_over=False)
     area = {room: sum(each.area for each in told if each.room == room) for room in (HALL, DEN)}
     for room in (HALL, DEN):
-        cells = np.count_nonzero(floor & SITE.in_room(room))
-        assert area[room] == pytest.approx(cells * SITE.frame.resolution**2)
+        cells = np.count_nonzero(floor & CONTEXT.in_room(room))
+        assert area[room] == pytest.approx(cells * CONTEXT.frame.resolution**2)
     assert [each.area for each in told] == sorted((each.area for each in told), reverse=True)
 
 
 def test_a_small_patch_in_a_doorway_is_told_once() -> None:
-    rooms = SITE.fine(SITE.rooms.labels) if SITE.rooms is not None else np.zeros(0)
-    border = int(np.argmax(rooms[SITE.frame.cell_of(0.0, 1.2)[0]] != rooms[0, 40]))
-    left = np.zeros(SITE.frame.shape, np.bool_)
-    row = SITE.frame.cell_of(0.0, 1.2)[0]
+    rooms = CONTEXT.fine(CONTEXT.rooms.labels) if CONTEXT.rooms is not None else np.zeros(0)
+    border = int(np.argmax(rooms[CONTEXT.frame.cell_of(0.0, 1.2)[0]] != rooms[0, 40]))
+    left = np.zeros(CONTEXT.frame.shape, np.bool_)
+    row = CONTEXT.frame.cell_of(0.0, 1.2)[0]
     left[row : row + 10, border - 5 : border + 5] = True
-    (missed,) = missed_floor(left, 0.008, SITE, [], [], is_over=True)
+    (missed,) = missed_floor(left, 0.008, CONTEXT, [], [], is_over=True)
     assert missed.area == pytest.approx(0.01)

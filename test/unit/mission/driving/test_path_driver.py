@@ -26,7 +26,7 @@ from roomba.perception.things.layer import ThingLayer
 CONFIG = RobotConfig()
 DRIVING = MissionConfig().driving
 BODY = CONFIG.body.radius
-SITE = PlanningContext(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
+CONTEXT = PlanningContext(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
 LIMIT = 0.3
 STRAIGHT = np.array([(0.6, 0.5), (2.6, 0.5)])
 HERE = Pose(0.6, 0.5, 0.0)
@@ -55,7 +55,7 @@ class Rig:
         self.obstacles = Obstacles(self.layer, CONFIG.walk, CONFIG.body, DRIVING)
         self.driver = PathDriver(
             points,
-            Rejoin(SITE, BODY, DRIVING),
+            Rejoin(CONTEXT, BODY, DRIVING),
             self.obstacles,
             Trail(),
             DRIVING,

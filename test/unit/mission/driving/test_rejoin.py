@@ -26,7 +26,7 @@ from roomba.planning.path.planner import NoPathError
 CONFIG = RobotConfig()
 BODY = CONFIG.body.radius
 DRIVING = MissionConfig().driving
-SITE = PlanningContext(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
+CONTEXT = PlanningContext(HOME.map, HOME.station, CONFIG, MissionConfig(), DockingConfig())
 PATH = np.array([(0.6, 0.5), (2.6, 0.5), (2.6, 2.0)])
 
 
@@ -49,7 +49,7 @@ def way(
 ) -> tuple[NDArray[np.float64] | None, float, Rejoin]:
     tracker = PathTracker(PATH, CONFIG.tracking, CONFIG.body, CONFIG.timing.tick)
     tracker.tick(Pose(0.9, 0.5, 0.0), 0.3)
-    rejoin = Rejoin(SITE, BODY, DRIVING)
+    rejoin = Rejoin(CONTEXT, BODY, DRIVING)
     points, back = rejoin.way(Senses(0.0, pose), tracker, Standing(*things), trail or Trail())
     return points, back, rejoin
 
@@ -104,7 +104,7 @@ def test_what_is_left_that_cannot_be_reached_is_told() -> None:
 def test_behind_a_fence_nothing_can_be_reached() -> None:
     fence = [(1.4, float(y), 0.05) for y in np.arange(0.0, 2.6, 0.1)]
     tracker = PathTracker(PATH[1:], CONFIG.tracking, CONFIG.body, CONFIG.timing.tick)
-    rejoin = Rejoin(SITE, BODY, DRIVING)
+    rejoin = Rejoin(CONTEXT, BODY, DRIVING)
     senses = Senses(0.0, Pose(0.9, 0.5, 0.0))
     points, back = rejoin.way(senses, tracker, Standing(*fence), Trail())
     assert (points, back) == (None, 0.0)
@@ -153,11 +153,11 @@ def test_the_last_point_counts_even_if_only_that_is_free() -> None:
         assert points[-1] == pytest.approx(PATH[-1])
 
 
-STAGING = (SITE.staging.x, SITE.staging.y)
+STAGING = (CONTEXT.staging.x, CONTEXT.staging.y)
 
 
 def home(pose: Pose, *things: RoundObstacle, trail: Trail | None = None) -> NDArray[np.float64]:
-    return Rejoin(SITE, BODY, DRIVING).way_home(
+    return Rejoin(CONTEXT, BODY, DRIVING).way_home(
         Senses(0.0, pose), Standing(*things), trail or Trail()
     )
 
@@ -182,7 +182,7 @@ def test_out_of_a_cage_it_goes_home_as_it_came_in() -> None:
 
 def test_the_way_out_is_the_first_of_the_way_home() -> None:
     pose = Pose(2.6, 0.5, 0.0)
-    rejoin = Rejoin(SITE, BODY, DRIVING)
+    rejoin = Rejoin(CONTEXT, BODY, DRIVING)
     points = rejoin.way_out(Senses(0.0, pose), Standing(), Trail())
     assert points is not None
     assert points[0] == pytest.approx((2.6, 0.5))

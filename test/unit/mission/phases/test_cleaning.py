@@ -26,20 +26,20 @@ from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.perception.swept.dirt_map import DirtMap
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
-SITE = PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
+CONTEXT = PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
 IN_THE_DEN = Senses(0.0, Pose(3.0, 1.2, 0.0))
 FENCE: list[RoundObstacle] = [(WALL_X + 0.05, float(y), 0.05) for y in np.arange(0.85, 1.6, 0.1)]
 SPEED = 0.3
 
 
 def test_with_nothing_left_the_clean_is_finished_after_another_look() -> None:
-    drives = Drives(SITE, ROBOT, CONFIG.driving, Standing(FENCE))
+    drives = Drives(CONTEXT, ROBOT, CONFIG.driving, Standing(FENCE))
     job = Job(DirtMap(TWO_ROOMS.map), CONFIG, 100.0, IN_THE_DEN)
     here = replace(IN_THE_DEN, pose=Pose(0.8, 1.2, 0.0))
-    job.begin_clean(Cleaning(CleanRequest(), SITE, job.dirt, CONFIG.cleaning, here.pose), here)
+    job.begin_clean(Cleaning(CleanRequest(), CONTEXT, job.dirt, CONFIG.cleaning, here.pose), here)
     assert job.cleaning is not None
     coverage = job.cleaning.ledger.coverage
-    hall = slice(0, SITE.frame.cell_of(WALL_X, 0.0)[1])
+    hall = slice(0, CONTEXT.frame.cell_of(WALL_X, 0.0)[1])
     coverage.cells[:, hall] |= SWEPT
     coverage.count_again()
     # The den was found to be out of reach: perhaps its door is open by now.

@@ -31,7 +31,7 @@ from roomba.planning.frontiers.frontiers import Frontier
 from roomba.vocabulary import EdgeReason
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
-SITE = PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
+CONTEXT = PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
 DRIVING = CONFIG.driving
 SEEN = ThingLayer(SurfaceField.of(TWO_ROOMS.map))
 IN_THE_DEN = Senses(0.0, Pose(3.0, 1.2, 0.0))
@@ -40,7 +40,9 @@ SPEED = 0.3
 
 def shut_in() -> tuple[Drives, Job]:
     """A robot in the den that felt a pane in the doorway, and explores."""
-    drives = Drives(SITE, ROBOT, CONFIG.driving, Obstacles(SEEN, ROBOT.walk, ROBOT.body, DRIVING))
+    drives = Drives(
+        CONTEXT, ROBOT, CONFIG.driving, Obstacles(SEEN, ROBOT.walk, ROBOT.body, DRIVING)
+    )
     job = Job(DirtMap(TWO_ROOMS.map), CONFIG, 100.0, IN_THE_DEN)
     job.exploration = Exploration(CONFIG.exploring)
     feel_a_pane(drives)
@@ -88,7 +90,7 @@ def test_shut_in_for_good_it_tells_where_the_map_is_open() -> None:
 @pytest.mark.parametrize("way", [0.05, 0.5])
 def test_what_is_touched_by_a_viewpoint_ends_the_way_there_after_it_backed_off(way: float) -> None:
     exploration = Exploration(CONFIG.exploring)
-    drives = Drives(SITE, ROBOT, CONFIG.driving, Standing([]))
+    drives = Drives(CONTEXT, ROBOT, CONFIG.driving, Standing([]))
     here = IN_THE_DEN.pose
     there = (here.x + way, here.y)
     exploration.goal = Frontier((there[0] + 0.2, here.y), there, way, 0.5)

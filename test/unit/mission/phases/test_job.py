@@ -30,7 +30,7 @@ from roomba.perception.things.layer import ThingLayer
 from roomba.vocabulary import EdgeReason
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
-SITE = PlanningContext(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())
+CONTEXT = PlanningContext(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())
 AWAY = Senses(0.0, Pose(1.0, 0.6, 0.0))
 
 
@@ -53,7 +53,7 @@ def obstacles() -> Obstacles:
 
 def cleaning_job() -> Job:
     job = Job(DirtMap(HOME.map), CONFIG, 100.0, AWAY, ROBOT.localization.known_deviation)
-    clean = Cleaning(CleanRequest(), SITE, job.dirt, CONFIG.cleaning, AWAY.pose)
+    clean = Cleaning(CleanRequest(), CONTEXT, job.dirt, CONFIG.cleaning, AWAY.pose)
     job.begin_clean(clean, AWAY)
     return job
 
@@ -64,10 +64,10 @@ def end(
     message: str = "",
     *,
     can_go_on: bool = False,
-    site: PlanningContext = SITE,
+    context: PlanningContext = CONTEXT,
 ) -> None:
     senses = replace(AWAY, now=60.0)
-    job.end(outcome, message, site, obstacles(), senses, can_go_on=can_go_on)
+    job.end(outcome, message, context, obstacles(), senses, can_go_on=can_go_on)
 
 
 def test_with_nothing_cleaned_a_completed_clean_says_why() -> None:
@@ -199,7 +199,7 @@ def test_an_exploration_that_left_the_map_open_tells_where() -> None:
     job.begin_exploration(AWAY)
     assert job.exploration is not None
     job.exploration.give_up(EDGE, 0.6)
-    end(job, CleanOutcome.COMPLETED, site=HALF)
+    end(job, CleanOutcome.COMPLETED, context=HALF)
     result = job.take_exploration()
     assert result is not None
     assert result.message.startswith("the map is open for ")

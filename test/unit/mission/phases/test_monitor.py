@@ -27,7 +27,7 @@ from roomba.perception.things.layer import ThingLayer
 from roomba.vocabulary import Phase
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
-SITE = PlanningContext(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())
+CONTEXT = PlanningContext(HOME.map, HOME.station, ROBOT, CONFIG, DockingConfig())
 HERE = Pose(1.0, 0.6, 0.0)
 AWAY = Senses(0.0, HERE)
 SEARCHING = replace(AWAY, knowledge=Knowledge.SEARCHING, trouble="too little in sight")
@@ -39,7 +39,7 @@ class Rig:
     def __init__(self, senses: Senses = AWAY) -> None:
         things = ThingLayer(SurfaceField.of(HOME.map))
         obstacles = Obstacles(things, ROBOT.walk, ROBOT.body, CONFIG.driving)
-        self.drives = Drives(SITE, ROBOT, CONFIG.driving, obstacles)
+        self.drives = Drives(CONTEXT, ROBOT, CONFIG.driving, obstacles)
         ledger = EnergyLedger(CONFIG.energy, senses)
         self.monitor = Monitor(ROBOT.walk, self.drives, ledger, senses)
 

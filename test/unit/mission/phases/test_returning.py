@@ -24,7 +24,7 @@ from roomba.mission.phases.step import PhaseStep
 from roomba.vocabulary import NO_REASON, Hindrance
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
-SITE = PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
+CONTEXT = PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig())
 IN_THE_DEN = Senses(0.0, Pose(3.0, 1.2, 0.0))
 FENCE: list[RoundObstacle] = [(WALL_X + 0.05, float(y), 0.05) for y in np.arange(0.85, 1.6, 0.1)]
 SPEED = 0.3
@@ -34,7 +34,7 @@ MINUTE = 60.0
 class Rig:
     def __init__(self) -> None:
         self.obstacles = Standing(FENCE)
-        self.drives = Drives(SITE, ROBOT, CONFIG.driving, self.obstacles)
+        self.drives = Drives(CONTEXT, ROBOT, CONFIG.driving, self.obstacles)
         self.retries = RetryPolicy(CONFIG.driving.waiting)
 
     def go_home(self, senses: Senses = IN_THE_DEN) -> PhaseStep:
@@ -50,7 +50,9 @@ class Rig:
 def test_at_home_or_before_it_there_is_nothing_to_drive() -> None:
     docked = replace(IN_THE_DEN, battery=Battery(1.0, 26.0, is_docked=True))
     assert Rig().go_home(docked) == PhaseStep(event=Event.CONTACT)
-    assert Rig().go_home(replace(IN_THE_DEN, pose=SITE.staging)) == PhaseStep(event=Event.ARRIVED)
+    assert Rig().go_home(replace(IN_THE_DEN, pose=CONTEXT.staging)) == PhaseStep(
+        event=Event.ARRIVED
+    )
 
 
 def test_with_a_way_home_it_drives() -> None:
