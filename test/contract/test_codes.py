@@ -28,18 +28,18 @@ from roomba.vocabulary import (
     Hindrance,
     Phase,
 )
-from roomba_ros.convert.localization import STATES
-from roomba_ros.convert.mission import (
+from roomba_ros.convert.clean_action import (
     CARPETS,
     EDGE_REASONS,
     EDGES,
     FANS,
     HINDRANCES,
-    KINDS,
     MODES,
     OUTCOMES,
     REASONS,
 )
+from roomba_ros.convert.localization import STATES
+from roomba_ros.convert.rooms import KINDS
 
 
 def constants(message: type, names: set[str]) -> dict[str, int]:

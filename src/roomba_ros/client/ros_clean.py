@@ -35,8 +35,8 @@ from roomba.client.protocol import (
 )
 from roomba.vocabulary import AT_REST, HELD, Phase, RoomWay
 from roomba_ros.client.ros_errands import RosClean, RosDocking, RosExploring, Server
+from roomba_ros.convert.clean_action import goal_of, way_codes
 from roomba_ros.convert.client import room_names_of, vacuum_of
-from roomba_ros.convert.mission import goal_of, way_codes
 from roomba_ros.runtime.calls import call_service
 from roomba_ros.runtime.subscriptions import subscribe
 

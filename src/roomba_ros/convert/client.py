@@ -32,9 +32,9 @@ from roomba.client.protocol import (
 )
 from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
 from roomba.vocabulary import Hindrance, OpenEdge, Reason, RoomDirt, code_of
+from roomba_ros.convert.clean_action import EDGE_REASONS, HINDRANCES, OUTCOMES, REASONS
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.localization import knowledge_of
-from roomba_ros.convert.mission import EDGE_REASONS, HINDRANCES, OUTCOMES, REASONS
 
 BATTERY_NOT_HEARD: Final = -1.0
 """The charge in a state before the first message of the battery; a snapshot has NaN for it."""

@@ -1,4 +1,4 @@
-"""The one place where ROS messages become values and values become messages."""
+"""Times, poses, twists, paths, maps and images, as messages and as values."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ from roomba.grid import GridFrame, OccupancyMap
 from roomba_ros.convert.client import clean_end_of, exploration_end_of, outcome_of
 from roomba_ros.convert.common import map_of, path_of
 from roomba_ros.convert.errors import MessageError, require_finite
-from roomba_ros.convert.mission import KINDS, zones_of
+from roomba_ros.convert.rooms import KINDS, zones_of
 
 _LEAST_CORNERS = 3
 """Of an outline that encloses something."""

@@ -16,7 +16,7 @@ from roomba_robot.msg import (
     RobotPosition,
     WheelDrop,
 )
-from sensor_msgs.msg import Imu
+from sensor_msgs.msg import BatteryState, Imu
 
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.mission.docking.beams import StationBeams
@@ -135,6 +135,20 @@ def cliff_of(message: Cliff) -> CliffReading:
 def wheel_drop_of(message: WheelDrop) -> Sides:
     """Return which wheels hang in the air."""
     return Sides(message.is_left_dropped, message.is_right_dropped)
+
+
+def battery_of(message: BatteryState, voltage: float, is_docked: bool = False) -> Battery:
+    """Return the battery; charges are in Ah at the nominal ``voltage``, V.
+
+    A capacity that is not finite is not measured. Raises MessageError for a level that is none.
+    """
+    level = message.percentage
+    if not 0.0 <= level <= 1.0:
+        raise MessageError(f"expected a percentage from 0 to 1, got {level}")
+    energy = message.capacity * voltage
+    if not (math.isfinite(energy) and energy > 0.0):
+        return Battery(level, is_docked=is_docked)
+    return Battery(level, energy, is_docked)
 
 
 def is_docked_of(message: DockStatus) -> bool:

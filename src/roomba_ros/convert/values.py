@@ -5,11 +5,15 @@ Nodes that need no more than these load neither arrays nor maps.
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from enum import Enum
+from typing import Any, TypeVar
 
 from std_msgs.msg import Float32, Time
 
 from roomba_ros.convert.errors import MessageError, require_finite
+
+Member = TypeVar("Member", bound=Enum)
 
 
 def number_of(message: Float32) -> float:
@@ -46,3 +50,8 @@ def unchanged(message: Any) -> Any:
 def data_of(message: Any) -> Any:
     """Return what a Bool, a String or a UInt16 holds: each value of its type means something."""
     return message.data
+
+
+def code_of(codes: Mapping[int, Member], member: Member) -> int:
+    """Return the code of a member of an enumeration, of the members by their codes."""
+    return next(code for code, each in codes.items() if each is member)

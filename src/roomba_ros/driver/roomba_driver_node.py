@@ -19,9 +19,9 @@ from roomba.vocabulary import NO_REASON, Reason
 from roomba_ros.body.drive_link import DriveLink
 from roomba_ros.body.frames import BodyFrames
 from roomba_ros.body.told_topics import ToldTopics
+from roomba_ros.convert.clean_action import line_trouble_message
 from roomba_ros.convert.common import transform_message
 from roomba_ros.convert.diagnostics import line_message
-from roomba_ros.convert.mission import line_trouble_message
 from roomba_ros.convert.values import duty_of
 from roomba_ros.runtime.node import frame_id, run_node
 from roomba_ros.runtime.parameters import read_robot_config, read_seed_parameters

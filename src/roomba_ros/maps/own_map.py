@@ -17,7 +17,7 @@ from roomba.grid import OccupancyMap
 from roomba.perception.rooms.zones import Zones
 from roomba.storage.map_store import MapStoreError, StoredMap
 from roomba_ros.convert.common import header, map_message, pose_message
-from roomba_ros.convert.mission import zones_of
+from roomba_ros.convert.rooms import zones_of
 from roomba_ros.localization.topics import LocalizationTopics
 from roomba_ros.maps.change_topics import ChangeTopics
 from roomba_ros.maps.map_memory import MapMemory

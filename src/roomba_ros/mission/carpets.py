@@ -7,7 +7,7 @@ from roomba_robot.msg import CarpetArray
 
 from roomba.mission.mission import Mission
 from roomba.perception.rooms.felt_carpets import FeltCarpets
-from roomba_ros.convert.mission import carpets_message
+from roomba_ros.convert.rooms import carpets_message
 from roomba_ros.mission.felt_on_maps import FeltOnMaps
 from roomba_ros.mission.known_home import KnownHome
 

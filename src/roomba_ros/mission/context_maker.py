@@ -20,7 +20,7 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones, ZonesError
-from roomba_ros.convert.mission import RoomOutlines
+from roomba_ros.convert.rooms import RoomOutlines
 from roomba_ros.mission.known_home import GROWING, KnownHome
 from roomba_ros.runtime.background import Background
 

@@ -32,7 +32,7 @@ from roomba.mission.exploring.exploration import ExploreResult
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Errand, Event
-from roomba_ros.convert.mission import (
+from roomba_ros.convert.clean_action import (
     explored_message,
     feedback_message,
     request_of,

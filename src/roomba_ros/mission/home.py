@@ -20,7 +20,7 @@ from roomba.grid import OccupancyMap
 from roomba.storage.map_bound import map_digest
 from roomba_ros.convert.common import ToldMap, pose_in_map, told_map_of
 from roomba_ros.convert.mapping import is_growing_of
-from roomba_ros.convert.mission import RoomOutlines, outlines_of
+from roomba_ros.convert.rooms import RoomOutlines, outlines_of
 from roomba_ros.mission.context_maker import ContextInputs, ContextMaker
 from roomba_ros.mission.known_home import GROWING, KnownHome
 from roomba_ros.mission.zone_edits import ZoneEdits

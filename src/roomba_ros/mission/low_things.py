@@ -10,7 +10,7 @@ from roomba_robot.srv import IgnoreLowThing, IgnoreLowThingRequest, IgnoreLowThi
 
 from roomba.mission.mission import Mission
 from roomba.perception.rooms.low_things import LowThings
-from roomba_ros.convert.mission import low_things_message
+from roomba_ros.convert.rooms import low_things_message
 from roomba_ros.mission.felt_on_maps import FeltOnMaps
 from roomba_ros.mission.known_home import KnownHome
 

@@ -20,7 +20,7 @@ from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Event
 from roomba.storage.checkpoint import Goal
 from roomba.vocabulary import Phase
-from roomba_ros.convert.mission import ways_of
+from roomba_ros.convert.clean_action import ways_of
 from roomba_ros.mission.asked import (
     Cancel,
     CommandOrder,

@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 import rospy
+import shapely
 from nav_msgs.msg import OccupancyGrid, Path
 from numpy.typing import NDArray
 from roomba_robot.msg import VacuumState
@@ -24,9 +25,10 @@ from roomba.mission.phases.machine import VACUUM_STATES
 from roomba.perception.swept.dirt_map import dirty_from
 from roomba.shares import share_of
 from roomba.vocabulary import Reason
+from roomba_ros.convert.clean_action import put_reason
 from roomba_ros.convert.client import BATTERY_NOT_HEARD
 from roomba_ros.convert.common import header, path_message
-from roomba_ros.convert.mission import coverage_message, dirt_message, put_reason, shown
+from roomba_ros.convert.mapping import coverage_message, dirt_message
 from roomba_ros.convert.values import data_of
 from roomba_ros.runtime.background import Background
 from roomba_ros.runtime.senders import SUPERVISOR, OnlyFrom
@@ -34,6 +36,8 @@ from roomba_ros.runtime.subscriptions import subscribe
 
 STARTING: Final = "starting"
 """The phase that is told until there is a mission."""
+_DRAWN = 0.003
+"""m; a path that is shown is as near to that which is driven."""
 
 
 class MissionTopics:
@@ -175,3 +179,11 @@ def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
         state.fraction = share_of(state.covered, state.wanted)
         state.seconds_to_go = mission.seconds_to_go()
     return state
+
+
+def shown(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a path, float64 [n, 2], with as few points as it needs to be drawn."""
+    if len(points) < 3:
+        return points
+    line = shapely.LineString(points).simplify(_DRAWN, preserve_topology=False)
+    return np.asarray(line.coords, np.float64)

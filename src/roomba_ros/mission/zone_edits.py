@@ -24,7 +24,7 @@ from roomba.perception.rooms.zones import Zones, ZonesError
 from roomba.storage.map_bound import map_file_name
 from roomba.storage.zones import load_zones, save_zones
 from roomba.vocabulary import listed
-from roomba_ros.convert.mission import zone_of, zones_markers, zones_message
+from roomba_ros.convert.rooms import zone_of, zones_markers, zones_message
 from roomba_ros.mission.known_home import GROWING
 from roomba_ros.runtime.parameters import robot_name
 

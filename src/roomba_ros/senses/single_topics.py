@@ -11,8 +11,8 @@ from sensor_msgs.msg import BatteryState, Imu
 from std_msgs.msg import Float32, UInt16
 
 from roomba.configuration.robot import RobotConfig
-from roomba_ros.convert.mission import battery_of
 from roomba_ros.convert.readings import (
+    battery_of,
     beams_of,
     bumper_of,
     cliff_of,

@@ -104,7 +104,7 @@ CONVERTERS: Final = list(converters())
 
 def test_the_functions_are_found() -> None:
     names = {name for name, _, _ in CONVERTERS}
-    assert {"common.twist_of", "common.map_of", "mission.zones_of", "readings.odometry_of"} <= names
+    assert {"common.twist_of", "common.map_of", "rooms.zones_of", "readings.odometry_of"} <= names
     assert len(names) > 20
 
 

@@ -17,15 +17,9 @@ from roomba.clean_request import CleanRefusedError
 from roomba.grid import MOST_CELLS
 from roomba.perception.rooms.felt_carpets import FeltCarpets
 from roomba.perception.rooms.low_things import OfferedZone
+from roomba_ros.convert.clean_action import request_of
 from roomba_ros.convert.common import map_of, told_map_of
 from roomba_ros.convert.errors import MessageError
-from roomba_ros.convert.mission import (
-    carpets_message,
-    low_things_message,
-    outlines_of,
-    request_of,
-    zones_of,
-)
 from roomba_ros.convert.page import (
     battery_seconds_of,
     carpets_of,
@@ -33,6 +27,7 @@ from roomba_ros.convert.page import (
     low_things_of,
     shown_path_of,
 )
+from roomba_ros.convert.rooms import carpets_message, low_things_message, outlines_of, zones_of
 
 BAD = (math.nan, math.inf, -math.inf)
 

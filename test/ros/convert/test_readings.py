@@ -35,6 +35,7 @@ from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.readings import CliffReading, Readings
 from roomba.vocabulary import Hindrance, Reason
 from roomba.world.simulator import Simulator
+from roomba_ros.convert.clean_action import line_trouble_message, put_reason
 from roomba_ros.convert.client import (
     BATTERY_NOT_HEARD,
     doubt_of,
@@ -53,11 +54,11 @@ from roomba_ros.convert.common import (
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.localization import knowledge_of, told_pose_of
 from roomba_ros.convert.mapping import is_growing_of
-from roomba_ros.convert.mission import battery_of, line_trouble_message, put_reason
 from roomba_ros.convert.readings import (
     OdometryReading,
     Sides,
     StampedPose,
+    battery_of,
     body_of,
     bumper_of,
     cliff_of,

@@ -42,26 +42,20 @@ from roomba.vocabulary import (
     Reason,
     RoomWay,
 )
-from roomba_ros.convert.client import clean_end_of, open_edges_of, outcome_of, times_of
-from roomba_ros.convert.mission import (
+from roomba_ros.convert.clean_action import (
     OUTCOMES,
-    battery_of,
-    coverage_message,
-    dirt_message,
     explored_message,
     goal_of,
-    outlines_of,
     request_of,
     result_message,
-    shown,
     way_codes,
-    zone_of,
-    zones_markers,
-    zones_message,
 )
-from roomba_ros.convert.readings import beams_of
+from roomba_ros.convert.client import clean_end_of, open_edges_of, outcome_of, times_of
+from roomba_ros.convert.mapping import coverage_message, dirt_message
+from roomba_ros.convert.readings import battery_of, beams_of
+from roomba_ros.convert.rooms import outlines_of, zone_of, zones_markers, zones_message
 from roomba_ros.mission.known_home import GROWING, KnownHome
-from roomba_ros.mission.topics import with_trouble
+from roomba_ros.mission.topics import shown, with_trouble
 from roomba_ros.senses.heard_place import moved
 
 

@@ -15,7 +15,7 @@ from roomba_robot.srv import RemoveZoneRequest, SetZoneRequest
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.storage.map_bound import map_digest, map_file_name
 from roomba.storage.zones import load_zones, save_zones
-from roomba_ros.convert.mission import zones_message
+from roomba_ros.convert.rooms import zones_message
 from roomba_ros.mission.known_home import GROWING
 from roomba_ros.mission.zone_edits import ZoneEdits
 
