@@ -104,6 +104,12 @@ class Burst:
         return self._brain.mapper if self._brain.localizer is None else None
 
     @property
+    def _cleaned(self) -> CoverageMap:
+        """What is cleaned now; without a clean what is driven over does not count."""
+        cleaning = self._brain.mission.cleaning
+        return self._truth if cleaning is None else cleaning.ledger.coverage
+
+    @property
     def _may_run(self) -> bool:
         if len(self._rows) == 0 or self._brain.walking.is_under_way:
             return False
@@ -123,11 +129,7 @@ class Burst:
         row["watches_dirt"] = steady.watches_dirt
         row["most_in_bin"] = steady.most_in_bin * MICROGRAMS_PER_GRAM * _HARDLY_LESS
         row["most_silent"] = steady.most_silent
-        row["cell_area"] = (
-            self._truth.cell_area
-            if mission.cleaning is None
-            else mission.cleaning.ledger.coverage.cell_area
-        )
+        row["cell_area"] = self._cleaned.cell_area
         if steady.driver is not None:
             row["off_path"] = brain.config.driving.off_path
         row["felt_version"] = mission.obstacles.felt_version
@@ -171,9 +173,8 @@ class Burst:
         return Drive(tracker.state, before, tracker.course, driver.progress, ahead)
 
     def _floor(self) -> Floor:
-        """Return what is cleaned now; without a clean what is driven over does not count."""
-        mission, truth = self._brain.mission, self._truth
-        coverage = truth if mission.cleaning is None else mission.cleaning.ledger.coverage
+        """Return what is cleaned now."""
+        mission, truth, coverage = self._brain.mission, self._truth, self._cleaned
         dirt = mission.dirt
         return Floor(
             coverage.cells,
@@ -198,7 +199,7 @@ class Burst:
         mission = brain.mission
         self._tell_floor()
         self._body.scans = int(row["scans"])
-        brain.keeper.scans.seen_at = float(row["seen_at"])
+        brain.keeper.scans.resumed(float(row["seen_at"]))
         readings, clock = self._body.read(), float(row["clock"])
         if clock != 0.0:
             readings = replace(readings, time=readings.time + clock)
@@ -216,11 +217,9 @@ class Burst:
         row, cleaning = self._burst[0], self._brain.mission.cleaning
         if row["sweeps"] and cleaning is not None:
             x, y = row["swept_at"].tolist()
-            cleaning.ledger.coverage.swept_cells += int(row["swept"])
-            cleaning.ledger.coverage.at = x, y
+            cleaning.ledger.coverage.resumed(int(row["swept"]), (x, y))
         x, y = row["true_at"].tolist()
-        self._truth.swept_cells += int(row["truth_swept"])
-        self._truth.at = x, y
+        self._truth.resumed(int(row["truth_swept"]), (x, y))
 
     def _finish_scan(self, now: float) -> None:
         """Process the rest of the newest scan."""

@@ -89,6 +89,10 @@ class ScanSelection:
         self.seen_at = scan.stamp
         return True
 
+    def resumed(self, seen_at: float) -> None:
+        """Go on after kernels that selected scans, the last one taken at ``seen_at``, s."""
+        self.seen_at = seen_at
+
 
 class PlaceKeeper:
     """Passes readings on: all motion, and the scans that are selected.

@@ -27,7 +27,7 @@ from roomba.perception.matching.reckoned_path import ReckonedPath
 from roomba.perception.matching.scan_view import LidarModel, PlacedScan
 from roomba.perception.slam.mapper import Mapper
 from roomba.robot.command import Command
-from roomba.robot.place import PlaceKeeper
+from roomba.robot.place import PlaceKeeper, ScanSelection
 from roomba.robot.readings import CliffReading, Readings, ScanReading, senses_of
 from roomba.world.engine.state.arrays import Fault
 
@@ -174,6 +174,13 @@ def test_one_scan_in_a_period_is_looked_at(rate: float, looked_at: int) -> None:
         assert (seen is not None) == (bool(place.scans) and place.scans[-1] == now)
     assert len(place.scans) == looked_at
     assert len(place.moves) == 20
+
+
+def test_after_kernels_selected_scans_the_next_one_is_a_period_later() -> None:
+    scans = ScanSelection(RobotConfig().timing)
+    scans.resumed(100.0)
+    assert not scans.selects(scan_at(100.05))
+    assert scans.selects(scan_at(100.0 + RobotConfig().timing.scan_period))
 
 
 def test_a_clock_that_is_set_back_hides_no_scan() -> None:

@@ -55,6 +55,11 @@ class CoverageMap:
         self.swept_cells += sweep(self.cells, self.place, from_x, from_y, x, y, self.radius)
         self.at = (x, y)
 
+    def resumed(self, swept: int, at: tuple[float, float]) -> None:
+        """Go on after kernels that swept so many cells more of the wanted floor, up to here, m."""
+        self.swept_cells += swept
+        self.at = at
+
     def take_back(self, points: NDArray[np.float64]) -> None:
         """Let floor along a way, float64 [n, 2], m, be as if the tool had not passed over it."""
         self.cells[self.along(points)] &= np.uint8(~SWEPT & 0xFF)

@@ -130,6 +130,19 @@ def test_along_a_way_is_what_numpy_says_and_changes_nothing() -> None:
     assert not coverage.swept.any()
 
 
+def test_after_kernels_swept_its_cells_it_goes_on_as_if_it_had_itself() -> None:
+    own, theirs = (CoverageMap(FRAME, everything(), 0.2) for _ in range(2))
+    way = ((0.0, 0.5), (0.2, 0.6), (0.3, 0.9))
+    for place in way:
+        own.sweep(*place)
+    theirs.sweep(*way[0])
+    swept = sweep(theirs.cells, theirs.place, *way[0], *way[1], theirs.radius)
+    theirs.resumed(swept, way[1])
+    theirs.sweep(*way[2])
+    assert np.array_equal(theirs.cells, own.cells)
+    assert (theirs.swept_cells, theirs.at) == (own.swept_cells, own.at)
+
+
 def test_all_of_nothing_is_clean() -> None:
     assert CoverageMap(FRAME, ~everything(), 0.18).fraction == 1.0
 
