@@ -89,10 +89,21 @@ def polished(
 
 
 @part
-def _turn(
+def _turn(points: Polyline, one: int, two: int, three: int) -> float:
+    """Return how much the way turns at the second of three points, rad."""
+    if one < 0 or three < 0:
+        return 0.0
+    ax, ay = points[one]
+    bx, by = points[two]
+    cx, cy = points[three]
+    return _angle(bx - ax, by - ay, cx - bx, cy - by)
+
+
+@part
+def _turn_if_moved(
     points: Polyline, one: int, two: int, three: int, moved: int, x: float, y: float
 ) -> float:
-    """Return how much the way turns at the second of three points, where ``moved`` is at (x, y)."""
+    """Return how much it would turn there if ``moved``, one of the three, were at (x, y), rad."""
     if one < 0 or three < 0:
         return 0.0
     ax, ay = points[one]
@@ -104,7 +115,12 @@ def _turn(
         bx, by = x, y
     if three == moved:
         cx, cy = x, y
-    in_x, in_y, out_x, out_y = bx - ax, by - ay, cx - bx, cy - by
+    return _angle(bx - ax, by - ay, cx - bx, cy - by)
+
+
+@part
+def _angle(in_x: float, in_y: float, out_x: float, out_y: float) -> float:
+    """Return the angle between two directions, rad."""
     return abs(math.atan2(in_x * out_y - in_y * out_x, in_x * out_x + in_y * out_y))
 
 
@@ -116,21 +132,21 @@ def _try_shortcut(
     points, after = bent.points, bent.after
     to = at
     length = 0.0
-    turned = _turn(points, bent.before[at], at, after[at], -1, 0.0, 0.0)
+    turned = _turn(points, bent.before[at], at, after[at])
     for _ in range(span):
         on = after[to]
         if on < 0:
             return False
         length += math.hypot(points[on, 0] - points[to, 0], points[on, 1] - points[to, 1])
-        turned += _turn(points, to, on, after[on], -1, 0.0, 0.0)
+        turned += _turn(points, to, on, after[on])
         to = on
     x, y = points[at]
     to_x, to_y = points[to]
     straight = math.hypot(to_x - x, to_y - y)
     if straight > _LONGEST:
         return False
-    turned -= _turn(points, bent.before[at], at, to, -1, 0.0, 0.0)
-    turned -= _turn(points, at, to, after[to], -1, 0.0, 0.0)
+    turned -= _turn(points, bent.before[at], at, to)
+    turned -= _turn(points, at, to, after[to])
     gain = length - straight + turning * turned
     if gain < _LEAST_GAIN or not way_fits(bent.fits, x, y, to_x, to_y):
         return False
@@ -188,12 +204,12 @@ def _try_move(
     gain -= math.hypot(x - ax, y - ay) + math.hypot(cx - x, cy - y)
     zero, four = bent.before[one], bent.after[three]
     turned = (
-        _turn(points, zero, one, at, -1, 0.0, 0.0)
-        + _turn(points, one, at, three, -1, 0.0, 0.0)
-        + _turn(points, at, three, four, -1, 0.0, 0.0)
-        - _turn(points, zero, one, at, at, x, y)
-        - _turn(points, one, at, three, at, x, y)
-        - _turn(points, at, three, four, at, x, y)
+        _turn(points, zero, one, at)
+        + _turn(points, one, at, three)
+        + _turn(points, at, three, four)
+        - _turn_if_moved(points, zero, one, at, at, x, y)
+        - _turn_if_moved(points, one, at, three, at, x, y)
+        - _turn_if_moved(points, at, three, four, at, x, y)
     )
     gain += turning * turned
     if gain < _LEAST_GAIN:
@@ -217,7 +233,7 @@ def _improve_at(bent: Bent, at: int, radius: float, turning: float, floor: float
     before, after = bent.before[at], bent.after[at]
     if before < 0 or after < 0:
         return False
-    if _turn(points, before, at, after, -1, 0.0, 0.0) < _BENDS:
+    if _turn(points, before, at, after) < _BENDS:
         return False
     for span in (2, 4):
         if _try_shortcut(bent, before, span, radius, turning, floor):
@@ -250,6 +266,17 @@ def _improve_at(bent: Bent, at: int, radius: float, turning: float, floor: float
     return False
 
 
+@part
+def _wake(waiting: Mask, beside: NDArray[np.int64], at: int) -> None:
+    """Let the next three points on one side of a point wait to be tried again."""
+    on = beside[at]
+    for _ in range(3):
+        if on < 0:
+            break
+        waiting[on] = True
+        on = beside[on]
+
+
 @allocating_entry
 def _polish(bent: Bent, radius: float, turning: float, floor: float) -> None:
     """Change the way point by point, until no change costs less or the rounds are used up."""
@@ -265,18 +292,8 @@ def _polish(bent: Bent, radius: float, turning: float, floor: float) -> None:
                 if _improve_at(bent, at, radius, turning, floor):
                     changed = True
                     waiting[at] = True
-                    on = bent.before[at]
-                    for _ in range(3):
-                        if on < 0:
-                            break
-                        waiting[on] = True
-                        on = bent.before[on]
-                    on = bent.after[at]
-                    for _ in range(3):
-                        if on < 0:
-                            break
-                        waiting[on] = True
-                        on = bent.after[on]
+                    _wake(waiting, bent.before, at)
+                    _wake(waiting, bent.after, at)
             at = bent.after[at]
         if not changed:
             break
