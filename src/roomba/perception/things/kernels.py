@@ -8,7 +8,7 @@ listed, so that looking at all of them costs by their number and not by the size
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,14 @@ Ranges = NDArray[np.float32]
 IN: Final = 0
 BEHIND: Final = 1
 """Columns of ``Things.beams``."""
+
+
+class LidarPose(NamedTuple):
+    """Where the lidar was at a scan, m and rad, map frame."""
+
+    x: float
+    y: float
+    heading: float
 
 
 @entry
@@ -49,15 +57,16 @@ def note(
     layer.scan += 1
     measure_noises(things.noise, layer.scan, measured, lidar.nearest)
     cosine, sine = math.cos(pose[2]), math.sin(pose[2])
-    x = pose[0] + cosine * lidar.mount[0] - sine * lidar.mount[1]
-    y = pose[1] + sine * lidar.mount[0] + cosine * lidar.mount[1]
-    heading = pose[2] + lidar.mount[2]
+    at = LidarPose(
+        pose[0] + cosine * lidar.mount[0] - sine * lidar.mount[1],
+        pose[1] + sine * lidar.mount[0] + cosine * lidar.mount[1],
+        pose[2] + lidar.mount[2],
+    )
     margin = layer.map_error * place[2] + unsure
-    count = _find_ends(things, layer, field, place, lidar, ranges, x, y, heading, margin)
+    count = _find_ends(things, layer, field, place, lidar, ranges, at, margin)
     _count_in(things, layer, field, place, lidar.ends, count)
     _count_behind(things, layer, field, place, lidar.ends, count)
-    first = heading + lidar.first_angle
-    if _weigh(things, layer, field, place, ranges, x, y, first, lidar.step, scans):
+    if _weigh(things, layer, field, place, lidar, ranges, at, scans):
         layer.version += 1
 
 
@@ -69,9 +78,7 @@ def _find_ends(
     place: Place,
     lidar: LidarBeams,
     ranges: Ranges,
-    x: float,
-    y: float,
-    heading: float,
+    at: LidarPose,
     margin: float,
 ) -> int:
     """Fill ``lidar.ends`` with those of beams that end away from all surfaces; return how many.
@@ -80,7 +87,7 @@ def _find_ends(
     which it is as likely to have ended by its noise as there, along x and y, m.
     """
     rows, columns = field.shape
-    cosine, sine = math.cos(heading), math.sin(heading)
+    cosine, sine = math.cos(at.heading), math.sin(at.heading)
     inverse = 1.0 / place[2]
     around = round(2.0 * math.pi / abs(lidar.step))
     # From nowhere in a cell a surface is farther than from its middle by more than half its size.
@@ -92,7 +99,7 @@ def _find_ends(
             continue
         along = cosine * lidar.directions[beam, 0] - sine * lidar.directions[beam, 1]
         across = sine * lidar.directions[beam, 0] + cosine * lidar.directions[beam, 1]
-        end_x, end_y = x + away * along, y + away * across
+        end_x, end_y = at.x + away * along, at.y + away * across
         u, v = (end_x - place[0]) * inverse + 0.5, (end_y - place[1]) * inverse + 0.5
         if not (0.0 <= u < columns and 0.0 <= v < rows) or field[int(v), int(u)] <= near:
             continue
@@ -173,19 +180,15 @@ def _weigh(
     layer: Row,
     field: Field,
     place: Place,
+    lidar: LidarBeams,
     ranges: Ranges,
-    x: float,
-    y: float,
-    heading: float,
-    step: float,
+    at: LidarPose,
     scans: int,
 ) -> bool:
-    """Add evidence to cells, and take it from them; tell whether a thing came or went.
-
-    ``heading`` is that of beam 0, map; ``step`` the angle between beams, rad.
-    """
+    """Add evidence to cells, and take it from them; tell whether a thing came or went."""
     columns = field.shape[1]
     beams = ranges.size
+    first, step = at.heading + lidar.first_angle, lidar.step
     around = round(2.0 * math.pi / abs(step))
     half = 0.7072 * place[2]
     gain = min(layer.gain * scans, layer.most_gain)
@@ -199,12 +202,12 @@ def _weigh(
             is_in = things.beams[cell, IN] >= max(things.beams[cell, BEHIND], 1)
             more = gain if is_in else -layer.behind * scans
         else:
-            off_x = place[0] + (cell % columns) * place[2] - x
-            off_y = place[1] + (cell // columns) * place[2] - y
+            off_x = place[0] + (cell % columns) * place[2] - at.x
+            off_y = place[1] + (cell // columns) * place[2] - at.y
             away = math.sqrt(off_x * off_x + off_y * off_y)
             if away > layer.farthest or away < half:
                 continue
-            middle = round((math.atan2(off_y, off_x) - heading) / step)
+            middle = round((math.atan2(off_y, off_x) - first) / step)
             aside = int(half / (away * abs(step))) + 1
             if not _is_passed(ranges, beams, around, middle, aside, away + layer.clearly):
                 continue
