@@ -195,7 +195,7 @@ class OpenEdge:
 class MissedFloor:
     """Floor that was wanted and is not clean: ``area`` m2 around (x, y), m, and why, in words.
 
-    ``code`` is the reason for programs, as of :func:`code_of`; empty where it was not kept.
+    ``code`` is the reason for programs, as of :func:`word_of`; empty where it was not kept.
     """
 
     area: float
@@ -206,7 +206,7 @@ class MissedFloor:
     code: str = ""
 
 
-def code_of(reason: Enum) -> str:
+def word_of(reason: Enum) -> str:
     """Return the word for a reason by which programs decide: its value is a sentence for people."""
     return reason.name.lower().replace("_", " ")
 

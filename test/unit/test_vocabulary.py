@@ -17,9 +17,9 @@ from roomba.vocabulary import (
     Phase,
     Reason,
     cleaned_name,
-    code_of,
     fault_of_name,
     places_told,
+    word_of,
 )
 
 JOINERS = ("\u200c", "\u200d")
@@ -93,7 +93,7 @@ def test_a_word_that_is_no_phase_is_in_no_group_of_them() -> None:
 
 def test_what_programs_decide_by_is_no_sentence() -> None:
     assert json.dumps(Hindrance.NO_WAY) == '"no way"'
-    assert code_of(EdgeReason.NOT_LOOKED_AT) == "not looked at"
+    assert word_of(EdgeReason.NOT_LOOKED_AT) == "not looked at"
 
 
 def test_a_reason_is_one_if_it_says_something() -> None:

@@ -11,7 +11,7 @@ from roomba.client.protocol import CleanReport
 from roomba.client.view import HomeView, RobotView, RoomView, TruthView, ZoneView
 from roomba.geometry import Point
 from roomba.time_spent import square_metres_a_minute
-from roomba.vocabulary import code_of
+from roomba.vocabulary import word_of
 
 Json = dict[str, Any]
 
@@ -104,7 +104,7 @@ def report_of(report: CleanReport) -> Json:
         ],
         "mapped": known(report.mapped),
         "open_edges": [
-            {**asdict(edge), "code": code_of(edge.reason)} for edge in report.open_edges
+            {**asdict(edge), "code": word_of(edge.reason)} for edge in report.open_edges
         ],
     }
 

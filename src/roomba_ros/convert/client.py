@@ -31,7 +31,7 @@ from roomba.client.protocol import (
     VacuumSnapshot,
 )
 from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
-from roomba.vocabulary import Hindrance, OpenEdge, Reason, RoomDirt, code_of
+from roomba.vocabulary import Hindrance, OpenEdge, Reason, RoomDirt, word_of
 from roomba_ros.convert.clean_action import EDGE_REASONS, HINDRANCES, OUTCOMES, REASONS
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.localization import knowledge_of
@@ -120,7 +120,7 @@ def clean_end_of(message: CleanResult, outcome: ErrandOutcome, reason: str) -> C
 
 def _missed_of(message: MissedArea) -> MissedFloor:
     """Return floor that was missed; without the code of a reason that is none."""
-    codes = [code_of(reason) for reason, code in REASONS.items() if code == message.reason]
+    codes = [word_of(reason) for reason, code in REASONS.items() if code == message.reason]
     at, code = message.at, codes[0] if codes else ""
     return MissedFloor(message.area, at.x, at.y, message.room, message.message, code)
 

@@ -12,7 +12,7 @@ from roomba.time_spent import NOT_COUNTED, TimeSpent, square_metres_a_minute
 class MissedShare:
     """Floor that was wanted and is not clean, as the robot tells it: m2, m, and why.
 
-    ``code`` is the reason for programs, as of :func:`roomba.vocabulary.code_of`.
+    ``code`` is the reason for programs, as of :func:`roomba.vocabulary.word_of`.
     """
 
     area_m2: float

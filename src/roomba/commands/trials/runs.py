@@ -38,7 +38,7 @@ from roomba.headless.odometry import odometry_error
 from roomba.headless.records import CleanRecord
 from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.swept.coverage_map import CoverageMap
-from roomba.vocabulary import code_of
+from roomba.vocabulary import word_of
 from roomba.world.home.home import Home
 from roomba.world.home.raster import largest_component, where_body_fits
 
@@ -145,7 +145,7 @@ class TrialSetup:
             hits=record.hits,
             missed=tuple(
                 MissedShare(
-                    each.area, each.x, each.y, each.room, each.reason.value, code_of(each.reason)
+                    each.area, each.x, each.y, each.room, each.reason.value, word_of(each.reason)
                 )
                 for each in result.missed
             ),

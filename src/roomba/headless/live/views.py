@@ -44,7 +44,7 @@ from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.shares import share_of
-from roomba.vocabulary import Phase, code_of
+from roomba.vocabulary import Phase, word_of
 from roomba.world.home.home import Home
 from roomba.world.home.materials import MATERIALS
 from roomba.world.home.raster import footprint, outline
@@ -223,7 +223,7 @@ def clean_report(result: CleanResult) -> CleanReport:
                 missed.y,
                 missed.room,
                 missed.reason.value,
-                code_of(missed.reason),
+                word_of(missed.reason),
             )
             for missed in result.missed
         ),
