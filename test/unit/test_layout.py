@@ -157,7 +157,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/history/run": ("unit/history/test_run_file.py", VALUES),
     "roomba/mission/docking/beams": ("unit/mission/docking/test_track.py", VALUES),
     "roomba/mission/docking/step": ("unit/mission/docking/test_docking.py", VALUES),
-    "roomba/mission/driving/progress_kernels": ("unit/mission/driving/test_path_driver.py", PART),
     "roomba/mission/inputs/senses": ("unit/mission/test_mission.py", VALUES),
     "roomba/mission/phases/carpet_kernels": ("unit/mission/phases/test_carpet.py", PART),
     "roomba/mission/phases/dust_bin_kernels": ("unit/mission/phases/test_dust_bin.py", PART),

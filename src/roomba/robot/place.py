@@ -25,13 +25,13 @@ class Place(Protocol):
     """What knows where the robot is: a localizer on its map, or a mapper on the one it makes."""
 
     belief: Rows
-    """What is reckoned by wheels and gyro, BELIEF [1];"""
+    """What is reckoned by wheels and gyro, BELIEF [1]."""
 
     numbers: Rows
-    """by which numbers,"""
+    """The numbers by which it reckons."""
 
     path: ReckonedPath
-    """and on which way."""
+    """The way that it reckoned."""
 
     placed: PlacedScan | None
     """The newest scan where it was taken, if that is known."""

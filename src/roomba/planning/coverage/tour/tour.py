@@ -142,9 +142,10 @@ def _drawn_runs(
             at = _connection_near(costs, state, end, generator)
             first, total, last = min(first, at), total + at, max(last, at)
         return first, total - first - last, last
+    longest = min(_LONGEST, ends // 2 - 3)
     first = 1 + 2 * _drawn(generator, ends // 2 - 1)
-    middle = first + 2 * (1 + _drawn(generator, _LONGEST))
-    return first, middle, middle + 2 * (1 + _drawn(generator, _LONGEST))
+    middle = first + 2 * (1 + _drawn(generator, longest))
+    return first, middle, middle + 2 * (1 + _drawn(generator, longest))
 
 
 @inner_part

@@ -54,7 +54,7 @@ def test_few_pieces_are_ordered_hardly_worse_than_in_the_best_of_all_orders(
         for order in permutations(pieces)
         for flips in product((1, -1), repeat=len(pieces))
     )
-    # Fewer than six pieces are improved move by move, and not searched on.
+    # Fewer than four pieces are improved move by move, and not searched on.
     assert best - 0.1 <= cost(start, found, end) <= 1.25 * best + 0.1
 
 
