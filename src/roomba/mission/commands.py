@@ -48,7 +48,7 @@ class Commands:
         cleaning = self._job.cleaning_of(request, self._drives.context, senses)
         self._end("a newer clean took over", senses)
         self._job.begin_clean(cleaning, senses)
-        self._obstacles.forget()
+        self._forget_obstacles()
         self._transitions.go(Event.CLEAN, senses)
 
     def explore(self, senses: Senses) -> None:
@@ -56,7 +56,7 @@ class Commands:
         self._require_start(Event.EXPLORE, senses)
         self._end("it was told to explore", senses)
         self._job.begin_exploration(senses)
-        self._obstacles.forget()
+        self._forget_obstacles()
         self._transitions.go(Event.EXPLORE, senses)
 
     def obey(self, event: Event, senses: Senses, reason: str) -> None:
@@ -129,6 +129,11 @@ class Commands:
         self._transitions.end_job(outcome, message, senses)
         self._retries.renew()
         self._job.forget()
+
+    def _forget_obstacles(self) -> None:
+        """Begin an errand with nothing in the way: things go, and what stays is felt anew."""
+        self._obstacles.forget()
+        self._obstacles.begin_errand()
 
     @property
     def _outlasts_a_stop(self) -> bool:

@@ -22,7 +22,7 @@ from roomba.mission.commands import CommandRefusedError
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.mission import Mission
-from roomba.mission.phases.machine import Event, next_state
+from roomba.mission.phases.machine import Errand, Event, next_state
 from roomba.mission.walking.walk import Walk
 from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.localization.localizer import Localizer
@@ -156,6 +156,8 @@ class Brain:
             raise CommandRefusedError(
                 f"the emergency stop holds the drive ({mission.message}); release it first"
             )
+        if mission.state.errand is Errand.NONE:
+            mission.obstacles.begin_errand()
         walk = self.walking.begin((x, y), mission.context.occupancy, mission.obstacles, senses)
         if next_state(mission.state, Event.PAUSE) is not None:
             mission.command(Event.PAUSE, senses)

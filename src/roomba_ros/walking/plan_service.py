@@ -79,6 +79,7 @@ class PlanService:
         if self._planner is None:
             raise RoombaError("the robot does not know its map yet; wait for it")
         with self.lock:
+            self._obstacles.begin_errand()
             return Walk(self._planner, self._config, self._obstacles, goal, senses)
 
     def require_allowed(self, x: float, y: float) -> None:

@@ -97,6 +97,13 @@ def test_a_walk_is_planned_on_the_map(plans: PlanService) -> None:
         plans.walk_to(in_table, Senses(7.0, HERE))
 
 
+def test_a_walk_begins_with_no_edge_that_one_before_it_felt(plans: PlanService) -> None:
+    knowing(plans)
+    plans._obstacles.feel(Senses(7.0, Pose(1.5, 1.5, 0.0), cliff_left=True))
+    plans.walk_to((2.5, 2.0), Senses(7.0, HERE))
+    assert plans._obstacles.edges() == []
+
+
 def test_a_path_is_answered_from_here_or_from_where_it_was_asked_for(plans: PlanService) -> None:
     knowing(plans)
     assert asked(plans, place(2.5, 2.0)) == [(0.5, 0.5), (2.5, 2.0)]

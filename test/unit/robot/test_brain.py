@@ -19,7 +19,7 @@ from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.grid import OccupancyMap
 from roomba.headless.body import SimulatedBody
 from roomba.mission.commands import CommandRefusedError
-from roomba.mission.inputs.senses import Battery
+from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.phases.machine import Errand, Event, MissionState
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.planning.path.planner import NoPathError
@@ -193,6 +193,22 @@ def test_a_walk_pauses_the_errand_under_way() -> None:
     robot.walk(1.0, 0.5)
     assert robot.mission.state.phase is Phase.PAUSED
     assert robot.walking.is_under_way
+
+
+@pytest.mark.parametrize("is_amid_a_clean", [False, True])
+def test_a_walk_forgets_where_the_floor_ended_but_not_amid_an_errand(
+    is_amid_a_clean: bool,
+) -> None:
+    robot = brain(HOME.map)
+    robot.tick(DOCKED)
+    if is_amid_a_clean:
+        robot.mission.clean(CleanRequest(), robot.senses())
+    edge = Senses(0.05, Pose(3.0, 3.0), cliff_left=True)
+    robot.mission.obstacles.feel(edge)
+    robot.walk(1.0, 0.5)
+    assert bool(robot.mission.obstacles.edges()) is is_amid_a_clean
+    robot.mission.clean(CleanRequest(), robot.senses())
+    assert robot.mission.obstacles.edges() == []
 
 
 def test_a_walk_while_it_charges_for_a_clean_pauses_that() -> None:

@@ -52,8 +52,8 @@ class Obstacles:
 
     The one memory of a robot's drives, of cleans and walks alike: what was felt is forgotten after
     ``felt_memory`` s; after half an hour what was felt again at the same place, and what was felt
-    where nothing is seen. What was seen is forgotten when the lidar sees through it, and where the
-    floor ends never.
+    where nothing is seen. What was seen is forgotten when the lidar sees through it. An edge of
+    the floor is remembered through the errand in which it was felt; felt in two errands, for good.
     """
 
     def __init__(
@@ -71,8 +71,12 @@ class Obstacles:
         # A wall that is met aside stands, but where the robot is may be off for a while.
         self._beside = UnknownThings(walk, body, config.felt_memory)
         self._things = self._felt, self._lasting, self._unseen, self._beside
-        # Stairs do not go away.
+        # Stairs do not go away. What a speck of dirt on a sensor showed once is not felt again.
         self._edges = UnknownThings(walk, body, _FOREVER)
+        self._stairs = UnknownThings(walk, body, _FOREVER)
+        # Of errands before: in nothing's way, and stairs if it is felt again.
+        self._edges_before = UnknownThings(walk, body, _FOREVER)
+        self._all_edges = self._edges, self._stairs, self._edges_before
         self._same_place = config.lasting_radius
         self.felt_version = 0
         """A number that changes when something that is felt comes or goes."""
@@ -94,7 +98,7 @@ class Obstacles:
         """
         self.felt_version += self.seen.version + 1
         self.seen = seen
-        for felt in (*self._things, self._edges):
+        for felt in (*self._things, *self._all_edges):
             felt.move(moved)
         there = [moved.compose(Pose(x, y)) for x, y in self._touched]
         self._touched = deque(((place.x, place.y) for place in there), maxlen=_TOUCHES)
@@ -109,7 +113,8 @@ class Obstacles:
         is_unseen = senses.knowledge is Knowledge.KNOWN and not self._is_any_seen(places)
         self.felt_version += 1
         if senses.cliff:
-            self._edges.felt(senses.now, here, *senses.touches)
+            edges = self._stairs if self._ended_before(places) else self._edges
+            edges.felt(senses.now, here, *senses.touches)
         elif is_unseen and before < _MOST_BESIDE and (walls := self._bearings_of_walls(senses)):
             # What it met aside, where a gap is narrow: nothing stands before it.
             self._beside.felt_at(senses.now, here, walls)
@@ -123,6 +128,14 @@ class Obstacles:
             where.felt(senses.now, here, *senses.touches)
             # A wall that it drove against, being late, is on the map.
             self._felt.drop(self.seen.is_mapped)
+
+    def begin_errand(self) -> None:
+        """Forget where the floor ended in the errand before, but for what was felt in two.
+
+        Sensors and speed loop stop the robot there anew, if the floor does end.
+        """
+        self._edges_before.take(self._edges)
+        self.felt_version += 1
 
     def forget_felt_at(self, senses: Senses) -> None:
         """Forget what was felt where the robot itself stands: it cannot be there."""
@@ -149,8 +162,8 @@ class Obstacles:
         return self.felt(now) + self.seen.obstacles()
 
     def edges(self) -> list[RoundObstacle]:
-        """Return where the floor ends, which is never forgotten, m, map frame."""
-        return self._edges.at(0.0)
+        """Return where the floor ends, which is remembered through the errand, m, map frame."""
+        return self._edges.at(0.0) + self._stairs.at(0.0)
 
     def at_least(self, now: float) -> list[RoundObstacle]:
         """Return the same, as small as it may be: where the bumper felt something is a guess.
@@ -161,11 +174,11 @@ class Obstacles:
         felt = [(x, y, _LEAST) for x, y, _ in self._felt.at(now)]
         for touched in (self._lasting, self._unseen, self._beside):
             felt += touched.at(now, _LEAST)
-        return self._edges.at(now) + felt + [(x, y, _LEAST) for x, y, _ in self.seen.obstacles()]
+        return self.edges() + felt + [(x, y, _LEAST) for x, y, _ in self.seen.obstacles()]
 
     def felt(self, now: float) -> list[RoundObstacle]:
         """Return what bumper and cliff sensors found, m, map frame."""
-        return self._edges.at(now) + self._all_felt(now)
+        return self.edges() + self._all_felt(now)
 
     def first_in_way(self, way: Way, first: float, last: float) -> float | None:
         """Return where on a path, m, something seen first comes too near, or None.
@@ -184,6 +197,14 @@ class Obstacles:
         return any(self.seen.is_mapped(x, y) for x, y in places) or any(
             math.dist(place, (x, y)) < radius + near
             for x, y, radius in self.seen.obstacles()
+            for place in places
+        )
+
+    def _ended_before(self, places: list[tuple[float, float]]) -> bool:
+        """Whether the floor ended at any of some places, m, in an errand before."""
+        return any(
+            math.dist(place, (x, y)) < 2.0 * radius
+            for x, y, radius in self._edges_before.at(0.0)
             for place in places
         )
 

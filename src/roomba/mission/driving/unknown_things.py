@@ -91,6 +91,11 @@ class UnknownThings:
         """Go on in another frame, in which this one lies at ``moved``."""
         self._felt = [touch.moved(moved) for touch in self._felt]
 
+    def take(self, others: UnknownThings) -> None:
+        """Remember what others do, which forget it."""
+        self._felt += others._felt
+        others.forget()
+
     def forget(self) -> None:
         """Forget everything."""
         self._felt = []

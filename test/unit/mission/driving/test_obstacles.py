@@ -75,7 +75,7 @@ def test_what_was_felt_aside_stands_on_that_side(left: bool, right: bool, side: 
     assert all(side * (y - HERE.y) > 0.02 for _, y, _ in known.standing(0.0))
 
 
-def test_what_was_felt_is_forgotten_after_a_while_and_an_edge_never() -> None:
+def test_what_was_felt_is_forgotten_after_a_while_and_an_edge_is_not() -> None:
     """Something is seen where it was felt, as a chair is that a person draws back."""
     known, layer = obstacles()
     see_a_thing(layer, HERE.x + BODY, HERE.y)
@@ -91,6 +91,39 @@ def test_what_was_felt_is_forgotten_after_a_while_and_an_edge_never() -> None:
     known.forget()
     assert known.felt(1e9) == known.edges()
     assert len(known.edges()) == edges
+
+
+def test_where_the_floor_ends_is_felt_anew_in_each_errand_until_it_was_in_two() -> None:
+    """A speck of dirt on a cliff sensor closes no doorway for ever, and stairs stay."""
+    known, _ = obstacles()
+    speck, stairs = Pose(3.0, 3.0, 0.0), Pose(1.0, 3.0, 0.0)
+    known.feel(cliff(0.0, speck))
+    known.feel(cliff(0.0, stairs))
+    known.forget()
+    felt = known.edges()
+    assert felt
+    version = known.version
+    known.begin_errand()
+    assert known.version != version
+    assert known.edges() == known.standing(1.0) == []
+    known.feel(cliff(2.0, Pose(1.03, 3.0, 0.0)))
+    again = known.edges()
+    assert 0 < len(again) < len(felt)
+    assert known.standing(2.0) == known.at_least(2.0) == again
+    for _ in range(2):
+        known.begin_errand()
+        assert known.edges() == again
+
+
+def test_where_the_floor_ended_in_an_errand_before_moves_with_the_map() -> None:
+    known, layer = obstacles()
+    known.feel(cliff())
+    known.begin_errand()
+    moved = Pose(1.0, 2.0, 0.5)
+    known.use(layer, moved)
+    known.feel(cliff(1.0, moved.compose(HERE)))
+    known.begin_errand()
+    assert known.edges()
 
 
 def test_what_was_felt_where_nothing_is_seen_is_remembered_for_longer() -> None:
