@@ -143,8 +143,6 @@ def take_up(found: Remembered, job: Job, senses: Senses) -> None:
 
 def state_after(state: MissionState, *, is_docked: bool) -> MissionState:
     """Return the state in which a mission resumes from a checkpoint."""
-    if state.phase is Phase.CHARGING and not is_docked:
-        return MissionState(Phase.RETURNING, state.errand)
     if state.resumes in (Phase.CLEANING, Phase.EXPLORING):
         # If it stands on the station by now, it has to undock first.
         return replace(state, resumes=Phase.UNDOCKING)

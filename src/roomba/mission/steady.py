@@ -86,7 +86,7 @@ class SteadyTicks:
 
     def _charging(self, senses: Senses) -> Steady | None:
         needed = self._at_station.needed
-        if needed is None:
+        if needed is None or not senses.battery.is_docked:
             return None
         return Steady(None, most_energy=self._job.ledger.charged_at(senses, needed))
 

@@ -8,6 +8,7 @@ in any phase. Ticks of which it is known what they do are those of :mod:`.steady
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,9 @@ from roomba.mission.transitions import Transitions
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.rooms.felt_carpets import CarpetVotes
 from roomba.vocabulary import Phase
+
+_SAYS_CONTACT: Final = (Phase.DOCKING, Phase.UNDOCKING, Phase.CHARGING, Phase.EMPTYING)
+"""Phases that say themselves when the contact is good, and when it is lost."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,9 +180,7 @@ class MissionTicks:
 
     def _notice(self, senses: Senses) -> None:
         """Find out what happened, and let the machine know."""
-        # Under way to it, docking says when the contact is good, and undocking when it is out.
-        at_station = self._phase in (Phase.DOCKING, Phase.UNDOCKING)
-        if self._monitor.note_contact(senses) and not at_station:
+        if self._monitor.note_contact(senses) and self._phase not in _SAYS_CONTACT:
             event = Event.CONTACT if senses.battery.is_docked else Event.CONTACT_LOST
             self._transitions.go(event, senses)
         failure = self._monitor.failure(self._transitions.state, senses, self.last_place)
@@ -217,9 +219,9 @@ class MissionTicks:
             case Phase.DOCKING:
                 return self._at_station.dock(senses, context.station, context.staging)
             case Phase.CHARGING:
-                return self._at_station.charge(senses, job, context.tool_width)
+                return self._at_station.charge(senses, job, context.tool_width, context.station)
             case Phase.EMPTYING:
-                return self._at_station.empty(senses, job)
+                return self._at_station.empty(senses, job, context.station)
             case Phase.BIN_FULL:
                 return PhaseStep(event=None if job.bin.is_full else Event.EMPTIED)
         return PhaseStep()

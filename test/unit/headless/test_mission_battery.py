@@ -39,6 +39,22 @@ def test_with_a_low_battery_it_goes_home_charges_and_goes_on() -> None:
     assert_all_clean(robot, robot.run())
 
 
+def test_a_power_cut_while_it_charges_for_a_clean_leaves_it_on_its_station() -> None:
+    robot = begun()
+    robot.simulator.set_charge(0.085)
+    until(robot, in_phase(robot, Phase.CHARGING), 120.0)
+    robot.simulator.inject(Fault.STATION_DEAD, 1.0)
+    assert_stands(robot, 60.0)
+    assert robot.mission.state.phase is Phase.CHARGING
+    assert "gives no current" in robot.mission.message
+    level = robot.seen.battery.level
+    robot.simulator.inject(Fault.STATION_DEAD, 0.0)
+    wait(robot, 60.0)
+    assert robot.mission.state.phase is Phase.CHARGING
+    assert robot.mission.message == ""
+    assert robot.seen.battery.level > level
+
+
 def test_a_charge_that_an_emergency_stop_held_up_ends_when_it_is_told_to_go_on() -> None:
     robot = begun()
     robot.simulator.set_charge(0.085)

@@ -50,7 +50,7 @@ class Undocking:
         self._moved = (0.0, 0.0)
         self._wanted = STANDSTILL
         self._touches = senses.bumper
-        is_docked = senses.is_charging or _stands_in(station, _believed(senses), config)
+        is_docked = senses.is_charging or stands_in(station, senses, config)
         self._state = UndockState.BACKING_OUT if is_docked else UndockState.OUT
         self._reason = ""
 
@@ -98,8 +98,9 @@ class Undocking:
         return UndockState.BACKING_OUT, ""
 
 
-def _stands_in(station: Pose, pose: Pose | None, config: DockingConfig) -> bool:
-    """Whether a robot that gets no current stands in the station all the same."""
+def stands_in(station: Pose, senses: DockSenses, config: DockingConfig) -> bool:
+    """Whether a robot that gets no current stands in the station all the same, as is believed."""
+    pose = _believed(senses)
     if pose is None or pose.distance_to(station.x, station.y) >= config.undocked_distance:
         return False
     return abs(wrap_angle(pose.theta - station.theta)) <= config.undocked_turn

@@ -10,8 +10,9 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.cleaning.result import CleanOutcome
+from roomba.mission.docking.beams import NO_BEAMS
 from roomba.mission.docking.docking import Docking, DockSenses, DockState
-from roomba.mission.docking.undocking import Undocking, UndockState
+from roomba.mission.docking.undocking import Undocking, UndockState, stands_in
 from roomba.mission.inputs.senses import EmptyingTold, Senses
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
@@ -19,6 +20,7 @@ from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.vocabulary import Hindrance, Reason
 
 _NO_ANSWER: Final = "its station does not empty the bin: see whether its way in is free"
+_NO_CURRENT: Final = "its station gives no current: see that it is plugged in; it waits for that"
 
 
 class AtStation:
@@ -34,6 +36,7 @@ class AtStation:
         self._docking: Docking | None = None
         self._undocking: Undocking | None = None
         self._stood: RobotTime | None = None
+        self._without_current: RobotTime | None = None
         self._needed: float | None = None
         self._is_emptied = False
 
@@ -93,12 +96,12 @@ class AtStation:
     @property
     def needed(self) -> float | None:
         """The energy, Wh, that the rest of the job takes, while it charges for that."""
-        return self._needed
+        return self._needed if self._without_current is None else None
 
-    def charge(self, senses: Senses, job: Job, tool_width: float) -> PhaseStep:
+    def charge(self, senses: Senses, job: Job, tool_width: float, station: Pose) -> PhaseStep:
         """Stand until there is enough for the rest of the job, and room in the dust bin."""
-        if not senses.battery.is_docked:
-            return PhaseStep(event=Event.CONTACT_LOST)
+        if (waits := self._wait_for_current(senses, station)) is not None:
+            return waits
         if job.bin.is_full:
             return PhaseStep(event=Event.BIN_FULL)
         if self._needed is None:
@@ -106,10 +109,10 @@ class AtStation:
         is_charged = job.ledger.is_charged(senses, self._needed)
         return PhaseStep(event=Event.CHARGED if is_charged else None)
 
-    def empty(self, senses: Senses, job: Job) -> PhaseStep:
+    def empty(self, senses: Senses, job: Job, station: Pose) -> PhaseStep:
         """Stand until the station has taken the dirt out of the bin."""
-        if not senses.battery.is_docked:
-            return PhaseStep(event=Event.CONTACT_LOST)
+        if (waits := self._wait_for_current(senses, station)) is not None:
+            return waits
         self._stood = self._stood or RobotTime(senses.now)
         self._stood.tick(senses.now)
         told = senses.emptying
@@ -123,6 +126,24 @@ class AtStation:
         elif self._stood.elapsed > self._config.emptying_timeout:
             return _not_emptied(_NO_ANSWER)
         return PhaseStep(empties=True)
+
+    def _wait_for_current(self, senses: Senses, station: Pose) -> PhaseStep | None:
+        """Stand in a station without power until current comes; None where it comes.
+
+        One that was moved, or that sees the beams of a station which gives it no current for a
+        while, has lost contact: it docks anew.
+        """
+        if senses.battery.is_docked:
+            was_without, self._without_current = self._without_current, None
+            return None if was_without is None else PhaseStep(message="")
+        sensed = self._sensed(senses)
+        if self._without_current is None or sensed.beams == NO_BEAMS:
+            self._without_current = RobotTime(senses.now)
+        self._without_current.tick(senses.now)
+        has_power = self._without_current.elapsed > self._config.contact_wait
+        if has_power or not stands_in(station, sensed, self._config):
+            return PhaseStep(event=Event.CONTACT_LOST)
+        return PhaseStep(message=_NO_CURRENT)
 
 
 def _not_emptied(why: str) -> PhaseStep:

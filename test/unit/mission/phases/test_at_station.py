@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.mission.cleaning.result import CleanOutcome
+from roomba.mission.docking.beams import StationBeams
 from roomba.mission.docking.docking import Docking, DockState
 from roomba.mission.docking.step import DockStep
 from roomba.mission.docking.undocking import Undocking, UndockState, UndockStep
@@ -22,6 +24,7 @@ from roomba.mission.phases.at_station import AtStation
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
+from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.vocabulary import Hindrance
 
@@ -129,13 +132,62 @@ def test_it_charges_until_there_is_enough_for_the_rest() -> None:
     station = at_the_station()
     full = replace(DOCKED, battery=Battery(1.0, 26.0, is_docked=True))
     # What an exploration takes is not known.
-    assert station.charge(DOCKED, job, TOOL) == PhaseStep(STANDSTILL)
-    assert station.charge(full, job, TOOL) == PhaseStep(event=Event.CHARGED)
+    assert station.charge(DOCKED, job, TOOL, STATION) == PhaseStep(STANDSTILL)
+    assert station.charge(full, job, TOOL, STATION) == PhaseStep(event=Event.CHARGED)
     job.forget()
     # It was found out at the beginning what is needed.
-    assert station.charge(DOCKED, job, TOOL) == PhaseStep(STANDSTILL)
+    assert station.charge(DOCKED, job, TOOL, STATION) == PhaseStep(STANDSTILL)
     station.forget()
-    assert station.charge(DOCKED, job, TOOL) == PhaseStep(event=Event.CHARGED)
+    assert station.charge(DOCKED, job, TOOL, STATION) == PhaseStep(event=Event.CHARGED)
+
+
+def emptying_job() -> Job:
+    job = Job(DirtMap(HOME.map), MissionConfig(), 100.0, DOCKED)
+    job.begin_exploration(DOCKED)
+    return job
+
+
+@pytest.mark.parametrize("phase", ["charge", "empty"])
+def test_in_a_station_without_power_it_waits_for_current(phase: str) -> None:
+    job, station = emptying_job(), at_the_station()
+    without = Senses(0.0, STATION.compose(Pose(-0.02, 0.0, 0.05)), battery=Battery(0.5, 26.0))
+
+    def step(senses: Senses) -> PhaseStep:
+        if phase == "charge":
+            return station.charge(senses, job, TOOL, STATION)
+        return station.empty(replace(senses, emptying=EmptyingTold(True, 0.0)), job, STATION)
+
+    for now in range(3600):
+        waits = step(replace(without, now=float(now)))
+        assert (waits.twist, waits.event) == (STANDSTILL, None)
+        assert waits.message is not None
+        assert "gives no current: see that it is plugged in" in waits.message
+    assert step(replace(DOCKED, now=3600.0)).message == ""
+    assert step(replace(DOCKED, now=3600.1)).message is None
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"pose": STATION.compose(Pose(-0.5, 0.0))},
+        {"pose": STATION.compose(Pose(0.0, 0.0, 1.0))},
+        {"knowledge": Knowledge.SEARCHING},
+    ],
+)
+def test_one_that_was_moved_docks_anew(changes: dict[str, Any]) -> None:
+    job, station = emptying_job(), at_the_station()
+    moved = replace(DOCKED, battery=Battery(0.5, 26.0), **changes)
+    assert station.charge(moved, job, TOOL, STATION).event is Event.CONTACT_LOST
+    assert station.empty(moved, job, STATION).event is Event.CONTACT_LOST
+
+
+def test_one_that_was_shoved_a_little_sees_that_its_station_has_power_and_docks_anew() -> None:
+    job, station = emptying_job(), at_the_station()
+    shoved = replace(DOCKED, battery=Battery(0.5, 26.0), beams=StationBeams(halo=True))
+    ticks = [replace(shoved, now=0.1 * tick) for tick in range(30)]
+    events = [station.charge(senses, job, TOOL, STATION).event for senses in ticks]
+    lost = events.index(Event.CONTACT_LOST)
+    assert ticks[lost].now == pytest.approx(DockingConfig().contact_wait, abs=0.2)
 
 
 def test_docked_it_stands_first_and_away_from_its_station_it_does_not() -> None:
