@@ -143,12 +143,14 @@ def take_up(found: Remembered, job: Job, senses: Senses) -> None:
 
 def state_after(state: MissionState, *, is_docked: bool) -> MissionState:
     """Return the state in which a mission resumes from a checkpoint."""
+    goes_on = state.errand in (Errand.CLEAN, Errand.EXPLORE)
+    if state.resumes is not None and goes_on and is_docked:
+        return replace(state, resumes=Phase.CHARGING)
     if state.resumes in (Phase.CLEANING, Phase.EXPLORING):
-        # If it stands on the station by now, it has to undock first.
         return replace(state, resumes=Phase.UNDOCKING)
     if not state.drives:
         return state
-    if state.errand in (Errand.CLEAN, Errand.EXPLORE):
+    if goes_on:
         if is_docked and state.phase in (Phase.RETURNING, Phase.DOCKING):
             return MissionState(Phase.CHARGING, state.errand)
         return MissionState(Phase.UNDOCKING, state.errand)

@@ -191,12 +191,12 @@ class MissionTicks:
         if self._monitor.is_astray and self._phase is not Phase.DOCKING:
             return MissionStep(STANDSTILL, looks_around=self._is_under_way)
         step = self._step(senses)
-        if step.reason is not None:
-            self._transitions.reason = step.reason
         if step.event is Event.CONTACT:
             self._monitor.was_docked = True
         if step.event is not None:
             self._transitions.go(step.event, senses)
+        if step.reason is not None:
+            self._transitions.reason = step.reason
         if step.failure is not None:
             self._transitions.fail(step.failure.outcome, step.failure.reason, senses)
         return MissionStep(step.twist, wants_whole_map=step.wants_whole_map, empties=step.empties)
@@ -208,7 +208,8 @@ class MissionTicks:
         match self._phase:
             case Phase.UNDOCKING:
                 stand = self._config.exploring.stand_first if context.is_growing else 0.0
-                return self._at_station.undock(senses, context.station, stand)
+                is_empty = job.ledger.is_empty(senses)
+                return self._at_station.undock(senses, context.station, stand, is_empty=is_empty)
             case Phase.CLEANING:
                 return self._clean_phase.tick(senses, limit)
             case Phase.EXPLORING:

@@ -133,10 +133,16 @@ def test_on_its_way_home_it_goes_on_or_is_there() -> None:
     assert state_after(state, is_docked=True) == MissionState(Phase.DOCKED)
 
 
-def test_held_up_it_stays_so_and_comes_out_of_the_station_first() -> None:
-    held = MissionState(Phase.PAUSED, Errand.CLEAN, Phase.CLEANING)
-    for is_docked in (False, True):
-        after = state_after(held, is_docked=is_docked)
-        assert after == MissionState(Phase.PAUSED, Errand.CLEAN, Phase.UNDOCKING)
+@pytest.mark.parametrize("resumes", [Phase.CLEANING, Phase.UNDOCKING, Phase.RETURNING])
+def test_held_up_it_stays_so_and_on_its_station_it_charges_first(resumes: Phase) -> None:
+    held = MissionState(Phase.PAUSED, Errand.CLEAN, resumes)
+    away = state_after(held, is_docked=False)
+    assert away.phase is Phase.PAUSED
+    assert away.resumes is (Phase.UNDOCKING if resumes is Phase.CLEANING else resumes)
+    docked = state_after(held, is_docked=True)
+    assert docked == MissionState(Phase.PAUSED, Errand.CLEAN, Phase.CHARGING)
+
+
+def test_held_up_on_its_way_home_it_stays_so() -> None:
     homewards = MissionState(Phase.ERROR, Errand.HOME, Phase.RETURNING)
     assert state_after(homewards, is_docked=False) == homewards

@@ -212,8 +212,44 @@ def test_set_onto_its_station_while_paused_it_comes_out_of_it_again() -> None:
     rig.tick(5, battery=DOCKED.battery, pose=STATION)
     assert rig.phase is Phase.PAUSED
     rig.command(Event.RESUME)
-    assert rig.phase is Phase.UNDOCKING
+    assert rig.phase is Phase.CHARGING
     assert rig.tick(5).twist.linear < 0.0
+    assert rig.phase is Phase.UNDOCKING
+
+
+def test_resumed_on_its_station_it_goes_on_as_soon_as_there_is_enough() -> None:
+    rig = cleaning()
+    rig.command(Event.PAUSE)
+    rig.tick(2, battery=Battery(0.004, 26.0, is_docked=True), pose=STATION)
+    for _ in range(3):
+        rig.command(Event.RESUME)
+        assert rig.tick(20) == MissionStep()
+        assert rig.phase is Phase.CHARGING
+        rig.command(Event.PAUSE)
+    rig.command(Event.RESUME)
+    rig.tick(5, battery=DOCKED.battery)
+    assert rig.phase is Phase.UNDOCKING
+
+
+def test_with_an_empty_battery_a_clean_begins_by_charging() -> None:
+    rig = Rig(replace(DOCKED, battery=Battery(0.004, 26.0, is_docked=True)))
+    rig.clean()
+    assert rig.tick(20) == MissionStep()
+    assert rig.mission.state.phase is Phase.CHARGING
+    assert rig.mission.state.errand is Errand.CLEAN
+    assert rig.mission.take_result() is None
+    assert rig.mission.message == "the battery is empty: it stays on its station to charge"
+    rig.tick(5, battery=DOCKED.battery)
+    assert rig.phase is Phase.UNDOCKING
+
+
+def test_with_an_empty_battery_it_is_not_driven_off_its_station() -> None:
+    rig = Rig(replace(DOCKED, battery=Battery(0.004, 26.0, is_docked=True)))
+    rig.command(Event.UNDOCK)
+    assert rig.tick(20) == MissionStep()
+    assert rig.phase is Phase.DOCKED
+    assert "the battery is empty" in rig.mission.message
+    assert rig.mission.way_ended(Errand.UNDOCK) is CleanOutcome.STOPPED
 
 
 def test_the_books_are_the_cleans_own() -> None:

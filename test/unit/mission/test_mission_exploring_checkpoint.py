@@ -61,7 +61,7 @@ def test_taken_up_on_its_station_it_comes_out_or_charges() -> None:
     paused = taken_up(values, DOCKED)
     assert paused.phase is Phase.PAUSED
     paused.command(Event.RESUME)
-    assert paused.phase is Phase.UNDOCKING
+    assert paused.phase is Phase.CHARGING
 
 
 @pytest.mark.parametrize("junk", [None, [[1.0]], "far", [["x", "y"]]])

@@ -218,7 +218,7 @@ def test_a_walk_while_it_charges_for_a_clean_pauses_that() -> None:
     robot.mission._transitions.state = MissionState(Phase.CHARGING, Errand.CLEAN)
     robot.walk(1.0, 0.5)
     robot.tick(replace(DOCKED, time=0.05, battery=Battery(1.0, 26.0)))
-    assert robot.mission.state == MissionState(Phase.PAUSED, Errand.CLEAN, Phase.UNDOCKING)
+    assert robot.mission.state == MissionState(Phase.PAUSED, Errand.CLEAN, Phase.CHARGING)
     assert robot.walking.is_under_way
 
 

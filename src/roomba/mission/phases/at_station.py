@@ -20,6 +20,7 @@ from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.vocabulary import Hindrance, Reason
 
 _NO_ANSWER: Final = "its station does not empty the bin: see whether its way in is free"
+_CHARGES_FIRST: Final = "the battery is empty: it stays on its station to charge"
 _NO_CURRENT: Final = "its station gives no current: see that it is plugged in; it waits for that"
 
 
@@ -40,11 +41,18 @@ class AtStation:
         self._needed: float | None = None
         self._is_emptied = False
 
-    def undock(self, senses: Senses, station: Pose, stand_first: float = 0.0) -> PhaseStep:
-        """Drive out of the station; if docked, after it stood there for ``stand_first`` s."""
+    def undock(
+        self, senses: Senses, station: Pose, stand_first: float = 0.0, *, is_empty: bool = False
+    ) -> PhaseStep:
+        """Drive out of the station; if docked, after it stood there for ``stand_first`` s.
+
+        With a battery that ``is_empty`` it stays there to charge.
+        """
         self._stood = self._stood or RobotTime(senses.now)
         self._stood.tick(senses.now)
         is_in = senses.battery.is_docked and self._undocking is None
+        if is_in and is_empty:
+            return PhaseStep(event=Event.CONTACT, message=_CHARGES_FIRST)
         if is_in and self._stood.elapsed < stand_first:
             return PhaseStep()
         sensed = self._sensed(senses)

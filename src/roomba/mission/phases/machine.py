@@ -95,13 +95,9 @@ _DRIVING: Final = _WORKING | {Phase.UNDOCKING, Phase.RETURNING, Phase.DOCKING}
 _ON_STATION: Final = frozenset((Phase.DOCKED, Phase.CHARGING, Phase.EMPTYING))
 _GOES_ON: Final = frozenset((Errand.CLEAN, Errand.EXPLORE))
 """Errands that a charge on the station only interrupts."""
-_AMID_IT: Final = {
-    Phase.CHARGING: Phase.UNDOCKING,
-    Phase.BIN_FULL: Phase.CHARGING,
-    Phase.EMPTYING: Phase.CHARGING,
-}
-"""Phases in which the robot stands amid such an errand, and those in which it goes on from there:
-while it charges it is noticed that the bin is full."""
+_AMID_IT: Final = frozenset((Phase.CHARGING, Phase.BIN_FULL, Phase.EMPTYING))
+"""Phases in which the robot stands at its station amid such an errand. From there it goes on by
+charging, which ends at once when there is enough, and notices that the bin is full."""
 _OUTLASTS_A_STOP: Final = _GOES_ON | {Errand.HOME}
 """Errands that an emergency stop only interrupts."""
 
@@ -201,7 +197,7 @@ def _driving(state: MissionState, event: Event) -> MissionState | None:
         return replace(state, phase=Phase.RETURNING)
     if event is Event.ARRIVED and phase is Phase.RETURNING:
         return replace(state, phase=Phase.DOCKING)
-    if event is Event.CONTACT and phase in (Phase.RETURNING, Phase.DOCKING):
+    if event is Event.CONTACT and phase in (Phase.UNDOCKING, Phase.RETURNING, Phase.DOCKING):
         return _after_docking(errand)
     return None
 
@@ -215,9 +211,7 @@ def _standing(state: MissionState, event: Event) -> MissionState | None:
         if phase in HELD:
             # It was carried home. With an errand it resumes from there when it is told to.
             if state.errand in _GOES_ON:
-                at_station = state.resumes is Phase.CHARGING
-                resumes = Phase.CHARGING if at_station else Phase.UNDOCKING
-                return replace(state, phase=Phase.PAUSED, resumes=resumes)
+                return replace(state, phase=Phase.PAUSED, resumes=Phase.CHARGING)
             return MissionState(Phase.DOCKED)
     if event is Event.CONTACT_LOST:
         if phase is Phase.DOCKED:
@@ -233,7 +227,7 @@ def _standing(state: MissionState, event: Event) -> MissionState | None:
     if event is Event.EMPTIED and phase is Phase.BIN_FULL:
         return replace(state, phase=Phase.CHARGING)
     if event is Event.FAILED and phase is Phase.CHARGING:
-        return replace(state, phase=Phase.ERROR, resumes=Phase.UNDOCKING)
+        return replace(state, phase=Phase.ERROR, resumes=Phase.CHARGING)
     return None
 
 
@@ -252,7 +246,7 @@ def _where_it_goes_on(state: MissionState) -> Phase | None:
     if state.drives:
         return _again(state.phase)
     if state.errand in _GOES_ON and state.phase in _AMID_IT:
-        return _AMID_IT[state.phase]
+        return Phase.CHARGING
     return state.resumes
 
 

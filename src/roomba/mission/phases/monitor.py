@@ -47,7 +47,7 @@ class Monitor:
         if senses.lifted:
             reason = "a wheel hangs in the air: set it down and resume"
             return Failure(CleanOutcome.FAULT, reason)
-        if self._ledger.is_empty(senses):
+        if self._ledger.is_empty(senses) and not senses.battery.is_docked:
             reason = "the battery is empty: carry it to its station"
             return Failure(CleanOutcome.BATTERY, reason)
         # Docking finds its way by the station's beams.

@@ -143,9 +143,21 @@ def _as_exploration(state: MissionState | None, event: Event) -> MissionState | 
         (
             (Phase.PAUSED, Errand.CLEAN, Phase.CLEANING),
             Event.CONTACT,
-            (Phase.PAUSED, Errand.CLEAN, Phase.UNDOCKING),
+            (Phase.PAUSED, Errand.CLEAN, Phase.CHARGING),
         ),
         ((Phase.UNDOCKING, Errand.UNDOCK), Event.OUT, (Phase.IDLE,)),
+        ((Phase.UNDOCKING, Errand.UNDOCK), Event.CONTACT, (Phase.DOCKED,)),
+        ((Phase.UNDOCKING, Errand.CLEAN), Event.CONTACT, (Phase.CHARGING, Errand.CLEAN)),
+        (
+            (Phase.ERROR, Errand.CLEAN, Phase.UNDOCKING),
+            Event.CONTACT,
+            (Phase.PAUSED, Errand.CLEAN, Phase.CHARGING),
+        ),
+        (
+            (Phase.CHARGING, Errand.CLEAN),
+            Event.FAILED,
+            (Phase.ERROR, Errand.CLEAN, Phase.CHARGING),
+        ),
         ((Phase.DOCKED,), Event.EXPLORE, (Phase.UNDOCKING, Errand.EXPLORE)),
         ((Phase.UNDOCKING, Errand.EXPLORE), Event.OUT, (Phase.EXPLORING, Errand.EXPLORE)),
         ((Phase.EXPLORING, Errand.EXPLORE), Event.FINISHED, (Phase.RETURNING, Errand.HOME)),
@@ -160,7 +172,7 @@ def _as_exploration(state: MissionState | None, event: Event) -> MissionState | 
         (
             (Phase.CHARGING, Errand.CLEAN),
             Event.PAUSE,
-            (Phase.PAUSED, Errand.CLEAN, Phase.UNDOCKING),
+            (Phase.PAUSED, Errand.CLEAN, Phase.CHARGING),
         ),
         (
             (Phase.EMPTYING, Errand.CLEAN),
