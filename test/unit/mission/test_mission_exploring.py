@@ -221,6 +221,17 @@ def test_low_it_goes_home_charges_until_it_is_full_and_goes_on() -> None:
     assert rig.mission.exploration is not None
 
 
+def test_a_long_pause_is_no_reason_to_give_up_where_it_was_going() -> None:
+    rig = exploring()
+    rig.command(Event.PAUSE)
+    rig.tick(round(2.0 * CONFIG.exploring.patience / TICK))
+    rig.command(Event.RESUME)
+    rig.tick(20)
+    assert rig.phase is Phase.EXPLORING
+    assert rig.mission.exploration is not None
+    assert rig.mission.exploration.unseen == []
+
+
 def test_paused_it_stands_and_goes_on_from_there() -> None:
     rig = exploring()
     rig.command(Event.PAUSE)

@@ -72,7 +72,9 @@ class Exploration:
         self.times_given_up = 0
         """Also of frontiers that it had given up before, and looked at from nearer."""
         self._vanished: list[Point] = []
-        self._sought: tuple[Point, float] | None = None
+        self._sought: Point | None = None
+        self._sought_for = 0.0
+        self._looked_on: float | None = None
         self.is_as_near_as_it_gets = False
         """Whether it touched something by the viewpoint that it is on its way to."""
         self.times_stuck = 0
@@ -229,15 +231,18 @@ class Exploration:
         """Whether it has been on its way to this frontier for much longer than the way takes.
 
         Ways that glass and mirrors show open and close, and lead nowhere. ``now`` is in s; ask at
-        each tick of the way.
+        each tick of the way. Time between two ways, in which it may charge, does not count.
         """
         if self.goal is None:
             return False
         place = self.goal.middle
-        if self._sought is None or math.dist(self._sought[0], place) > self._config.same_frontier:
-            self._sought = place, now
+        if self._sought is None or math.dist(self._sought, place) > self._config.same_frontier:
+            self._sought, self._sought_for = place, 0.0
+        if self._looked_on is not None:
+            self._sought_for += max(now - self._looked_on, 0.0)
+        self._looked_on = now
         allowed = self._config.patience + 2.0 * self.goal.way / self._config.speed
-        return now - self._sought[1] > allowed
+        return self._sought_for > allowed
 
     def note_touch(self, here: Pose) -> None:
         """Note that it touched something; by its viewpoint it comes no nearer to the frontier.
@@ -266,7 +271,7 @@ class Exploration:
         mirrors comes and goes, and there is no end of it.
         """
         is_there = self._is_at_viewpoint(here)
-        goal, self.goal = self.goal, None
+        goal, self.goal, self._looked_on = self.goal, None, None
         self.is_as_near_as_it_gets = False
         if goal is None:
             return

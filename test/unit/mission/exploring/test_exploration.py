@@ -319,10 +319,27 @@ def test_a_frontier_that_it_never_comes_to_is_given_up() -> None:
     middle = exploration.goal.middle
     allowed = CONFIG.patience + 2.0 * exploration.goal.way / CONFIG.speed
     assert not exploration.is_too_long(100.0)
+    assert not exploration.is_too_long(150.0)
     # Chosen anew on a map that has grown it is the same frontier.
     assert exploration.next_path(HERE, HALL_SITE, []) is not None
+    assert not exploration.is_too_long(150.0)
     assert not exploration.is_too_long(100.0 + allowed - 1.0)
     assert exploration.is_too_long(100.0 + allowed + 1.0)
     exploration.cut_off()
     assert exploration.unseen == [middle]
     assert not exploration.is_too_long(1e6)
+
+
+def test_time_between_two_ways_to_a_frontier_is_no_time_on_its_way() -> None:
+    """It was paused, or charged."""
+    exploration = begun()
+    assert exploration.goal is not None
+    allowed = CONFIG.patience + 2.0 * exploration.goal.way / CONFIG.speed
+    assert not exploration.is_too_long(100.0)
+    assert not exploration.is_too_long(110.0)
+    assert exploration.next_path(HERE, HALL_SITE, []) is not None
+    assert not exploration.is_too_long(5000.0)
+    # A clock that is set back brings nothing back.
+    assert not exploration.is_too_long(4000.0)
+    assert not exploration.is_too_long(4000.0 + allowed - 10.0 - 1.0)
+    assert exploration.is_too_long(4000.0 + allowed - 10.0 + 1.0)
