@@ -46,6 +46,8 @@ class WalkConfig(Frozen):
     corner_speed: Speed = 0.25
     careful_speed: Speed = 0.15
     astray_timeout: Duration = 60.0
+    search_wait: Duration = 2.0
+    """s; so long a robot that stood lost waits, told to drive, for a search to begin anew."""
     arrival_tolerance: Length = 0.03
     bump_radius: Length = 0.06
     progress_timeout: Patience = 6.0

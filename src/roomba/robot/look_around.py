@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from roomba.clock import LONGEST_TICK
 from roomba.configuration.body import BodyConfig
 from roomba.configuration.loops import LookingAroundConfig
 from roomba.geometry import STANDSTILL, Pose, Twist
@@ -103,15 +104,23 @@ class LookAround:
 
 
 class SearchDrive:
-    """Lets the robot look around whenever more must be seen to find its place."""
+    """Lets the robot look around whenever more must be seen to find its place.
+
+    It is ticked while the robot may drive for that. A search has its whole time from then on: one
+    that stood where it was set down, for however long, was not found because it saw no more.
+    """
 
     def __init__(self, body: BodyConfig, config: LookingAroundConfig) -> None:
         """Begin with nothing to search."""
         self._body, self._config = body, config
         self._look_around: LookAround | None = None
+        self._ticked = -math.inf
 
     def tick(self, now: float, place: Place, touches: bool) -> Twist | None:
         """Return the wanted twist while it looks around, else None; ``touches`` as LookAround."""
+        if not 0.0 <= now - self._ticked <= LONGEST_TICK:
+            place.look_anew()
+        self._ticked = now
         if place.estimate.knowledge is not Knowledge.SEARCHING:
             self._look_around = None
             return None

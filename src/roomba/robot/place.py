@@ -51,6 +51,9 @@ class Place(Protocol):
         What it sees are the ends of beams, float64 [n, 2 or more], m, robot's frame.
         """
 
+    def look_anew(self) -> None:
+        """Give a search for its place its whole time again: the robot begins to look around."""
+
     def lift(self, is_lifted: bool) -> None:
         """Tell whether the wheels hang in the air."""
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
+from fixtures.homes.rooms import room_home
 from fixtures.homes.worlds import IDEAL
 from fixtures.robots.headless_cleans import assert_all_clean, assert_stands, begun, command
 from fixtures.robots.missions import (
@@ -23,6 +26,7 @@ from roomba.mission.cleaning.result import CleanOutcome, MissReason
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.phases.machine import Event
 from roomba.mission.transitions import RELEASED
+from roomba.perception.localization.estimate import Knowledge
 from roomba.vocabulary import CleanMode, Phase
 from roomba.world.engine.state.arrays import Fault
 
@@ -121,6 +125,31 @@ def test_resumed_in_the_air_it_stops_again() -> None:
     robot.run()
     command(robot, Event.RESUME)
     assert robot.run().result.outcome is CleanOutcome.FAULT
+
+
+def test_carried_elsewhere_where_it_stands_for_long_it_looks_around_when_told_to_clean() -> None:
+    """Two alcoves look alike from where it was set down."""
+    alcoves = ((0.0, 3.0, 1.1, 3.1), (1.9, 3.0, 4.2, 3.1), (5.0, 3.0, 7.6, 3.1))
+    walls = ((3.0, 0.0, 3.1, 3.0), (6.1, 0.0, 7.6, 3.0), (1.2, 0.0, 1.3, 1.3), (4.3, 0.0, 4.4, 1.3))
+    home = room_home(
+        7.6, 4.5, (*alcoves, *walls, (5.2, 0.0, 6.0, 0.9)), station=Pose(0.2, 3.8, math.pi)
+    )
+    robot = HeadlessMission(home, seed=3)
+    for _ in range(40):
+        robot.tick()
+    robot.simulator.inject(Fault.LIFTED, 1.0)
+    for _ in range(60):
+        robot.tick()
+    robot.simulator.put(Pose(3.6, 0.5, 1.0))
+    robot.simulator.inject(Fault.LIFTED, 0.0)
+    for _ in range(1200):
+        robot.tick()
+    assert robot.brain.localizer is not None
+    assert robot.brain.localizer.estimate.knowledge is Knowledge.LOST
+    robot.mission.clean(CleanRequest(CleanMode.SPOT), robot.senses())
+    until(robot, in_phase(robot, Phase.CLEANING), 30.0)
+    assert robot.brain.localizer.estimate.knowledge is Knowledge.KNOWN
+    assert robot.brain.pose.distance_to(robot.seen.pose.x, robot.seen.pose.y) < 0.05
 
 
 def test_carried_elsewhere_it_finds_its_place_and_goes_on() -> None:

@@ -253,6 +253,27 @@ def test_a_search_drives_only_while_more_must_be_seen() -> None:
     assert searching(robot, search) is None
 
 
+def test_one_that_stood_for_long_has_its_whole_time_to_look_around() -> None:
+    robot, timeout = Located(TWO_ROOMS, Pose(1.0, 1.0, 0.3)), CONFIG.localization.search_timeout
+    robot.stay(0.5)
+    robot.see_as = lambda ranges: np.where(ranges < 1.0, ranges, np.inf).astype(np.float32)
+    robot.localizer.forget("it was told so")
+    for _ in range(2):
+        robot.stay(timeout + 1.0)
+        assert robot.estimate.knowledge is Knowledge.LOST
+        search = SearchDrive(CONFIG.body, CONFIG.looking_around)
+        searching(robot, search)
+        assert robot.estimate.knowledge is Knowledge.SEARCHING
+        for _ in steps(timeout - 1.0):
+            robot.step(Twist())
+            searching(robot, search)
+            assert robot.estimate.knowledge is Knowledge.SEARCHING
+        for _ in steps(2.0):
+            robot.step(Twist())
+            searching(robot, search)
+        assert robot.estimate.knowledge is Knowledge.LOST
+
+
 def test_a_robot_in_the_air_does_not_look_around() -> None:
     robot, search = (
         Located(TWO_ROOMS, Pose(1.0, 1.0, 0.3)),

@@ -52,6 +52,9 @@ class Noted:
     def estimate(self) -> Estimate:
         return Estimate(Pose(), np.eye(3), Knowledge.KNOWN, 1.0, "")
 
+    def look_anew(self) -> None:
+        raise NotImplementedError
+
     def lift(self, is_lifted: bool) -> None:
         self.lifts.append(is_lifted)
 

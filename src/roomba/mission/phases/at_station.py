@@ -17,7 +17,7 @@ from roomba.mission.inputs.senses import EmptyingTold, Senses
 from roomba.mission.phases.job import Job
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
-from roomba.vocabulary import Hindrance, Reason
+from roomba.vocabulary import NO_REASON, Hindrance, Reason
 
 _NO_ANSWER: Final = "its station does not empty the bin: see whether its way in is free"
 _CHARGES_FIRST: Final = "the battery is empty: it stays on its station to charge"
@@ -52,7 +52,7 @@ class AtStation:
         self._stood.tick(senses.now)
         is_in = senses.battery.is_docked and self._undocking is None
         if is_in and is_empty:
-            return PhaseStep(event=Event.CONTACT, message=_CHARGES_FIRST)
+            return PhaseStep(event=Event.CONTACT, reason=Reason(_CHARGES_FIRST))
         if is_in and self._stood.elapsed < stand_first:
             return PhaseStep()
         sensed = self._sensed(senses)
@@ -143,7 +143,7 @@ class AtStation:
         """
         if senses.battery.is_docked:
             was_without, self._without_current = self._without_current, None
-            return None if was_without is None else PhaseStep(message="")
+            return None if was_without is None else PhaseStep(reason=NO_REASON)
         sensed = self._sensed(senses)
         if self._without_current is None or sensed.beams == NO_BEAMS:
             self._without_current = RobotTime(senses.now)
@@ -151,7 +151,7 @@ class AtStation:
         has_power = self._without_current.elapsed > self._config.contact_wait
         if has_power or not stands_in(station, sensed, self._config):
             return PhaseStep(event=Event.CONTACT_LOST)
-        return PhaseStep(message=_NO_CURRENT)
+        return PhaseStep(reason=Reason(_NO_CURRENT))
 
 
 def _not_emptied(why: str) -> PhaseStep:

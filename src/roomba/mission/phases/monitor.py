@@ -24,6 +24,7 @@ class Monitor:
         self._config, self._drives, self._ledger = config, drives, ledger
         self.was_docked = senses.battery.is_docked
         self._astray: RobotTime | None = None
+        self._begins_lost = senses.knowledge is Knowledge.LOST
         self._known_at = (senses.pose.x, senses.pose.y)
 
     @property
@@ -43,6 +44,7 @@ class Monitor:
         """Return what ends a drive; ``last_place``, m, is where it was a tick before."""
         if not state.drives:
             self._astray = None
+            self._begins_lost = senses.knowledge is Knowledge.LOST
             return None
         if senses.lifted:
             reason = "a wheel hangs in the air: set it down and resume"
@@ -54,6 +56,8 @@ class Monitor:
         return None if state.phase is Phase.DOCKING else self._lost(senses, last_place)
 
     def _lost(self, senses: Senses, last_place: tuple[float, float]) -> Failure | None:
+        is_lost = senses.knowledge is Knowledge.LOST
+        self._begins_lost = self._begins_lost and is_lost
         if senses.knowledge.is_usable:
             if self.is_astray:
                 self._found_again(senses)
@@ -62,8 +66,9 @@ class Monitor:
             self._astray = RobotTime(senses.now)
             self._known_at = last_place
         self._astray.tick(senses.now)
-        is_over = self._astray.elapsed > self._config.astray_timeout
-        if senses.knowledge is Knowledge.LOST or is_over:
+        # One that stood lost looks around first: the search begins anew with that.
+        wait = self._config.search_wait if self._begins_lost else self._config.astray_timeout
+        if (is_lost and not self._begins_lost) or self._astray.elapsed > wait:
             reason = f"the robot does not know where it is: {senses.trouble}"
             return Failure(CleanOutcome.LOST, reason)
         return None

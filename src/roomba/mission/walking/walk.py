@@ -71,6 +71,7 @@ class Walk:
         self._replans = self._ways_around = 0
         self._was_touching = any(senses.touches)
         self._went_astray, self._astray_since = False, senses.now
+        self._begins_lost = senses.knowledge is Knowledge.LOST
         self._known_at = (senses.pose.x, senses.pose.y)
         self._begin(self._plan_to_look(senses), senses)
 
@@ -120,8 +121,12 @@ class Walk:
             self._went_astray, self._astray_since = True, senses.now
         self._progressed = senses.now
         is_lost = senses.knowledge is Knowledge.LOST
-        is_lost |= senses.now - self._astray_since > self._config.astray_timeout
-        state = WalkState.FAILED if is_lost else WalkState.ASTRAY
+        self._begins_lost = self._begins_lost and is_lost
+        # One that stood lost looks around first: the search begins anew with that.
+        wait = self._config.search_wait if self._begins_lost else self._config.astray_timeout
+        is_over = senses.now - self._astray_since > wait
+        fails = (is_lost and not self._begins_lost) or is_over
+        state = WalkState.FAILED if fails else WalkState.ASTRAY
         reason = f"the robot does not know where it is: {senses.trouble}"
         return self._stay(state, senses, max_speed, reason)
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from roomba.configuration.localization import LocalizationConfig
 from roomba.geometry import Pose
+from roomba.perception.localization.knowledge import Searched
 from roomba.perception.localization.learned_walls import LearnedWalls
 from roomba.perception.localization.search.expecting import searched_for
 from roomba.perception.localization.search.particle_search import ParticleSearch
@@ -47,6 +48,7 @@ class GlobalSearch:
     ) -> None:
         """Begin on the map of ``walls``; ``expectation`` is where the robot should be, if any."""
         self.why, self.since, self.verdict = why, since, Verdict.SEARCHING
+        self._counted_from = since
         self._expectation, self._walls = expectation, walls
         self._config, self._body_radius = config, body_radius
         self._relocation: Relocation | None = None
@@ -63,7 +65,15 @@ class GlobalSearch:
 
     def clock_set(self, now: float) -> None:
         """Begin all times anew, by a clock that was set."""
-        self.since = self._tried = now
+        self.since = self._counted_from = self._tried = now
+
+    def look_anew(self, now: float) -> None:
+        """Count the time of the search from now on, s: the robot begins to look around."""
+        self._counted_from = now
+
+    def so_far(self, now: float) -> Searched:
+        """Return what came of it up to a time, s."""
+        return Searched(self.why, now - self._counted_from, self.verdict)
 
     def see(
         self, now: float, view: ScanView, reckoned: Pose, newest: Pose, believed: Pose

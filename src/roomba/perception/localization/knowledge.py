@@ -19,6 +19,7 @@ class Searched(NamedTuple):
 
     why: str
     seconds: float
+    """Since it began, or since the robot began to look around."""
     verdict: Verdict
     """Of the last time that all places were compared."""
 

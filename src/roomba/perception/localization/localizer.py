@@ -25,7 +25,7 @@ from roomba.perception.localization.confirmation import Confirmation
 from roomba.perception.localization.doubt import Doubt
 from roomba.perception.localization.estimate import UNKNOWN_COVARIANCE, Estimate, Knowledge
 from roomba.perception.localization.global_search import FoundPlace, GlobalSearch
-from roomba.perception.localization.knowledge import Circumstances, Searched, knowledge_in
+from roomba.perception.localization.knowledge import Circumstances, knowledge_in
 from roomba.perception.localization.place_follower import PlaceFollower
 from roomba.perception.localization.recent_sight_kernels import Sights
 from roomba.perception.localization.search.near_search import better_near
@@ -42,10 +42,9 @@ class Localizer:
     """Keeps the estimate; tell it what the sensors say in the order of time.
 
     ``view`` is the newest scan; ``placed`` is that scan where it was taken on the map, None if that
-    is not known. While it :attr:`is_calm`, kernels may do its work on ``belief``,
-    ``path`` and ``numbers`` (see :mod:`roomba.perception.localization.belief.correct_kernels`), and
-    on ``sights`` (see :mod:`roomba.perception.localization.recent_sight_kernels`), until it has
-    :meth:`resumed`.
+    is not known. While it :attr:`is_calm`, kernels may do its work on ``belief``, ``path`` and
+    ``numbers`` (see :mod:`.belief.correct_kernels`), and on ``sights`` (see
+    :mod:`.recent_sight_kernels`), until it has :meth:`resumed`.
     """
 
     def __init__(
@@ -260,13 +259,16 @@ class Localizer:
     @property
     def sight_to_look_around(self) -> tuple[Pose, Floats] | None:
         """Where it is reckoned to be and what it sees, if driving a little helps to find it."""
-        knowledge, _ = self._knowledge()
-        sees_nothing = self._map is None or self._is_blind or self._is_late
-        if knowledge is not Knowledge.SEARCHING or self._is_lifted or sees_nothing:
+        search, sees_nothing = self._search, self._map is None or self._is_blind or self._is_late
+        if search is None or self.view is None or self._is_lifted or sees_nothing:
             return None
-        if self.view is None or self._search is None or not self._search.needs_views(self._now):
-            return None
-        return self.reckoned, self.view.ends
+        looks = self._knowledge()[0] is Knowledge.SEARCHING and search.needs_views(self._now)
+        return (self.reckoned, self.view.ends) if looks else None
+
+    def look_anew(self) -> None:
+        """Give a search under way its whole time again: the robot begins to look around."""
+        if self._search is not None:
+            self._search.look_anew(self._now)
 
     @property
     def reckoned(self) -> Pose:
@@ -303,9 +305,6 @@ class Localizer:
 
     def _knowledge(self) -> tuple[Knowledge, str]:
         search, told_at = self._search, self._confirmation.told_at
-        searched = None
-        if search is not None:
-            searched = Searched(search.why, self._now - search.since, search.verdict)
         now = Circumstances(
             deviation=self._followed.position_deviation,
             has_map=self._map is not None,
@@ -316,7 +315,7 @@ class Localizer:
             is_doubted=self._doubt.lasts,
             is_awaited=self._confirmation.awaited is not None,
             is_compared=self._confirmation.compared is not None,
-            searched=searched,
+            searched=None if search is None else search.so_far(self._now),
         )
         return knowledge_in(now, self._config)
 

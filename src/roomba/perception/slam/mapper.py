@@ -263,6 +263,9 @@ class Mapper:
     def sight_to_look_around(self) -> None:
         """Nothing: it has no other place to find."""
 
+    def look_anew(self) -> None:
+        """Do nothing, for the same reason."""
+
     @property
     def newest_keyframe(self) -> tuple[int, Pose]:
         """The number in :attr:`trajectory` of the newest keyframe, and its pose, map frame.

@@ -26,7 +26,7 @@ from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.perception.localization.estimate import Knowledge
 from roomba.perception.swept.dirt_map import DirtMap
-from roomba.vocabulary import Hindrance
+from roomba.vocabulary import NO_REASON, Hindrance
 
 DOCKED = Senses(0.0, STATION, battery=Battery(0.5, 26.0, is_docked=True))
 BEFORE = Senses(0.0, Pose(0.9, 1.25, 0.0))
@@ -160,10 +160,10 @@ def test_in_a_station_without_power_it_waits_for_current(phase: str) -> None:
     for now in range(3600):
         waits = step(replace(without, now=float(now)))
         assert (waits.twist, waits.event) == (STANDSTILL, None)
-        assert waits.message is not None
-        assert "gives no current: see that it is plugged in" in waits.message
-    assert step(replace(DOCKED, now=3600.0)).message == ""
-    assert step(replace(DOCKED, now=3600.1)).message is None
+        assert waits.reason is not None
+        assert "gives no current: see that it is plugged in" in waits.reason.text
+    assert step(replace(DOCKED, now=3600.0)).reason == NO_REASON
+    assert step(replace(DOCKED, now=3600.1)).reason is None
 
 
 @pytest.mark.parametrize(
@@ -213,7 +213,7 @@ def test_a_bin_that_its_station_does_not_empty_is_emptied_by_hand(
     told: EmptyingTold | None,
 ) -> None:
     job = Job(DirtMap(HOME.map), MissionConfig(), 100.0, DOCKED)
-    step = at_the_station().empty(replace(DOCKED, emptying=told), job)
+    step = at_the_station().empty(replace(DOCKED, emptying=told), job, STATION)
     assert step.event is Event.FAILED
     assert step.reason is not None
     assert step.reason.hindrance is Hindrance.NOT_EMPTIED

@@ -100,6 +100,28 @@ def test_astray_it_is_given_its_time_though_the_clock_is_set(jump: float) -> Non
     assert rig.monitor.is_astray
 
 
+@pytest.mark.parametrize("is_told_so", [False, True])
+def test_one_that_stood_lost_looks_around_first(is_told_so: bool) -> None:
+    lost = replace(AWAY, knowledge=Knowledge.LOST, trouble="several places fit")
+    rig = Rig(lost) if is_told_so else Rig()
+    rig.failure(lost, MissionState(Phase.PAUSED, Errand.CLEAN))
+    assert rig.failure(lost) is None
+    assert rig.monitor.is_astray
+    # The search began anew.
+    assert rig.failure(replace(SEARCHING, now=1.0)) is None
+    failure = rig.failure(replace(lost, now=2.0))
+    assert failure is not None
+    assert failure.outcome is CleanOutcome.LOST
+
+
+def test_one_that_stood_lost_and_is_not_looked_for_says_so_soon() -> None:
+    lost, rig = replace(AWAY, knowledge=Knowledge.LOST), Rig()
+    rig.failure(lost, MissionState(Phase.PAUSED, Errand.CLEAN))
+    failures = [rig.failure(replace(lost, now=0.1 * tick)) for tick in range(40)]
+    first = next(index for index, failure in enumerate(failures) if failure is not None)
+    assert 0.1 * first == pytest.approx(ROBOT.walk.search_wait, abs=0.25)
+
+
 def test_standing_or_docking_it_does_not_matter_where_it_is() -> None:
     rig = Rig()
     rig.failure(SEARCHING)

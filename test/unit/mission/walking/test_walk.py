@@ -281,6 +281,22 @@ def test_a_lost_robot_gives_its_walk_up() -> None:
     assert "several places fit" in step.reason
 
 
+def test_a_walk_that_begins_lost_looks_around_first() -> None:
+    robot = furnished()
+    lost = Senses(0.0, Pose(0.5, 0.5), knowledge=Knowledge.LOST, trouble="several places fit")
+    walk = Walk(planner_of(robot), CONFIG, robot.mission.obstacles, (0.5, 3.5), lost)
+    assert walk.tick(replace(lost, now=0.05), 0.5).state is WalkState.ASTRAY
+    searched = replace(lost, now=1.0, knowledge=Knowledge.SEARCHING)
+    assert walk.tick(searched, 0.5).state is WalkState.ASTRAY
+    assert walk.tick(replace(lost, now=1.05), 0.5).state is WalkState.FAILED
+    # Where no search begins it says so soon.
+    walk = Walk(planner_of(robot), CONFIG, robot.mission.obstacles, (0.5, 3.5), lost)
+    late = replace(lost, now=CONFIG.walk.search_wait + 0.1)
+    assert walk.tick(replace(lost, now=0.05), 0.5).state is WalkState.ASTRAY
+    assert walk.tick(replace(late, now=1.0), 0.5).state is WalkState.ASTRAY
+    assert walk.tick(late, 0.5).state is WalkState.FAILED
+
+
 @pytest.mark.parametrize("speed", [0.15, 0.5])
 def test_around_corners_it_keeps_most_of_its_clearance(speed: float) -> None:
     """Slow or fast: the setpoint on a bend of many small ones is not so far ahead as to cut it."""
