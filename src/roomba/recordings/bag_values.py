@@ -14,7 +14,7 @@ import numpy as np
 
 from roomba.geometry import Pose
 from roomba.perception.matching.mounts import FrameTransform, frame_name
-from roomba.perception.matching.plausible import scan_fault
+from roomba.perception.matching.plausible import is_measured, scan_fault
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.recordings.log import MountOf
 from roomba.recordings.readings import (
@@ -170,11 +170,14 @@ def _off_map(message: Any, pose: Pose, *numbers: float) -> str:
 
 
 def _turning(message: Any, lidars: LidarBook) -> Value | Refused:
-    speed = float(message.angular_velocity.z)
+    if not is_measured(message.angular_velocity_covariance):
+        return Refused("messages of the gyro", "they say that no turning is measured")
+    turning = message.angular_velocity
+    mount = lidars.mount_of(str(message.header.frame_id), Kind.GYRO)
+    speed = mount.about_vertical((float(turning.x), float(turning.y), float(turning.z)))
     if not math.isfinite(speed):
         return Refused("messages of the gyro", f"it turns by {speed:g} rad/s")
-    is_upside_down = lidars.mount_of(str(message.header.frame_id), Kind.GYRO).is_upside_down
-    return Turning(-speed if is_upside_down else speed)
+    return Turning(speed)
 
 
 def _pose(message: Any) -> Pose:

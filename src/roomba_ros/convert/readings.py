@@ -21,6 +21,7 @@ from sensor_msgs.msg import BatteryState, Imu
 from roomba.geometry import Pose, Twist, wrap_angle
 from roomba.mission.docking.beams import StationBeams
 from roomba.mission.inputs.senses import Battery, EmptyingTold
+from roomba.perception.matching.plausible import is_measured
 from roomba.robot.readings import CliffReading, Readings
 from roomba_ros.convert.common import pose_of, pose_of_odometry, twist_of
 from roomba_ros.convert.errors import MessageError, require_finite
@@ -112,6 +113,8 @@ def stamped_pose_of(message: PoseStamped) -> StampedPose:
 
 def turning_of(message: Imu) -> GyroReading:
     """Return what the gyro measures about the vertical."""
+    if not is_measured(message.angular_velocity_covariance):
+        raise MessageError("expected a turning speed, got a message that says it measures none")
     turning = message.angular_velocity.z
     require_finite("a turning speed", turning)
     return GyroReading(message.header.stamp.to_sec(), turning)

@@ -192,6 +192,13 @@ def test_what_is_not_used_need_not_be_a_number() -> None:
     assert stamped_pose_of(pose) == StampedPose(2.0, Pose(1.0, 2.0, 0.0))
 
 
+def test_a_gyro_that_says_that_it_measures_nothing_is_refused() -> None:
+    imu = filled("sensor_msgs/Imu", 0.0)
+    imu.angular_velocity_covariance[0] = -1.0
+    with pytest.raises(MessageError, match="says it measures none"):
+        turning_of(imu)
+
+
 @pytest.mark.parametrize("speed", [-0.01, -5.0])
 def test_a_speed_below_nothing_is_refused(speed: float) -> None:
     with pytest.raises(MessageError, match="0 m/s or more, got -"):

@@ -25,7 +25,7 @@ from rosbags.rosbag1 import Reader, Writer
 from rosbags.rosbag2 import StoragePlugin
 
 from roomba.geometry import Pose
-from roomba.perception.matching.mounts import Mount, Mounts
+from roomba.perception.matching.mounts import UPRIGHT, UPSIDE_DOWN, Mount, Mounts
 from roomba.recordings.bag import BagLog
 from roomba.recordings.bag_file import BagFile
 from roomba.recordings.log import Channel
@@ -163,7 +163,7 @@ def test_a_gyro_that_hangs_upside_down_turns_the_other_way(tmp_path: Path) -> No
     log = BagLog(write_bag(tmp_path / "made.bag", items))
     [gyro] = [each for each in log.channels if each.kind is Kind.GYRO]
     for upside_down, expected in ((False, 0.25), (True, -0.25)):
-        mount = Mount(is_upside_down=upside_down)
+        mount = Mount(up=UPSIDE_DOWN if upside_down else UPRIGHT)
         [value] = log.values([gyro], np.ones(1, np.bool_), lambda *_, mount=mount: mount)
         assert value == Turning(expected)
     log.close()

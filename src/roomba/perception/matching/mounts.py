@@ -14,6 +14,11 @@ from roomba.geometry import Pose
 
 _DEEPEST: Final = 50
 """The most frames between a sensor and the root of its tree; more mean a cycle."""
+UPRIGHT: Final = (0.0, 0.0, 1.0)
+UPSIDE_DOWN: Final = (0.0, 0.0, -1.0)
+"""The robot's vertical along the axes of a sensor that stands, and of one that hangs."""
+_DIGITS: Final = 6
+"""Of the vertical; what a rotation is less than that off is its rounding."""
 _SHORTEST_ROTATION: Final = 1e-6
 """Length of a quaternion; a shorter one is no rotation."""
 
@@ -59,10 +64,25 @@ class FrameTransform(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Mount:
-    """Where a sensor is on the robot, as seen from above, and whether it hangs upside down."""
+    """Where a sensor is on the robot, as seen from above, and how it stands.
+
+    ``up`` is the robot's vertical along the sensor's axes x, y, z: a unit vector.
+    """
 
     pose: Pose = field(default_factory=Pose)
-    is_upside_down: bool = False
+    up: tuple[float, float, float] = UPRIGHT
+
+    @property
+    def is_upside_down(self) -> bool:
+        """Whether it hangs rather than stands."""
+        return self.up[2] < 0.0
+
+    def about_vertical(self, turning: tuple[float, float, float]) -> float:
+        """Return the part about the robot's vertical of a ``turning`` about the sensor's axes.
+
+        An axis that is level does not count: some sensors tell no number of it.
+        """
+        return sum(share * speed for share, speed in zip(self.up, turning, strict=True) if share)
 
 
 class Mounts:
@@ -96,8 +116,8 @@ class Mounts:
         if root != base_root:
             return None
         matrix = np.linalg.inv(base_place) @ place
-        upside_down = bool(matrix[2, 2] < 0.0)
-        return Mount(FrameTransform(base, frame, matrix).pose, upside_down)
+        x, y, z = matrix[2, :3].round(_DIGITS).tolist()
+        return Mount(FrameTransform(base, frame, matrix).pose, (x, y, z))
 
     def _from_root(self, frame: str) -> tuple[str, NDArray[np.float64]]:
         """Return the root of a frame's tree, and where the frame is in it, float64 [4, 4]."""

@@ -1,8 +1,11 @@
-"""What a scan is refused for: numbers that are those of no planar lidar in m and rad."""
+"""What messages are refused for: a scan for numbers that are those of no planar lidar in m and rad,
+and what says itself that it was not measured.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -10,10 +13,17 @@ from numpy.typing import NDArray
 
 FARTHEST_ECHO: Final = 100.0
 """m; no planar lidar that a robot carries measures more: what is told to be farther met nothing."""
+_UNMEASURED: Final = -1.0
+"""Stands for the first variance of what a driver does not measure (sensor_msgs/Imu)."""
 _WIDEST: Final = 4.0 * math.pi
 """rad; no scan goes round more often than twice."""
 _LEAST: Final = 10
 """Beams; fewer that are too far may have failed."""
+
+
+def is_measured(covariance: Sequence[float]) -> bool:
+    """Return whether a message of sensor_msgs/Imu measures what has this ``covariance``, [9]."""
+    return covariance[0] != _UNMEASURED
 
 
 def scan_fault(

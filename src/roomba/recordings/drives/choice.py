@@ -67,9 +67,9 @@ class Chosen:
         """Whether one of them is of odometry."""
         return any(channel.kind is Kind.ODOMETRY for channel in self.channels)
 
-    def without_odometry(self) -> Chosen:
-        """Return the same without a channel of odometry."""
-        kept = (channel for channel in self.channels if channel.kind is not Kind.ODOMETRY)
+    def without(self, kind: Kind) -> Chosen:
+        """Return the same without a channel of a kind."""
+        kept = (channel for channel in self.channels if channel.kind is not kind)
         return Chosen(tuple(kept), self.notes)
 
     def name(self, kind: Kind) -> str | None:

@@ -58,6 +58,8 @@ class LoggedDrive:
         wanted = wanted or Wanted()
         self.keeps_odometry = wanted.odometry is not None
         """Whether it does not go by scans alone: odometry was named."""
+        self.keeps_gyro = wanted.gyro is not None
+        """Whether a gyro was named, which counts even if it is doubtful."""
         self.counts = StampCounts()
         self.refused: Counter[str] = Counter()
         """How many messages of what could not be used."""
@@ -135,9 +137,21 @@ class LoggedDrive:
 
     def leave_odometry(self, reason: str) -> None:
         """Read no odometry from now on, and tell why."""
-        self._chosen = self._chosen.without_odometry()
-        self.counts = StampCounts()
         self.remark(f"the odometry is not used, it goes by scans alone: {reason}")
+        self._leave(Kind.ODOMETRY)
+
+    def leave_gyro(self, reason: str) -> None:
+        """Read no gyro from now on, and tell why."""
+        self.remark(
+            f"the gyro is not used: {reason}; --imu {self._chosen.name(Kind.GYRO)} uses it all the "
+            "same"
+        )
+        self._leave(Kind.GYRO)
+
+    def _leave(self, kind: Kind) -> None:
+        """Read no channel of a kind from now on."""
+        self._chosen = self._chosen.without(kind)
+        self.counts = StampCounts()
         self._times, self._arrivals, self._owners, self._order = self._timed()
 
     def take_sweep(self, sweep: Sweep) -> None:

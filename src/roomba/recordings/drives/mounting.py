@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
-from roomba.perception.matching.mounts import Mount, Mounts
+from roomba.perception.matching.mounts import UPRIGHT, UPSIDE_DOWN, Mount, Mounts
 from roomba.recordings.drives.choice import Wanted
 from roomba.recordings.log import Log
 from roomba.recordings.readings import Kind
@@ -56,7 +56,9 @@ class Mounting:
         if kind is not Kind.SCAN or self._laser is None:
             return mount
         hangs = self._is_upside_down
-        return Mount(self._laser, mount.is_upside_down if hangs is None else hangs)
+        if hangs is None:
+            return Mount(self._laser, mount.up)
+        return Mount(self._laser, UPSIDE_DOWN if hangs else UPRIGHT)
 
     def _searched(self, frame: str, kind: Kind) -> Mount:
         is_asked = kind is Kind.SCAN and self._laser is None

@@ -152,7 +152,7 @@ def test_of_a_text_log_what_is_missing_is_told_in_its_words() -> None:
 def test_odometry_may_be_left_out_afterwards() -> None:
     found = chosen(PATHS, [SCAN, ODOM, IMU], Wanted())
     assert found.has_odometry
-    left = found.without_odometry()
+    left = found.without(Kind.ODOMETRY)
     assert not left.has_odometry
     assert list(left.channels) == [each for each in found.channels if each != ODOM]
 

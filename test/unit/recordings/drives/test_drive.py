@@ -23,7 +23,7 @@ from fixtures.drives.made_logs import (
 )
 
 from roomba.geometry import Pose
-from roomba.perception.matching.mounts import Mount
+from roomba.perception.matching.mounts import UPSIDE_DOWN, Mount
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.recordings.drives.choice import Wanted
 from roomba.recordings.drives.drive import LoggedDrive
@@ -245,7 +245,7 @@ def test_what_a_drive_shows_of_its_lidar_is_taken_where_nothing_tells(tmp_path: 
     with LoggedDrive([path]) as recorded:
         before = lidar_of(list(recorded.readings()))
         assert not recorded.is_mount_told
-        recorded.take_mount(Mount(Pose(theta=-1.0), is_upside_down=True))
+        recorded.take_mount(Mount(Pose(theta=-1.0), UPSIDE_DOWN))
         recorded.take_sweep(Sweep(is_backwards=True, turn=0.2))
         after = lidar_of(list(recorded.readings()))
         [note] = recorded.notes

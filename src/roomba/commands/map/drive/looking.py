@@ -9,16 +9,17 @@ from typing import Final
 import numpy as np
 
 from roomba.arrays import Mask
-from roomba.commands.map.drive.lidar_samples import LidarSamples
-from roomba.commands.map.drive.shown_mount import ShownMount, shown_mount
-from roomba.commands.map.drive.shown_odometry import odometry_fault, shown_headings
-from roomba.commands.map.drive.shown_sweep import shown_sweep
+from roomba.commands.map.drive.shown.lidar_samples import LidarSamples
+from roomba.commands.map.drive.shown.shown_gyro import gyro_fault
+from roomba.commands.map.drive.shown.shown_mount import ShownMount, shown_mount
+from roomba.commands.map.drive.shown.shown_odometry import odometry_fault, shown_headings
+from roomba.commands.map.drive.shown.shown_sweep import shown_sweep
 from roomba.geometry import Pose
-from roomba.perception.matching.mounts import Mount
+from roomba.perception.matching.mounts import UPRIGHT, UPSIDE_DOWN, Mount
 from roomba.recordings.drives.drive import LoggedDrive
 from roomba.recordings.drives.fixed_beams import fixed_beams
 from roomba.recordings.drives.mounting import degrees_aside
-from roomba.recordings.readings import UNUSABLE_ODOMETRY
+from roomba.recordings.readings import UNUSABLE_ODOMETRY, Kind
 
 _ANOTHER_WAY: Final = 0.25
 """rad; a lidar that looks so far to a side is not taken to look ahead. Less is what its mounting is
@@ -48,6 +49,8 @@ def look_at_drive(drive: LoggedDrive) -> None:
     if fault:
         drive.remark(f"the odometry is doubtful: {fault}")
     _look_at_lidar(drive, samples)
+    if drive.chosen.name(Kind.GYRO) is not None:
+        _look_at_gyro(drive)
 
 
 def hidden_beams(samples: LidarSamples, headings: Sequence[float]) -> Mask:
@@ -125,13 +128,22 @@ def _look_at_lidar(drive: LoggedDrive, samples: LidarSamples) -> None:
         drive.take_mount(_mount_of(closer or shown))
 
 
+def _look_at_gyro(drive: LoggedDrive) -> None:
+    """Find out whether the gyro tells turns; its lidar is read as it was found to be."""
+    fault = gyro_fault(LidarSamples(drive.readings()))
+    if fault and drive.keeps_gyro:
+        drive.remark(f"the gyro is doubtful: {fault}")
+    elif fault:
+        drive.leave_gyro(fault)
+
+
 def _is_other(shown: ShownMount) -> bool:
     return shown.is_turned_over or abs(shown.yaw) > _ANOTHER_WAY
 
 
 def _mount_of(shown: ShownMount) -> Mount:
     yaw = shown.yaw if abs(shown.yaw) > _ANOTHER_WAY else 0.0
-    return Mount(Pose(theta=yaw), shown.is_turned_over)
+    return Mount(Pose(theta=yaw), UPSIDE_DOWN if shown.is_turned_over else UPRIGHT)
 
 
 def _contradiction(shown: ShownMount) -> str:

@@ -21,17 +21,24 @@ from fixtures.drives.made_logs import (
     write_bag,
 )
 from fixtures.drives.round_drive import round_drive
-from fixtures.drives.turning_drive import BEAM_TIME, half_circle, readings_of, turning_drive
+from fixtures.drives.turning_drive import (
+    BEAM_TIME,
+    SECONDS,
+    half_circle,
+    readings_of,
+    turning_drive,
+    turning_pose,
+)
 
-from roomba.commands.map.drive.lidar_samples import LidarSamples
 from roomba.commands.map.drive.looking import hidden_beams, look_at_drive
 from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
 from roomba.commands.map.drive.report import lines_of, summary_of
+from roomba.commands.map.drive.shown.lidar_samples import LidarSamples
 from roomba.geometry import Pose, wrap_angle
 from roomba.perception.matching.scan_view import LidarModel
 from roomba.recordings.drives.choice import Wanted
 from roomba.recordings.drives.drive import LoggedDrive
-from roomba.recordings.readings import LidarScan
+from roomba.recordings.readings import LidarScan, Turning
 
 
 def mapped(
@@ -214,6 +221,38 @@ def test_odometry_that_was_named_is_used_all_the_same_with_a_word(tmp_path: Path
     [note] = [note for note in done.notes if "the odometry" in note]
     assert note.startswith("the odometry is doubtful: it tells ways of ")
     assert done.replay.has_odometry
+
+
+def with_gyro(share: float) -> list[Item]:
+    """Return a drive with a gyro that tells a ``share`` of each turn."""
+    gyro = []
+    for number in range(int(50 * SECONDS)):
+        before, after = (
+            turning_pose(max(0.02 * number + step, 0.0)).theta for step in (-0.01, 0.01)
+        )
+        stamp = BEGAN + 0.02 * number
+        gyro.append(Item("/imu", share * (after - before) / 0.02, stamp, stamp + 0.02, "imu_link"))
+    return sorted([*turning_drive(), *gyro], key=lambda item: item.stamp)
+
+
+def test_a_gyro_that_tells_other_turns_is_left_out_and_that_is_told(tmp_path: Path) -> None:
+    done = mapped(tmp_path, with_gyro(-1.0), with_mount=True)
+    [note] = done.notes
+    assert note.startswith("the gyro is not used: it turns the other way than scans and odometry")
+    assert note.endswith("--imu /imu uses it all the same")
+    assert off(done) < 0.05
+    good = mapped(tmp_path, with_gyro(1.0), with_mount=True)
+    assert good.notes == ()
+    assert off(good) < 0.05
+
+
+def test_a_gyro_that_was_named_is_used_all_the_same_with_a_word(tmp_path: Path) -> None:
+    items = with_gyro(0.0)
+    with LoggedDrive([write_bag(tmp_path / "named.bag", items)], Wanted(gyro="/imu")) as drive:
+        look_at_drive(drive)
+        [note] = drive.notes
+        assert note.startswith("the gyro is doubtful: it tells turns of 0 rad where ")
+        assert any(isinstance(reading.value, Turning) for reading in drive.readings())
 
 
 def test_of_a_drive_that_is_recorded_right_nothing_is_told(tmp_path: Path) -> None:

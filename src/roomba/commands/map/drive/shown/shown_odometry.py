@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.arrays import Floats
-from roomba.commands.map.drive.lidar_samples import LidarSamples, laid_on
+from roomba.commands.map.drive.shown.lidar_samples import LidarSamples, laid_on
 
 _SELDOM: Final = 2.0
 """s between two messages, as a rule, from which most scans are of times without odometry."""

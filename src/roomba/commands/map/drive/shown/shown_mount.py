@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from roomba.arrays import Floats
-from roomba.commands.map.drive.lidar_samples import LidarSamples, Sample, laid_on
+from roomba.commands.map.drive.shown.lidar_samples import LidarSamples, Sample, laid_on
 
 _WAY, _TURN = 0.3, 0.3
 """m, rad; two scans are compared between which the robot moved so far, or turned."""
@@ -43,6 +43,18 @@ _YAWS: Final = np.linspace(-math.pi, math.pi, 721)
 """rad; ways to look that are compared, half a degree apart."""
 
 
+class ShownMove(NamedTuple):
+    """A move from the stamp ``begin`` to ``end``, s.
+
+    The odometry has it as ``told``, and scans alone as ``shown``, both [3]: ahead, left, turned.
+    """
+
+    begin: float
+    end: float
+    told: Floats
+    shown: Floats
+
+
 class ShownMount(NamedTuple):
     """What scans show of a lidar against how it was taken to be mounted.
 
@@ -57,9 +69,10 @@ class ShownMount(NamedTuple):
 
 def shown_mount(samples: LidarSamples) -> ShownMount | None:
     """Return what is clear; None if nothing is."""
-    moves = _moves(samples)
-    if len(moves) < _LEAST_PAIRS:
+    found = shown_moves(samples)
+    if len(found) < _LEAST_PAIRS:
         return None
+    moves = np.array([(move.told, move.shown) for move in found])
     by_odometry, by_scans = moves[:, 0], moves[:, 1]
     turned = float((by_odometry[:, 2] ** 2).sum())
     alike, opposite = (
@@ -73,8 +86,8 @@ def shown_mount(samples: LidarSamples) -> ShownMount | None:
     return ShownMount(is_turned_over, _yaw(by_odometry, by_scans))
 
 
-def _moves(samples: LidarSamples) -> Floats:
-    """Return pairs of moves by the odometry and by scans alone, [n, 2, 3]: ahead, left, turned."""
+def shown_moves(samples: LidarSamples) -> list[ShownMove]:
+    """Return moves by the odometry and by scans alone, in the order of time."""
     chosen: list[Sample] = []
     for sample in samples.scans:
         if chosen:
@@ -92,8 +105,8 @@ def _moves(samples: LidarSamples) -> Floats:
         place, points = samples.points(before), samples.points(sample)
         match = laid_on(place, points, np.zeros(3), way + _MORE_WAY, turn + _MORE_TURN)
         if match is not None:
-            moves.append((told, match.pose))
-    return np.array(moves).reshape(-1, 2, 3)
+            moves.append(ShownMove(before.stamp, sample.stamp, told, match.pose))
+    return moves
 
 
 def _yaw(by_odometry: Floats, by_scans: Floats) -> float:

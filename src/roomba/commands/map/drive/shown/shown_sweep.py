@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from roomba.arrays import Floats
-from roomba.commands.map.drive.lidar_samples import LidarSamples, Sample, laid_on
+from roomba.commands.map.drive.shown.lidar_samples import LidarSamples, Sample, laid_on
 from roomba.recordings.drives.sweeps import Sweep
 
 _TURNING: Final = 0.03

@@ -10,8 +10,8 @@ import pytest
 from fixtures.drives.made_logs import LASER, Item, drive
 from fixtures.drives.turning_drive import half_circle, readings_of, turning_drive
 
-from roomba.commands.map.drive.lidar_samples import LidarSamples
-from roomba.commands.map.drive.shown_mount import ShownMount, shown_mount
+from roomba.commands.map.drive.shown.lidar_samples import LidarSamples
+from roomba.commands.map.drive.shown.shown_mount import ShownMount, shown_mount
 from roomba.geometry import Pose, wrap_angle
 
 

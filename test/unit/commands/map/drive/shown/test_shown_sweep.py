@@ -9,8 +9,8 @@ import pytest
 from fixtures.drives.made_logs import PERIOD, at, changed
 from fixtures.drives.turning_drive import BEAM_TIME, half_circle, readings_of, turning_drive
 
-from roomba.commands.map.drive.lidar_samples import LidarSamples
-from roomba.commands.map.drive.shown_sweep import shown_sweep
+from roomba.commands.map.drive.shown.lidar_samples import LidarSamples
+from roomba.commands.map.drive.shown.shown_sweep import shown_sweep
 from roomba.recordings.drives.sweeps import Sweep
 
 

@@ -11,8 +11,8 @@ from fixtures.drives.made_logs import Item, changed, drive, poor
 from fixtures.drives.round_drive import round_drive
 from fixtures.drives.turning_drive import half_circle, readings_of, turning_drive
 
-from roomba.commands.map.drive.lidar_samples import LidarSamples
-from roomba.commands.map.drive.shown_odometry import odometry_fault, shown_headings
+from roomba.commands.map.drive.shown.lidar_samples import LidarSamples
+from roomba.commands.map.drive.shown.shown_odometry import odometry_fault, shown_headings
 from roomba.geometry import Pose
 
 

@@ -19,7 +19,7 @@ from roomba.perception.slam.scan_matching.surface_kernels import (
     surface_points,
 )
 from roomba.recordings.drives.sweeps import Sweep, SweptScans
-from roomba.recordings.readings import LidarScan, Odometry, Reading
+from roomba.recordings.readings import LidarScan, Odometry, Reading, Turning
 
 _APART_WAY, _APART_TURN = 0.03, 0.03
 """m, rad; between scans that are kept: a robot that stands shows nothing new."""
@@ -65,11 +65,13 @@ class LidarSamples:
     ``period`` is the usual time between two, s, ``odometry_period`` that of odometry; 0 without.
     ``count`` is how many scans came, also of which odometry tells nothing. With ``has_odometry``
     there is enough of it to tell anything; if it ``never_changes``, it has one pose alone.
+    ``turnings`` are rows of stamp, s, and turning speed, rad/s, of a gyro till the last scan.
     """
 
     def __init__(self, readings: Iterable[Reading]) -> None:
         """Keep scans until there are enough, and all odometry till then."""
         rows: list[tuple[float, float, float, float]] = []
+        turnings: list[tuple[float, float]] = []
         kept: list[tuple[float, LidarScan]] = []
         stamps: list[float] = []
         apart_from: tuple[float, float, float] | None = None
@@ -77,6 +79,8 @@ class LidarSamples:
         for stamp, value, _ in readings:
             if isinstance(value, Odometry) and (not rows or stamp > rows[-1][0]):
                 rows.append((stamp, value.pose.x, value.pose.y, value.pose.theta))
+            elif isinstance(value, Turning):
+                turnings.append((stamp, value.speed))
             elif isinstance(value, LidarScan):
                 self.count += 1
                 if not rows:
@@ -93,6 +97,7 @@ class LidarSamples:
         path = np.array(rows).reshape(-1, 4)
         path[:, 3] = np.unwrap(path[:, 3])
         self._path = _Path(path)
+        self.turnings = np.array(turnings).reshape(-1, 2)
         self.period, self.odometry_period = _period(stamps), _period(path[:, 0])
         self.has_odometry = len(rows) >= _TIMES
         self.never_changes = self.has_odometry and not np.ptp(path[:, 1:], axis=0).any()

@@ -15,7 +15,7 @@ from fixtures.drives.turning_drive import (
     turning_pose,
 )
 
-from roomba.commands.map.drive.lidar_samples import LidarSamples
+from roomba.commands.map.drive.shown.lidar_samples import LidarSamples
 from roomba.geometry import Pose
 from roomba.recordings.drives.sweeps import Sweep
 from roomba.recordings.readings import LidarScan, Odometry, Reading

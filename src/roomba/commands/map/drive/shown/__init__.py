@@ -1,0 +1,1 @@
+"""What the scans of a recorded drive show: of its lidar, its odometry and its gyro."""
