@@ -29,7 +29,7 @@ from roomba.recordings.readings import (
     Refused,
     Value,
 )
-from roomba.recordings.times.clock_rate import drift_of, unit_of
+from roomba.recordings.times.clock_rate import drift_of, drift_of_played, drift_of_recorder, unit_of
 from roomba.recordings.times.stamps import (
     StampCounts,
     delay_of,
@@ -255,12 +255,14 @@ class LoggedDrive:
         entries = list(log.entries(channels))
         own = np.array([entry.channel for entry in entries], np.int64)
         stamps = np.array([entry.stamp for entry in entries], np.float64)
-        arrivals = np.array([entry.arrival for entry in entries], np.float64)
+        recorded = np.array([entry.arrival for entry in entries], np.float64)
+        arrivals = recorded.copy()
         is_by_order = np.array([entry.is_by_order for entry in entries], np.bool_)
         for mask in self._not_told_apart(channels, own, stamps, arrivals):
             is_by_order[mask] = True
         for at, channel in enumerate(channels):
             self._take_units(channel, own == at, stamps, arrivals)
+        self._follow_odometry(channels, own, stamps, arrivals)
         self._even_rates(channels, own, stamps, arrivals)
         delays = [delay_of(stamps[own == at], arrivals[own == at]) for at in range(len(channels))]
         reference = self._reference(channels, delays)
@@ -279,7 +281,7 @@ class LoggedDrive:
                     f"the clock of {channel.name} is {reference - delay:+.1f} s off that of the "
                     "odometry: its times are shifted"
                 )
-        return times, arrivals, numbers
+        return times, recorded, numbers
 
     def _take_units(self, channel: Channel, mask: Mask, stamps: Floats, arrivals: Floats) -> None:
         """Take the stamps of a channel, in place, for what they are if they are no seconds."""
@@ -288,22 +290,38 @@ class LoggedDrive:
             stamps[mask] /= unit
             self._remarks.append(f"the stamps of {channel.name} are in {name}: taken so")
 
+    def _follow_odometry(
+        self, channels: Sequence[Channel], own: Ints64, stamps: Floats, arrivals: Floats
+    ) -> None:
+        """Let ``arrivals``, in place, go on as the stamps of the odometry do.
+
+        The clock of the recorder may go at another rate than that of the robot: what was recorded
+        was played, or simulated, faster or slower than it happens.
+        """
+        pairs = [(stamps[own == at], arrivals[own == at]) for at in range(len(channels))]
+        drift = self._reference(channels, [drift_of(*pair) for pair in pairs])
+        played = [drift_of_played(*pair) for pair in pairs]
+        drift = drift or drift_of_recorder(self._reference(channels, played), played)
+        if drift:
+            arrivals -= drift * (arrivals - arrivals.min())
+
     def _even_rates(
         self, channels: Sequence[Channel], own: Ints64, stamps: Floats, arrivals: Floats
     ) -> None:
-        """Let stamps, in place, go on as those of the odometry, by a clock that is fast or slow."""
-        drifts = [drift_of(stamps[own == at], arrivals[own == at]) for at in range(len(channels))]
-        reference = self._reference(channels, drifts)
+        """Let stamps, in place, go on as arrivals do, by a clock that is fast or slow.
+
+        Arrivals go on as the stamps of the odometry do.
+        """
         spent = float(np.ptp(arrivals)) if len(arrivals) else 0.0
-        for at, (channel, drift) in enumerate(zip(channels, drifts, strict=True)):
-            more = drift - reference
-            if abs(more) * spent < _DRIFTED:
-                continue
+        for at, channel in enumerate(channels):
             mask = own == at
-            stamps[mask] += more * (arrivals[mask] - arrivals.min())
+            drift = drift_of(stamps[mask], arrivals[mask])
+            if abs(drift) * spent < _DRIFTED:
+                continue
+            stamps[mask] += drift * (arrivals[mask] - arrivals.min())
             self._remarks.append(
-                f"the clock of {channel.name} is {'slow' if more > 0.0 else 'fast'} beside that of "
-                f"the odometry, by {100.0 * abs(more):.2g} %: its times are evened out"
+                f"the clock of {channel.name} is {'slow' if drift > 0.0 else 'fast'} beside that "
+                f"of the odometry, by {100.0 * abs(drift):.2g} %: its times are evened out"
             )
 
     def _not_told_apart(

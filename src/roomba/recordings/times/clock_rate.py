@@ -6,6 +6,7 @@ recorded as long after its stamp at the end of a drive as at its begin.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -22,6 +23,11 @@ _EVEN: Final = 0.2
 """Share of what a delay grew by; so far off the mean of both ends it may be in the middle."""
 _FASTEST: Final = 0.05
 """Share; no clock is more fast or slow."""
+_PARTS: Final = 10
+_ONE: Final = 0.05
+"""Parts of a channel, and the share by which the rate of each is off the one of all at most."""
+_SAME_RATE: Final = 0.02
+"""Share by which the rates of two channels differ at most that the recorder's clock is off."""
 
 
 def unit_of(stamps: Floats, arrivals: Floats) -> tuple[float, str]:
@@ -37,6 +43,33 @@ def unit_of(stamps: Floats, arrivals: Floats) -> tuple[float, str]:
             if abs(rate / unit - 1.0) < _SAME_UNIT:
                 return unit, name
     return 1.0, "s"
+
+
+def drift_of_recorder(reference: float, drifts: Sequence[float]) -> float:
+    """Return by how much all that was recorded goes on at another rate, s in a second; else 0.
+
+    ``drifts`` are those of all channels, and ``reference`` is that of the one whose clock counts:
+    another channel has to tell the same.
+    """
+    near = [abs(drift - reference) < _SAME_RATE * abs(1.0 - reference) for drift in drifts]
+    return reference if sum(near) > 1 else 0.0
+
+
+def drift_of_played(stamps: Floats, arrivals: Floats) -> float:
+    """Return the same as :func:`drift_of`, but also more than what a clock drifts.
+
+    All along the channel the stamps have to go on at one rate.
+    """
+    valid = valid_stamps(stamps)
+    count = int(np.count_nonzero(valid))
+    if count < _LEAST or not arrivals_tell(stamps[valid], arrivals):
+        return 0.0
+    parts = (np.array_split(each[valid], _PARTS) for each in (stamps, arrivals))
+    told, came = ([float(np.median(part)) for part in each] for each in parts)
+    spent = np.diff(came)
+    rate = (told[-1] - told[0]) / (came[-1] - came[0]) if (spent > 0.0).all() else 0.0
+    is_one_rate = rate > 0.0 and bool((np.abs(np.diff(told) / spent / rate - 1.0) < _ONE).all())
+    return 1.0 - rate if is_one_rate else 0.0
 
 
 def drift_of(stamps: Floats, arrivals: Floats) -> float:

@@ -95,6 +95,42 @@ def test_another_clock_is_told_with_its_difference(tmp_path: Path) -> None:
     assert any("clock of /scan is -37.0 s off that of the odometry" in n for n in recorded.notes)
 
 
+def played(items: Sequence[Item], rate: float) -> list[Item]:
+    """Return what is recorded of items that are played at a rate."""
+    return [
+        replace(item, arrival=BEGAN + (item.stamp - BEGAN) / rate + 0.02 + 1e-4 * (n % 3))
+        for n, item in enumerate(items)
+    ]
+
+
+@pytest.mark.parametrize("rate", [0.5, 0.97, 1.0, 2.0, 5.0])
+def test_what_was_played_faster_or_slower_keeps_its_times_though_scans_begin_later(
+    tmp_path: Path, rate: float
+) -> None:
+    items = [i for i in drive(30.0) if i.topic == "/odom" or i.stamp > BEGAN + 8.0]
+    readings, recorded = read([write_bag(tmp_path / "made.bag", played(items, rate))])
+    assert_whole(readings, items)
+    assert recorded.notes == []
+
+
+def test_scans_that_are_few_keep_their_times_beside_odometry_of_a_clock_that_drifts(
+    tmp_path: Path,
+) -> None:
+    items = [i for n, i in enumerate(drive(60.0)) if i.topic == "/odom" or n % 15 == 1]
+    readings, recorded = read([write_bag(tmp_path / "made.bag", played(items, 0.98))])
+    assert_whole(readings, items)
+    assert recorded.notes == []
+
+
+def test_a_clock_that_is_slow_beside_that_of_the_odometry_is_evened_out(tmp_path: Path) -> None:
+    items = drive(40.0)
+    slow = changed(items, "/scan", lambda _, i: at(i, BEGAN + 0.98 * (i.stamp - BEGAN)))
+    readings, recorded = read([write_bag(tmp_path / "made.bag", slow)])
+    assert_whole(readings, items, 0.03)
+    [note] = recorded.notes
+    assert note.startswith("the clock of /scan is slow beside that of the odometry, by 2 %")
+
+
 def test_messages_that_overtook_each_other_are_sorted(tmp_path: Path) -> None:
     items = drive(SECONDS)
     held_up = changed(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from roomba.recordings.times.clock_rate import drift_of, unit_of
+from roomba.recordings.times.clock_rate import drift_of, drift_of_played, drift_of_recorder, unit_of
 
 Floats = NDArray[np.float64]
 
@@ -32,6 +32,30 @@ def test_a_clock_that_is_fast_or_slow_is_told(rate: float) -> None:
     stamps, arrivals = drive()
     told = stamps[0] + (1.0 + rate) * (stamps - stamps[0])
     assert drift_of(told, arrivals) == pytest.approx(-rate, abs=3e-4)
+
+
+def test_the_clock_of_the_recorder_goes_at_any_rate_that_two_channels_tell() -> None:
+    assert drift_of_recorder(0.5, [0.5, 0.502, 0.0]) == 0.5
+    assert drift_of_recorder(-1.0, [-1.01, -1.0]) == -1.0
+    assert drift_of_recorder(0.5, [0.0, 0.5]) == 0.0
+
+
+@pytest.mark.parametrize("rate", [0.1, 0.5, 2.0, 10.0])
+def test_a_rate_at_which_something_was_played_is_told(rate: float) -> None:
+    stamps, arrivals = drive()
+    told = stamps[0] + rate * (stamps - stamps[0])
+    assert drift_of_played(told, arrivals) == pytest.approx(1.0 - rate, rel=0.01)
+
+
+def test_stamps_that_do_not_go_on_at_one_rate_tell_none() -> None:
+    stamps, arrivals = drive()
+    half = len(stamps) // 2
+    set_back = np.concatenate((stamps[:half], stamps[:half]))
+    two_rates = stamps + np.maximum(stamps - stamps[half], 0.0)
+    for wrong in (set_back, two_rates, stamps[::-1], np.zeros(len(stamps))):
+        assert drift_of_played(wrong, arrivals) == 0.0
+    assert drift_of_played(stamps[:40], arrivals[:40]) == 0.0
+    assert drift_of_played(stamps, np.zeros(len(stamps))) == 0.0
 
 
 def test_a_clock_that_is_right_does_not_drift() -> None:
