@@ -6,8 +6,9 @@ versions of ROS: what a bag says about the types of its messages is not read.
 
 from __future__ import annotations
 
+import math
 import struct
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
@@ -39,7 +40,9 @@ _OWN_TYPES: Final = ("geometry_msgs/PoseStamped", _TOLD_TYPE, _WITHOUT_STAMP)
 _TRANSFORMS: Final = (TRANSFORMS, "tf/tfMessage")
 _FIXED_MESSAGES: Final = 1000
 _MOVING_MESSAGES: Final = 300
-"""Messages of /tf_static and /tf that are searched for the mounts of sensors."""
+"""Messages of /tf_static and /tf that are searched for the mounts of sensors: /tf goes on to be
+searched for a lidar of which nothing was told till then.
+"""
 _ODOMETRY_FRAME: Final = "odom"
 _STAMP: Final = struct.Struct("<4xII")
 """Of a message with a header: its stamp, s and ns, after a number (ROS 1) or what tells how the
@@ -93,10 +96,11 @@ class BagLog:
 
         Some robots tell again and again on /tf what never changes.
         """
-        fixed = [each for _, each in self._transforms(_FIXED_MESSAGES, is_static=True)]
+        fixed = list(self._transforms(_FIXED_MESSAGES, is_static=True))
         known = {each.child for each in fixed}
         base = "" if self._moving is None else self._moving.child
-        moving = (each for _, each in self._transforms(_MOVING_MESSAGES, is_static=False))
+        sought = self._frames_of_scans() - known
+        moving = list(self._transforms(_MOVING_MESSAGES, is_static=False, sought=sought))
         return [
             *(
                 each
@@ -149,22 +153,43 @@ class BagLog:
 
     @cached_property
     def _moving(self) -> FrameTransform | None:
-        """The first transform that is odometry."""
-        found = (each for _, each in self._transforms(_MOVING_MESSAGES, is_static=False))
+        """The first transform that is odometry, however late it comes if no topic tells any."""
+        is_told = any(_KINDS.get(type_) is Kind.ODOMETRY for type_, _ in self._file.topics.values())
+        found = self._transforms(_MOVING_MESSAGES if is_told else math.inf, is_static=False)
         return next((each for each in found if _ODOMETRY_FRAME in each.parent.lower()), None)
 
     def _is_odometry(self, transform: FrameTransform) -> bool:
         odometry = self._moving
         return odometry is not None and transform[:2] == odometry[:2]
 
-    def _transforms(self, most: int, *, is_static: bool) -> Iterator[tuple[float, FrameTransform]]:
-        """Yield stamps and transforms of the first messages of them."""
+    def _frames_of_scans(self) -> set[str]:
+        """Return the frames of lidars, as the first scan of each topic tells them."""
+        topics = (
+            Channel(name, Kind.SCAN, type_, count)
+            for name, (type_, count) in self._file.topics.items()
+            if _KINDS.get(type_) is Kind.SCAN
+        )
+        firsts = (next(self._messages(each), None) for each in topics)
+        return {frame_name(str(first.header.frame_id)) for first in firsts if first is not None}
+
+    def _transforms(
+        self, most: float, *, is_static: bool, sought: Set[str] = frozenset()
+    ) -> Iterator[FrameTransform]:
+        """Yield the transforms of the first messages of each topic.
+
+        Of later ones it yields the first of each frame that is ``sought``, until all were there.
+        """
+        missing = set(sought)
         for name, (type_, _) in self._file.topics.items():
             if type_ not in _TRANSFORMS or _is_static(name) is not is_static:
                 continue
-            messages = self._messages(Channel(name, None, type_, 0))
-            for message, _ in zip(messages, range(most), strict=False):
-                yield from transforms_in(message)
+            for number, message in enumerate(self._messages(Channel(name, None, type_, 0))):
+                if number >= most and not missing:
+                    break
+                for _, each in transforms_in(message):
+                    if number < most or each.child in missing:
+                        yield each
+                    missing.discard(each.child)
 
     def _messages(self, channel: Channel) -> Iterator[Any]:
         """Yield the messages of a topic that are not cut short."""

@@ -6,6 +6,7 @@ import gzip
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -155,6 +156,37 @@ def test_odometry_that_is_only_in_the_transforms_is_found_there(tmp_path: Path) 
     )
     assert all(isinstance(value, Odometry) for _, value in found)
     assert {each.child for each in log.transforms()} == {"laser"}
+    log.close()
+
+
+def test_what_first_comes_late_on_tf_is_found(tmp_path: Path) -> None:
+    """Odometry that begins when a robot does, beside a publisher of mounts that is quick."""
+    items = [replace(item, topic="/tf") if item.topic == "/odom" else item for item in drive(2.0)]
+    late = max(item.arrival for item in items)
+    path = tmp_path / "made.bag"
+    store = known_types(is_first=True)
+    made = Messages(store)
+    screen, laser = (
+        made.transforms([made.transform(BEGAN, "base_link", name, LASER)])
+        for name in ("screen", "laser")
+    )
+    early = [("/tf", screen, "tf2_msgs/msg/TFMessage", BEGAN - 400.0 + at) for at in range(400)]
+    told = [(item.topic, *made.of(item), item.arrival) for item in items]
+    messages = [*early, *told, ("/tf", laser, "tf2_msgs/msg/TFMessage", late)]
+    with Writer(path) as writer:
+        topics: dict[str, Any] = {}
+        for topic, message, type_, arrival in messages:
+            if topic not in topics:
+                topics[topic] = writer.add_connection(topic, type_, typestore=store)
+            raw = store.serialize_ros1(message, type_)
+            writer.write(topics[topic], round(1e9 * arrival), raw)
+    log = BagLog(path)
+    [odometry] = [each for each in log.channels if each.kind is Kind.ODOMETRY]
+    assert log.frames(odometry) == ("odom", "base_link")
+    assert len(read(log, odometry)) == sum(item.topic == "/tf" for item in items)
+    mounts = Mounts()
+    mounts.add(log.transforms())
+    assert mounts.mount("base_link", "laser") == Mount(LASER)
     log.close()
 
 
