@@ -36,17 +36,22 @@ _MAP: Final = "map"
 _NOT_FINITE: Final = "its numbers are not finite"
 _CLIPPED: Final = 0.1
 """Share of a scan's beams that all are as long as the longest one: they are cut there."""
+_UNEVEN: Final = 0.02
+"""Share by which the turns of a lidar differ: 1 mrad where a robot turns by 0.5 rad/s."""
 _LEAST_DEVIATION: Final = 0.1
 """m, rad; of a told pose whose sender does not say how sure it is."""
 
 
 class LidarBook:
-    """The lidars whose scans came; one is made anew only when it changed."""
+    """The newest lidar of each frame; one is made anew only when it changed.
+
+    Some drivers tell of each scan how fast the lidar turned just then, which is no other lidar.
+    """
 
     def __init__(self, mount_of: MountOf) -> None:
         """``mount_of`` tells where the frame of a sensor is on the robot."""
         self.mount_of = mount_of
-        self._known: dict[tuple[object, ...], LidarModel] = {}
+        self._newest: dict[str, tuple[tuple[object, ...], float, LidarModel]] = {}
         self._cut_at: dict[str, float] = {}
 
     def lidar_of(self, message: Any) -> LidarModel:
@@ -55,13 +60,16 @@ class LidarBook:
         first, step, beams = message.angle_min, message.angle_increment, len(message.ranges)
         nearest, _ = _told_ranges(message)
         ranges, increment = (nearest, self._farthest(message)), message.time_increment
-        key = (frame, beams, first, step, *ranges, increment)
-        if key not in self._known:
-            mount = self.mount_of(frame, Kind.SCAN)
-            angles = first + step * np.arange(beams)
-            angles = -angles if mount.is_upside_down else angles
-            self._known[key] = LidarModel(angles, *ranges, mount.pose, increment)
-        return self._known[key]
+        key = (beams, first, step, *ranges)
+        known = self._newest.get(frame)
+        if known is not None and known[0] == key and _is_same(increment, known[1]):
+            return known[2]
+        mount = self.mount_of(frame, Kind.SCAN)
+        angles = first + step * np.arange(beams)
+        angles = -angles if mount.is_upside_down else angles
+        lidar = LidarModel(angles, *ranges, mount.pose, increment)
+        self._newest[frame] = (key, increment, lidar)
+        return lidar
 
     def _farthest(self, message: Any) -> float:
         """Return from which range on a beam met nothing, m.
@@ -97,6 +105,11 @@ def transforms_in(message: Any) -> Iterator[tuple[float, FrameTransform]]:
         except ValueError:
             continue
         yield stamp.sec + 1e-9 * stamp.nanosec, transform
+
+
+def _is_same(increment: float, known: float) -> bool:
+    """Whether a time between beams, s, is as the known one, but for how evenly a motor turns."""
+    return abs(increment - known) <= _UNEVEN * abs(known)
 
 
 def _told_ranges(message: Any) -> tuple[float, float]:

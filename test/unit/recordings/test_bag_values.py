@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import math
+import weakref
 from types import SimpleNamespace
 from typing import Any
 
@@ -59,6 +61,41 @@ def test_an_axis_that_is_level_need_not_be_a_number() -> None:
     flat = mounted((0.0, 0.0, 0.0, 1.0))
     assert decoded(Kind.GYRO, turning(math.nan, math.nan, 0.5), flat) == Turning(0.5)
     assert isinstance(decoded(Kind.GYRO, turning(0.0, 0.0, math.nan), flat), Refused)
+
+
+def scan(increment: float, frame: str = "laser", beams: int = 4) -> Any:
+    """Return a message of a lidar."""
+    return SimpleNamespace(
+        header=SimpleNamespace(frame_id=frame),
+        angle_min=0.0,
+        angle_increment=0.1,
+        time_increment=increment,
+        range_min=0.1,
+        range_max=9.0,
+        ranges=np.arange(1.0, beams + 1.0),
+    )
+
+
+def test_a_lidar_that_turns_a_little_faster_is_the_same() -> None:
+    book = LidarBook(lambda frame, kind: Mount())
+    one = book.lidar_of(scan(1e-4))
+    assert one.time_increment == 1e-4
+    assert all(book.lidar_of(scan(each)) is one for each in (1.01e-4, 0.99e-4, 1.015e-4))
+    faster = book.lidar_of(scan(0.9e-4))
+    assert faster.time_increment == 0.9e-4
+    assert book.lidar_of(scan(-0.9e-4)) is not faster
+
+
+def test_of_each_frame_the_newest_lidar_alone_is_kept() -> None:
+    book = LidarBook(lambda frame, kind: Mount())
+    one, other = (book.lidar_of(scan(0.0, frame)) for frame in ("left", "right"))
+    assert book.lidar_of(scan(0.0, "left")) is one
+    assert book.lidar_of(scan(0.0, "right")) is other
+    before = weakref.ref(book.lidar_of(scan(0.0, "left", beams=5)))
+    del one
+    book.lidar_of(scan(0.0, "left"))
+    gc.collect()
+    assert before() is None
 
 
 def test_a_gyro_that_says_that_it_measures_nothing_is_refused() -> None:

@@ -36,15 +36,18 @@ class SweptScans:
     def __init__(self, sweep: Sweep) -> None:
         """Take how the scans were measured."""
         self._sweep = sweep
-        self._lidars: dict[LidarModel, LidarModel] = {}
+        self._newest: tuple[LidarModel, LidarModel] | None = None
 
     def of(self, scan: LidarScan) -> LidarScan:
         """Return a scan with its beams in the order of time."""
         is_backwards = self._sweep.is_backwards
         ranges = scan.ranges[::-1] if is_backwards else scan.ranges
-        if scan.lidar not in self._lidars:
-            increment, turn = abs(scan.lidar.time_increment), self._sweep.turn
-            if turn is not None:
-                increment = turn * abs(scan.lidar.step) / math.tau
-            self._lidars[scan.lidar] = scan.lidar.swept(increment, is_backwards=is_backwards)
-        return LidarScan(np.ascontiguousarray(ranges), self._lidars[scan.lidar])
+        if self._newest is None or self._newest[0] is not scan.lidar:
+            self._newest = scan.lidar, self._swept(scan.lidar)
+        return LidarScan(np.ascontiguousarray(ranges), self._newest[1])
+
+    def _swept(self, lidar: LidarModel) -> LidarModel:
+        increment, turn = abs(lidar.time_increment), self._sweep.turn
+        if turn is not None:
+            increment = turn * abs(lidar.step) / math.tau
+        return lidar.swept(increment, is_backwards=self._sweep.is_backwards)
