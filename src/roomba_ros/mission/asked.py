@@ -26,18 +26,22 @@ _DONE: Final = {
     Event.EMPTIED: "the bin counts as empty now",
     Event.EMPTY: "its station empties the bin",
 }
+_STANDS: Final = (Event.STOP, Event.PAUSE)
+"""Commands after which the robot stands."""
 
 
 class GoalUnderWay:
     """One goal at a time: a newer one of any action takes over.
 
-    ``goal`` is that of the errand under way, None if no client gave it.
+    ``goal`` is that of the errand under way, None if no client gave it. ``waiting`` are orders that
+    may not begin yet.
     """
 
     def __init__(self, takes_drive: Callable[[], None]) -> None:
         """Begin without one; ``takes_drive`` is called when the mission is about to drive."""
         self._takes_drive = takes_drive
         self.goal: MissionGoal | None = None
+        self.waiting: list[Order] = []
         self._answers: list[Callable[[], object]] = []
 
     def take_over(self, goal: MissionGoal, mission: Mission) -> None:
@@ -61,6 +65,14 @@ class GoalUnderWay:
         elif event is Event.RESUME:
             self._takes_drive()
         return True, _DONE.get(event, event.value)
+
+    def recall(self, reason: str) -> bool:
+        """Let the orders that wait never begin; return whether any waited."""
+        recalled = tuple(self.waiting)
+        self.waiting.clear()
+        for order in recalled:
+            order.recall(reason)
+        return bool(recalled)
 
     def later(self, answer: Callable[[], object]) -> None:
         """Tell an answer when answers are told."""
@@ -106,6 +118,10 @@ class Order(ABC):
     def refuse(self, reason: str) -> None:
         """Tell why it is not done."""
 
+    def recall(self, reason: str) -> None:
+        """Tell why it does not begin, though it was not wrong."""
+        self.refuse(reason)
+
 
 @dataclass(frozen=True)
 class GoalOrder(Order):
@@ -117,7 +133,7 @@ class GoalOrder(Order):
     def obey(self, under_way: GoalUnderWay, mission: Mission, senses: Senses) -> None:
         """Begin it, unless it was cancelled before."""
         if self.goal.is_recalled:
-            self.goal.stopped(Ended(), "cancelled before it began")
+            self.recall("cancelled before it began")
             return
         try:
             self.goal.begin(mission, senses)
@@ -130,6 +146,10 @@ class GoalOrder(Order):
         """Reject it, and log that."""
         rospy.logwarn("goal of %s rejected: %s", self.goal.name, reason)
         self.goal.reject(reason)
+
+    def recall(self, reason: str) -> None:
+        """Cancel it."""
+        self.goal.stopped(Ended(), reason)
 
 
 @dataclass(frozen=True)
@@ -173,7 +193,11 @@ class CommandOrder(_Answered):
     answer: queue.SimpleQueue[tuple[bool, str]] = field(default_factory=queue.SimpleQueue)
 
     def _done(self, under_way: GoalUnderWay, mission: Mission, senses: Senses) -> tuple[bool, str]:
-        return under_way.command(self.event, mission, senses)
+        is_recalled = self.event in _STANDS and under_way.recall(
+            f"it was told to {self.event.value} before it began"
+        )
+        answer = under_way.command(self.event, mission, senses)
+        return (True, _DONE[self.event]) if is_recalled else answer
 
 
 @dataclass(frozen=True)

@@ -121,10 +121,11 @@ class MissionOrders:
     def obey(self, mission: Mission, senses: Senses, *, begins: bool = True) -> None:
         """Let the mission do what was ordered since the last call; unless it ``begins`` goals wait.
 
-        So a clean after an edit of zones finds these in use, and no order waits for that.
+        So a clean after an edit of zones finds these in use, and no order waits for that. A goal
+        that waits ends when the robot is told to stop or to pause: it is not to set off after that.
         """
         self._obey_emergency_stop(mission, senses)
-        waiting = []
+        waiting = self._under_way.waiting = []
         while self._asked:
             asked = self._asked.popleft()
             if asked.waits and not begins:

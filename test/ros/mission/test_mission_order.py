@@ -137,12 +137,38 @@ def test_a_goal_waits_for_zones_that_were_changed_and_no_order_waits_for_it(
 ) -> None:
     rig = Rig(monkeypatch)
     rig.ask(DockingGoal, DockGoal())
+    rig.order(Event.PAUSE)
     rig.world.handle.get_goal.return_value = DockGoal()
     rig.orders.ask(GoalOrder(DockingGoal(rig.world.handle)))
-    rig.orders.ask(CommandOrder(Event.PAUSE, rig.world.answer))
-    assert rig.tick(begins=False) == ["paused", "feedback", "answer"]
-    assert rig.tick(begins=False) == []
-    assert "returning" in rig.tick()
+    rig.orders.ask(CommandOrder(Event.RESUME, rig.world.answer))
+    assert rig.tick(begins=False) == ["returning", "feedback", "answer"]
+    assert "accepted" not in rig.tick(begins=False)
+    assert "accepted" in rig.tick()
+
+
+@pytest.mark.parametrize(("event", "said"), [(Event.STOP, "stopped"), (Event.PAUSE, "paused")])
+@pytest.mark.parametrize("is_idle", [True, False])
+def test_a_goal_that_waits_does_not_begin_after_an_order_to_stand(
+    monkeypatch: pytest.MonkeyPatch, event: Event, said: str, is_idle: bool
+) -> None:
+    rig = Rig(monkeypatch)
+    if not is_idle:
+        rig.ask(DockingGoal, DockGoal())
+    rig.world.handle.get_goal.return_value = CleanGoal()
+    rig.orders.ask(GoalOrder(CleaningGoal(rig.world.handle)))
+    rig.orders.ask(CommandOrder(event, rig.world.answer))
+    assert {"canceled", "answer"} <= set(rig.tick(begins=False))
+    assert rig.world.answer.put.call_args.args == ((True, said),)
+    assert "accepted" not in rig.tick()
+
+
+def test_a_goal_that_comes_after_a_stop_waits_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig(monkeypatch)
+    rig.world.handle.get_goal.return_value = DockGoal()
+    rig.orders.ask(CommandOrder(Event.STOP, rig.world.answer))
+    rig.orders.ask(GoalOrder(DockingGoal(rig.world.handle)))
+    rig.tick(begins=False)
+    assert "accepted" in rig.tick()
 
 
 def test_other_rooms_are_told_in_the_state_before_the_answer(
