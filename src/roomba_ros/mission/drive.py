@@ -12,7 +12,7 @@ from std_msgs.msg import Bool, Float32
 
 from roomba.clock import ClockJumps
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import STANDSTILL, Twist
+from roomba.geometry import Twist
 from roomba.vocabulary import FanLevel
 from roomba_ros.convert.common import twist_message, twist_of
 from roomba_ros.convert.values import speed_of
@@ -125,8 +125,9 @@ class MissionDrive:
         if self._stops_left > 0:
             self._command.publish(TwistMessage())
 
-    def _on_other_command(self, twist: Twist) -> None:
-        if twist != STANDSTILL and self._now >= self._others_may_until:
+    def _on_other_command(self, _: Twist) -> None:
+        # Standstill as well: it holds the drive as any other twist does.
+        if self._now >= self._others_may_until:
             self._others_drove = self._now
 
     def _on_cruise_speed(self, speed: float) -> None:

@@ -106,6 +106,20 @@ def test_a_wish_to_stand_pauses_a_clean_and_says_so(watched: Watched) -> None:
     watched.goes_on()
 
 
+def test_another_program_that_steers_it_to_stand_pauses_a_clean_and_says_so(
+    watched: Watched,
+) -> None:
+    watched.clean()
+    for _ in range(60):
+        watched.robot.lockstep.publish("/cmd_vel", Twist(), "/other")
+        watched.robot.tick()
+    assert watched.phase == "paused"
+    assert "driven by hand or by another program" in watched.message
+    watched.lets_pass(2.0)
+    watched.clean()
+    watched.goes_on()
+
+
 def test_empty_messages_of_another_node_do_not_empty_the_battery(watched: Watched) -> None:
     watched.clean()
     for _ in range(100):
