@@ -20,7 +20,14 @@ from roomba.recordings.bags.ring import Message, Ring, keep_newest, save
 from roomba.recordings.bags.writer import BagWriter
 from roomba_ros.bags.recorder import GraphEar
 from roomba_ros.bags.wrongs import Wrongs
-from roomba_ros.runtime.node import leave, register, require_master, settle, told_to_end
+from roomba_ros.runtime.node import (
+    leave,
+    register,
+    require_master,
+    settle,
+    told_to_end,
+    wait_for_clock,
+)
 
 PROGRAM: Final = "./roomba record"
 _SECONDS: Final = 60.0
@@ -145,8 +152,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     wanted = _wanted(arguments)
     require_master()
     register(f"record_{os.getpid()}")
-    settle()
     try:
+        # Latched messages come at once, and have no time before the clock is known.
+        wait_for_clock()
+        settle()
         kept = _begun(wanted)
         ear = GraphEar(kept.take, only=wanted.topics, has_camera=wanted.camera)
         _record(ear, kept)

@@ -20,7 +20,7 @@ _CAMERA: Final = "/camera/"
 _QUEUE: Final = 1000
 """Messages of a topic that wait while others are written."""
 _EARLIEST: Final = 1_000_000
-"""ns; a bag knows no time 0, which is before the first message of a clock."""
+"""ns; a bag knows no time 0, at which a clock may begin anew."""
 
 
 class GraphEar:

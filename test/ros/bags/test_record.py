@@ -182,6 +182,39 @@ def test_a_whole_minute_before_is_saved_however_fast_the_clock_goes(
     assert kept[-1] > wrong + 20
 
 
+def test_what_was_told_before_the_clock_is_heard_does_not_begin_the_bag_in_1970(
+    graph: RosGraph, tmp_path: Path
+) -> None:
+    graph.set_param("/use_sim_time", True)
+    probe, path = Probe(graph), tmp_path / "run.bag"
+    clock = probe.publisher("/clock", Clock)
+    told = rospy.Publisher("/map", String, queue_size=1, latch=True)
+    told.publish("a map")
+    recorder = record(graph, str(path))
+    # This node hears its own clock.
+    wait_until(lambda: clock.get_num_connections() > 1, 30.0, lambda: recorder.output)
+    assert unchanged(told.get_num_connections, 1.5)
+
+    def is_heard() -> bool:
+        clock.publish(Clock(rospy.Time(1000)))
+        return bool(told.get_num_connections() > 0)
+
+    wait_until(is_heard, 30.0, lambda: recorder.output)
+    recorder.send(signal.SIGINT)
+    assert recorder.ends(20.0) == 0, recorder.output
+    with rosbag.Bag(str(path)) as bag:
+        assert [message.data for _, message, _ in bag.read_messages("/map")] == ["a map"]
+        assert bag.get_start_time() == pytest.approx(1000.0)
+
+
+def test_without_a_clock_that_is_promised_it_says_so(graph: RosGraph, tmp_path: Path) -> None:
+    graph.set_param("/use_sim_time", True)
+    recorder = record(graph, str(tmp_path / "a.bag"))
+    assert recorder.ends(30.0) == 1
+    assert "nothing published /clock" in recorder.output
+    assert not (tmp_path / "a.bag").exists()
+
+
 def test_without_a_master_it_says_so(tmp_path: Path) -> None:
     with RosGraph(tmp_path) as graph:
         recorder = record(graph, str(tmp_path / "a.bag"))
