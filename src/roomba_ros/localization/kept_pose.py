@@ -13,10 +13,11 @@ import rospy
 
 from roomba.configuration.nodes import PlacingConfig
 from roomba.geometry import Pose
-from roomba_ros.runtime.parameters import read_seed_parameters
+from roomba_ros.runtime.parameters import read_seed_parameters, robot_run
 
 PARAMETER: Final = "map_to_odometry"
-"""Name of the parameter: [x, y, theta] of the odometry's frame in the map, m and rad."""
+"""Name of the parameter: ``pose``, [x, y, theta] of the odometry's frame in the map, m and rad, and
+the ``run`` of the robot in which that is so."""
 
 
 class KeptPose:
@@ -32,6 +33,7 @@ class KeptPose:
 
     def start(self) -> None:
         """Begin to write what is kept."""
+        self._run = robot_run()
         threading.Thread(target=self._write, daemon=True).start()
 
     @property
@@ -48,10 +50,10 @@ class KeptPose:
 
         By what was kept; else by the parameters, which say where odometry began.
         """
-        kept = rospy.get_param(PARAMETER, None)
-        self.was_found = _is_pose(kept)
-        if self.was_found:
-            return Pose(*kept).compose(odometry), self._placing.kept
+        kept = _kept_in(self._run)
+        self.was_found = kept is not None
+        if kept is not None:
+            return kept.compose(odometry), self._placing.kept
         # Read now, not at the start: the simulator puts the robot where its home wants it.
         start = read_seed_parameters()
         began = Pose(start.initial_post_x, start.initial_post_y, start.initial_post_theta)
@@ -64,10 +66,20 @@ class KeptPose:
             if newest is None or newest == self._written:
                 continue
             try:
-                rospy.set_param(PARAMETER, [newest.x, newest.y, newest.theta])
+                rospy.set_param(
+                    PARAMETER, {"run": self._run, "pose": [newest.x, newest.y, newest.theta]}
+                )
                 self._written = newest
             except (OSError, http.client.HTTPException, xmlrpc.client.Error) as error:
                 rospy.logwarn_throttle(10.0, "the master does not keep the pose: %s", error)
+
+
+def _kept_in(run: str) -> Pose | None:
+    """Return the pose that was kept in this run; in another one odometry began elsewhere."""
+    kept = rospy.get_param(PARAMETER, None)
+    if not isinstance(kept, dict) or kept.get("run") != run or not _is_pose(kept.get("pose")):
+        return None
+    return Pose(*kept["pose"])
 
 
 def _is_pose(value: object) -> bool:

@@ -22,7 +22,7 @@ from roomba.storage.mapper import (
     save_mapper,
 )
 from roomba_ros.runtime.background import Background
-from roomba_ros.runtime.parameters import robot_name
+from roomba_ros.runtime.parameters import robot_name, robot_run
 
 FOLDER: Final = ".being_made"
 """In the maps' folder, where no map's name can be."""
@@ -49,7 +49,7 @@ class MapMemory:
     def start(self, maps: Path) -> None:
         """Take the folder of all maps."""
         self._path = maps / FOLDER / robot_name() / "map.npz"
-        self._run = str(rospy.get_param("/run_id", ""))
+        self._run = robot_run()
         self._whole = MapStore(self._path.parent / _WHOLE, rospy.logwarn)
 
     @property

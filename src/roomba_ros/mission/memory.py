@@ -25,6 +25,7 @@ from roomba.storage.checkpoint import (
 from roomba.storage.map_bound import map_file_name
 from roomba.vocabulary import Phase
 from roomba_ros.runtime.background import Background
+from roomba_ros.runtime.parameters import robot_run
 
 
 class MissionMemory:
@@ -40,7 +41,7 @@ class MissionMemory:
         self._checkpoint = folder / f"{map_file_name(digest)}.json"
         self._dirt = folder / f"{map_file_name(digest)}.npz"
         self._config, self._background = config, background
-        self._run = str(rospy.get_param("/run_id", ""))
+        self._run = robot_run()
         self._saved = 0.0
         self._last: tuple[Phase, Goal | None] | None = None
         self._taken_up = 0

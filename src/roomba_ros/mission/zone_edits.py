@@ -26,7 +26,7 @@ from roomba.storage.zones import load_zones, save_zones
 from roomba.vocabulary import listed
 from roomba_ros.convert.rooms import zone_of, zones_markers, zones_message
 from roomba_ros.mission.known_home import GROWING
-from roomba_ros.runtime.parameters import robot_name
+from roomba_ros.runtime.parameters import robot_name, robot_run
 
 
 class ZoneEdits:
@@ -48,7 +48,7 @@ class ZoneEdits:
 
     def start(self) -> None:
         """Connect what tells; nothing can be edited yet."""
-        robot, run = robot_name(), str(rospy.get_param("/run_id", ""))
+        robot, run = robot_name(), robot_run()
         self._growing = f"{GROWING}-{robot}-{run}"
         self._forget_other_runs(robot, run)
         self._zones_publisher = rospy.Publisher("zones", ZoneArray, queue_size=1, latch=True)

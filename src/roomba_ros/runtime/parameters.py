@@ -128,6 +128,15 @@ def robot_name() -> str:
     return rospy.get_namespace().strip("/").replace("/", "_") or "robot"
 
 
+def robot_run() -> str:
+    """Return the name of this run of the robot: what another run began does not go on in it.
+
+    The launch file names each start anew. Without it the master's run counts, which outlives those
+    of robots.
+    """
+    return str(rospy.get_param("robot_run", "") or rospy.get_param("/run_id", ""))
+
+
 def package_folder() -> Path:
     """Return where this package's launch, config and homes folders are."""
     return Path(rospkg.RosPack().get_path("roomba_robot"))

@@ -8,7 +8,7 @@ import pytest
 import rospy
 
 from roomba.errors import ConfigError
-from roomba_ros.runtime.parameters import LiveSeedParameters, bool_parameter
+from roomba_ros.runtime.parameters import LiveSeedParameters, bool_parameter, robot_run
 
 LIMITS = {"/robot_max_speed": 0.5, "/min_cordinate": -100.0, "/max_cordinate": 100.0}
 
@@ -50,3 +50,13 @@ def test_what_is_true_or_false_is_nothing_else(monkeypatch: pytest.MonkeyPatch) 
     for name in ("~often", "~one"):
         with pytest.raises(ConfigError, match=f"parameter {name}: expected true or false"):
             bool_parameter(name, True)
+
+
+def test_a_run_is_that_of_the_robot_and_without_one_that_of_the_master(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    values = {"/run_id": "of the master"}
+    monkeypatch.setattr(rospy, "get_param", values.get)
+    assert robot_run() == "of the master"
+    values["robot_run"] = "of the robot"
+    assert robot_run() == "of the robot"

@@ -30,6 +30,11 @@ def test_it_has_the_nodes_of_the_graph_and_the_body_is_required() -> None:
     json.dumps(launch.parameters)
 
 
+def test_each_start_is_a_run_of_its_own() -> None:
+    runs = {read_launch(LAUNCH, []).parameters["/robot_run"] for _ in range(3)}
+    assert len(runs) == 3
+
+
 def test_its_arguments_count() -> None:
     launch = read_launch(LAUNCH, ["page:=false", "home:=studio", "robot_max_speed:=0.25"])
     assert "dashboard_node" not in {entry.name for entry in launch.processes}
