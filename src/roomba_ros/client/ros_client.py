@@ -4,13 +4,11 @@
 from __future__ import annotations
 
 import math
-import queue
 import threading
 import time
 
 import numpy as np
 import rospy
-from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.srv import GetPlan
 from numpy.typing import NDArray
@@ -19,9 +17,7 @@ from roomba_robot.msg import (
     PositionAndDestination,
     RobotPosition,
     WalkToPointAction,
-    WalkToPointFeedback,
     WalkToPointGoal,
-    WalkToPointResult,
 )
 from roomba_robot.srv import TurnCamera
 from std_msgs.msg import Float32
@@ -32,38 +28,26 @@ from roomba.client.protocol import (
     RobotState,
     RobotUnavailableError,
     WalkHandle,
-    WalkOutcome,
-    WalkReport,
 )
 from roomba.geometry import Pose
 from roomba_ros.client.ros_clean import RosVacuum
-from roomba_ros.client.ros_errands import SILENCE_DEADLINE, wait_for_server
+from roomba_ros.client.ros_errands import RosWalk, Server
 from roomba_ros.convert.client import doubt_of
-from roomba_ros.convert.common import path_of, picture_of, pose_message
+from roomba_ros.convert.common import path_of, picture_of, pose_in_map, pose_message
 from roomba_ros.convert.readings import point_of
-from roomba_ros.convert.values import number_of, unchanged
-from roomba_ros.runtime.action_client import ActionClient
-from roomba_ros.runtime.calls import SERVER_DEADLINE, call_service
+from roomba_ros.convert.values import number_of
+from roomba_ros.runtime.calls import call_service
 from roomba_ros.runtime.parameters import LiveSeedParameters
 from roomba_ros.runtime.subscriptions import subscribe
 
 OLDEST_NEWS = 3.0
 """s of wall time; the robot tells its state at least 5 times a second, older news is none."""
 
-_OUTCOMES = {
-    GoalStatus.SUCCEEDED: WalkOutcome.ARRIVED,
-    GoalStatus.PREEMPTED: WalkOutcome.CANCELLED,
-    GoalStatus.RECALLED: WalkOutcome.CANCELLED,
-    GoalStatus.REJECTED: WalkOutcome.REFUSED,
-    GoalStatus.ABORTED: WalkOutcome.FAILED,
-    GoalStatus.LOST: WalkOutcome.DISCONNECTED,
-}
-
 
 class RosRobot(RosVacuum):
     """A robot in this node's namespace, and what :class:`RosVacuum` is.
 
-    Subscribes: ``dirt``, ``position``, ``localization``, ``speed``,
+    Subscribes: ``dirt``, ``position``, ``localization``, ``speed``, ``station_pose``,
     ``walk_to_point/{feedback,result,status}``.
     Publishes: ``walk_to_point/{goal,cancel}``. Calls: ``make_plan``.
     """
@@ -76,19 +60,19 @@ class RosRobot(RosVacuum):
         self._heard: dict[str, float] = {}
         self._doubt = ""
         self._travelled = 0.0
-        self._status_seen = time.monotonic()
+        self._station: Pose | None = None
 
     def start(self) -> None:
         """Connect; raises RoombaError for wrong parameters."""
         self._parameters = LiveSeedParameters()
         super().start()
-        self._actions = ActionClient("walk_to_point", WalkToPointAction)
+        self._walks = Server("walk_to_point", WalkToPointAction)
         self._make_plan = rospy.ServiceProxy("make_plan", GetPlan)
         subscribe("dirt", Float32, number_of, self._on_dirt)
         subscribe("speed", Float32, number_of, self._on_speed)
         subscribe("position", RobotPosition, point_of, self._on_position)
         subscribe("localization", Localization, doubt_of, self._on_localization)
-        subscribe("walk_to_point/status", GoalStatusArray, unchanged, self._on_status)
+        subscribe("station_pose", PoseStamped, pose_in_map, self._on_station)
 
     def limits(self) -> Limits:
         """Return the limits in force."""
@@ -96,7 +80,11 @@ class RosRobot(RosVacuum):
         return Limits(values.min_cordinate, values.max_cordinate, values.robot_max_speed)
 
     def station(self) -> tuple[float, float]:
-        """Return the charging station: where the robot started."""
+        """Return the charging station; until the robot told where that is, where it started."""
+        with self._news:
+            station = self._station
+        if station is not None:
+            return station.x, station.y
         values = self._parameters.refresh()
         return values.initial_post_x, values.initial_post_y
 
@@ -122,29 +110,16 @@ class RosRobot(RosVacuum):
 
     def walk_to(self, x: float, y: float) -> WalkHandle:
         """Send the goal; raises RobotUnavailableError when no action server answers in time."""
-        if not wait_for_server(self._actions.action_client, SERVER_DEADLINE):
-            raise RobotUnavailableError(
-                f"no action server answers on walk_to_point within {SERVER_DEADLINE:g} s; "
-                "is the robot running (`./roomba run`)?"
-            )
         with self._news:
             here = self._values.get("position", (0.0, 0.0))
-        return _RosWalk(self, self._actions, PositionAndDestination(*here, x, y))
+        goal = WalkToPointGoal(PositionAndDestination(*here, x, y))
+        return RosWalk(self._walks, goal, lambda: self.travelled)
 
     @property
     def travelled(self) -> float:
         """How far the robot has moved since this client started, m."""
         with self._news:
             return self._travelled
-
-    @property
-    def server_silent(self) -> bool:
-        """Whether the action server has not told its status for too long."""
-        return time.monotonic() - self._status_seen > SILENCE_DEADLINE
-
-    def heard_server(self) -> None:
-        """Begin to wait for the server's status anew."""
-        self._status_seen = time.monotonic()
 
     def _not_heard(self) -> list[str]:
         oldest = time.monotonic() - OLDEST_NEWS
@@ -172,71 +147,9 @@ class RosRobot(RosVacuum):
         with self._news:
             self._doubt = doubt
 
-    def _on_status(self, message: GoalStatusArray) -> None:
-        self._status_seen = time.monotonic()
-
-
-class _RosWalk:
-    """A goal under way; feedback and end arrive through a queue."""
-
-    def __init__(
-        self,
-        robot: RosRobot,
-        actions: ActionClient,
-        destination: PositionAndDestination,
-    ) -> None:
-        self._robot = robot
-        self._actions = actions
-        self._feedback: queue.SimpleQueue[float] = queue.SimpleQueue()
-        self._ended = threading.Event()
-        self._report: WalkReport | None = None
-        self._travelled_before = robot.travelled
-        self._started = rospy.get_time()
-        robot.heard_server()
-        actions.send_goal(
-            WalkToPointGoal(destination), done_cb=self._on_done, feedback_cb=self._on_feedback
-        )
-
-    def next_feedback(self, timeout: float) -> float | None:
-        deadline = time.monotonic() + timeout
-        while self.report() is None:
-            left = deadline - time.monotonic()
-            if left <= 0.0:
-                return None
-            try:
-                return self._feedback.get(timeout=min(left, 0.1))
-            except queue.Empty:
-                continue
-        return None
-
-    def report(self) -> WalkReport | None:
-        if not self._ended.is_set() and self._robot.server_silent:
-            # Should it wake up, it must not walk on unseen.
-            self._actions.cancel_goal()
-            self._end(
-                WalkOutcome.DISCONNECTED,
-                rospy.get_time() - self._started,
-                f"the action server has been silent for {SILENCE_DEADLINE:g} s",
-            )
-        return self._report if self._ended.is_set() else None
-
-    def cancel(self) -> None:
-        self._actions.cancel_goal()
-
-    def _on_feedback(self, message: WalkToPointFeedback) -> None:
-        self._feedback.put(message.distance)
-
-    def _on_done(self, status: int, result: WalkToPointResult | None) -> None:
-        spent = result.time_spent if result is not None else rospy.get_time() - self._started
-        text = self._actions.get_goal_status_text()
-        self._end(_OUTCOMES.get(status, WalkOutcome.FAILED), spent, text)
-
-    def _end(self, outcome: WalkOutcome, duration: float, message: str) -> None:
-        if self._ended.is_set():
-            return
-        travelled = self._robot.travelled - self._travelled_before
-        self._report = WalkReport(outcome, travelled, duration, message)
-        self._ended.set()
+    def _on_station(self, pose: Pose) -> None:
+        with self._news:
+            self._station = pose
 
 
 class RosCamera:

@@ -1,4 +1,4 @@
-"""Cleans and ways to the station under way, as a client of the mission's servers sees them."""
+"""Cleans, walks and ways to the station under way, as a client of the servers sees them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 import threading
 import time
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import Any, Final, Generic, TypeVar
 
 import rospy
@@ -20,6 +21,8 @@ from roomba.client.protocol import (
     ErrandOutcome,
     ExploreReport,
     RobotUnavailableError,
+    WalkOutcome,
+    WalkReport,
 )
 from roomba_ros.convert.client import (
     clean_end_of,
@@ -42,7 +45,13 @@ _ENDINGS: Final = {
     GoalStatus.ABORTED: ErrandOutcome.FAULT,
     GoalStatus.LOST: ErrandOutcome.DISCONNECTED,
 }
-_GOES_ON = "a clean goes on by itself once that is back, and vacuum/state tells how far it is"
+_WALKS: Final = {
+    ErrandOutcome.COMPLETED: WalkOutcome.ARRIVED,
+    ErrandOutcome.STOPPED: WalkOutcome.CANCELLED,
+    ErrandOutcome.REFUSED: WalkOutcome.REFUSED,
+    ErrandOutcome.DISCONNECTED: WalkOutcome.DISCONNECTED,
+}
+"""How walks end; in any other way they failed."""
 
 _Told = TypeVar("_Told")
 _Report = TypeVar("_Report")
@@ -93,6 +102,10 @@ class _Errand(ABC, Generic[_Told, _Report]):
     It is not cancelled when the server falls silent: the robot takes a clean up again by itself.
     """
 
+    _after_silence = (
+        "; a clean goes on by itself once that is back, and vacuum/state tells how far it is"
+    )
+
     def __init__(self, server: Server, goal: Any) -> None:
         self._server = server
         self._news = threading.Condition(threading.RLock())
@@ -142,7 +155,7 @@ class _Errand(ABC, Generic[_Told, _Report]):
             why = f"the action server took no notice of it for {SERVER_DEADLINE:g} s"
         else:
             return
-        self._report = self._ended(ErrandOutcome.DISCONNECTED, None, f"{why}; {_GOES_ON}")
+        self._report = self._ended(ErrandOutcome.DISCONNECTED, None, f"{why}{self._after_silence}")
 
     def _on_feedback(self, _: Any, feedback: Any) -> None:
         with self._news:
@@ -156,7 +169,7 @@ class _Errand(ABC, Generic[_Told, _Report]):
             outcome = _ENDINGS[handle.get_terminal_state()]
             text = handle.get_goal_status_text()
             if outcome is ErrandOutcome.DISCONNECTED:
-                text = f"the action server began anew and knows nothing of it; {_GOES_ON}"
+                text = f"the action server began anew and knows nothing of it{self._after_silence}"
             self._report = self._ended(outcome, handle.get_result(), text)
             self._news.notify_all()
 
@@ -188,6 +201,31 @@ class RosClean(_Errand[CleanProgress, CleanReport]):
             outcome = outcome_of(result.outcome)
         # Only the goal's status says which program ended a clean.
         return clean_end_of(result, outcome, message if outcome is ErrandOutcome.STOPPED else "")
+
+
+class RosWalk(_Errand[float, WalkReport]):
+    """A walk under way. With a server that is silent it ends."""
+
+    _after_silence = ""
+
+    def __init__(self, server: Server, goal: Any, travelled: Callable[[], float]) -> None:
+        """Send the goal; ``travelled`` is how far the robot has moved, m, since any time."""
+        self._travelled, self._travelled_before = travelled, travelled()
+        super().__init__(server, goal)
+
+    def _told(self, feedback: Any) -> float:
+        return float(feedback.distance)
+
+    def _ended(self, outcome: ErrandOutcome, result: Any, message: str) -> WalkReport:
+        travelled = self._travelled() - self._travelled_before
+        spent = rospy.get_time() - self._started if result is None else float(result.time_spent)
+        return WalkReport(_WALKS.get(outcome, WalkOutcome.FAILED), travelled, spent, message)
+
+    def _notice_silence(self) -> None:
+        super()._notice_silence()
+        if self._report is not None:
+            # Should the server wake up, the robot must not walk on unseen.
+            self.cancel()
 
 
 class RosExploring(_Errand[float, ExploreReport]):

@@ -103,9 +103,8 @@ class WalkJob:
         # While its place is not known the setpoint moves nothing, but tells that the walk goes on.
         self._setpoint = step.setpoint
         self._topics.drive_to(*step.setpoint)
-        if step.state is WalkState.ASTRAY:
-            return
-        if step.state is WalkState.WALKING:
+        if step.state in (WalkState.WALKING, WalkState.ASTRAY):
+            # Also while its place is not known: a walk that tells nothing counts as lost.
             self._tell_feedback(senses, step.distance_left)
         elif step.state is not WalkState.ARRIVED:
             rospy.logwarn("walk given up: %s", step.reason)

@@ -140,12 +140,14 @@ def test_a_new_way_is_shown() -> None:
     assert ("show_path", 10.0, walking.walk) in walking.tick()
 
 
-def test_while_the_robot_is_astray_nothing_is_told_of_the_way() -> None:
+def test_while_the_robot_is_astray_it_is_told_that_the_walk_goes_on() -> None:
     walking = Walking()
     walking.job.begin(10.0, FASTEST)
     walking.tick()
     walking.walk.step = replace(UNDER_WAY, state=WalkState.ASTRAY)
-    assert walking.tick(now=11.0) == [("drive_at", 0.3), ("drive_to", 0.75, 0.25)]
+    still = [("drive_at", 0.3), ("drive_to", 0.75, 0.25)]
+    assert walking.tick(now=10.5) == [*still, ("tell", 10.5, 1.5, HERE)]
+    assert walking.tick(now=10.55) == still
     assert walking.job.stage is WalkStage.WALKING
 
 
