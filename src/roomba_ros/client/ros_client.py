@@ -42,6 +42,8 @@ from roomba_ros.runtime.subscriptions import subscribe
 
 OLDEST_NEWS = 3.0
 """s of wall time; the robot tells its state at least 5 times a second, older news is none."""
+_REST_WITHIN = 1.0
+"""s of wall time after its first position; what it did not tell by then is not waited for."""
 
 
 class RosRobot(RosVacuum):
@@ -60,6 +62,8 @@ class RosRobot(RosVacuum):
         self._heard: dict[str, float] = {}
         self._doubt = ""
         self._travelled = 0.0
+        self._located = math.inf
+        """When the first position came."""
         self._station: Pose | None = None
 
     def start(self) -> None:
@@ -89,16 +93,19 @@ class RosRobot(RosVacuum):
         return values.initial_post_x, values.initial_post_y
 
     def state(self, timeout: float = 5.0) -> RobotState:
-        """Return the newest state; waits up to ``timeout`` s of wall time for what is not new."""
+        """Return the newest state; waits up to ``timeout`` s of wall time for what is not new.
+
+        Speed and dirt are NaN for a robot that does not tell them.
+        """
         with self._news:
-            if not self._news.wait_for(lambda: not self._not_heard(), timeout):
+            self._news.wait_for(self._is_told, timeout)
+            if not self._is_new("position"):
                 raise RobotUnavailableError(
-                    f"nothing came on {', '.join(self._not_heard())} within {timeout:g} s; "
+                    f"nothing came on position within {timeout:g} s; "
                     "is the robot running (`./roomba run`)?"
                 )
             x, y = self._values["position"]
-            (speed,), (dirt,) = self._values["speed"], self._values["dirt"]
-            return RobotState(x, y, speed, dirt, self._doubt)
+            return RobotState(x, y, self._newest("speed"), self._newest("dirt"), self._doubt)
 
     def path_length(self, x: float, y: float) -> float:
         """Return the length of the planned way, m."""
@@ -121,10 +128,19 @@ class RosRobot(RosVacuum):
         with self._news:
             return self._travelled
 
-    def _not_heard(self) -> list[str]:
-        oldest = time.monotonic() - OLDEST_NEWS
-        topics = ("dirt", "position", "speed")
-        return [topic for topic in topics if self._heard.get(topic, -math.inf) < oldest]
+    def _is_told(self) -> bool:
+        """Whether all is new, or the position alone and the rest had its time to come."""
+        if not self._is_new("position"):
+            return False
+        is_over = time.monotonic() - self._located > _REST_WITHIN
+        return is_over or (self._is_new("speed") and self._is_new("dirt"))
+
+    def _is_new(self, topic: str) -> bool:
+        return time.monotonic() - self._heard.get(topic, -math.inf) <= OLDEST_NEWS
+
+    def _newest(self, topic: str) -> float:
+        """Return the number that a topic told; NaN if none is new."""
+        return self._values[topic][0] if self._is_new(topic) else math.nan
 
     def _hear(self, topic: str, *values: float) -> None:
         with self._news:
@@ -140,6 +156,7 @@ class RosRobot(RosVacuum):
 
     def _on_position(self, point: tuple[float, float]) -> None:
         with self._news:
+            self._located = min(self._located, time.monotonic())
             self._travelled += math.dist(self._values.get("position", point), point)
         self._hear("position", *point)
 

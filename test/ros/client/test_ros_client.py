@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import math
 import os
+import threading
 from typing import Any
 
 import actionlib
+import pytest
 import rospy
 from fixtures.graph import RosGraph
 from fixtures.waiting import wait_until
 from geometry_msgs.msg import PoseStamped
 from roomba_robot.msg import (
+    RobotPosition,
     WalkToPointAction,
     WalkToPointFeedback,
     WalkToPointResult,
 )
+from std_msgs.msg import Float32
 
-from roomba.client.protocol import WalkHandle, WalkOutcome, WalkReport
+from roomba.client.protocol import RobotUnavailableError, WalkHandle, WalkOutcome, WalkReport
 from roomba.geometry import Pose
 from roomba_ros.client.roomba_client import RoombaClient
 from roomba_ros.convert.common import pose_message
@@ -96,3 +101,27 @@ def test_the_station_is_where_the_robot_says_that_it_is(graph: RosGraph) -> None
     told = rospy.Publisher("station_pose", PoseStamped, queue_size=1, latch=True)
     told.publish(pose_message(0.0, Pose(3.0, 4.0, 1.0), "map"))
     wait_until(lambda: roomba.robot.station() == (3.0, 4.0), 30.0)
+
+
+def test_a_robot_that_senses_no_dirt_tells_its_place(graph: RosGraph) -> None:
+    roomba, _ = begin(graph)
+    told = rospy.Publisher("position", RobotPosition, queue_size=1)
+    with pytest.raises(RobotUnavailableError, match="nothing came on position within"):
+        roomba.robot.state(0.1)
+    rospy.Timer(rospy.Duration(0.1), lambda _: told.publish(RobotPosition(1.0, 2.0)))
+    state = roomba.robot.state(30.0)
+    assert (state.x, state.y) == (1.0, 2.0)
+    assert math.isnan(state.dirt)
+    assert math.isnan(state.speed)
+
+
+def test_what_a_robot_tells_a_little_after_its_place_is_waited_for(graph: RosGraph) -> None:
+    roomba, _ = begin(graph)
+    place = rospy.Publisher("position", RobotPosition, queue_size=1, latch=True)
+    others = [
+        rospy.Publisher(name, Float32, queue_size=1, latch=True) for name in ("speed", "dirt")
+    ]
+    place.publish(RobotPosition(1.0, 2.0))
+    threading.Timer(0.3, lambda: [each.publish(0.25) for each in others]).start()
+    state = roomba.robot.state(30.0)
+    assert (state.x, state.speed, state.dirt) == (1.0, 0.25, 0.25)
