@@ -326,8 +326,8 @@ make_library_environment() {
 pip_install() { # VENV ARGUMENT...
   local venv=$1
   shift
-  PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$venv/bin/python3" -m pip install --no-input \
-    --progress-bar off --retries 5 --prefer-binary "$@"
+  env -u PYTHONPATH PYTHONNOUSERSITE=1 PIP_USER=no PIP_DISABLE_PIP_VERSION_CHECK=1 "$venv/bin/python3" -m pip install \
+    --no-input --progress-bar off --retries 5 --prefer-binary "$@"
 }
 
 # Bytecode is made when a module is first imported, and of the rest in the background (set_up.sh).

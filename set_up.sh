@@ -281,7 +281,7 @@ enter_environment() {
   # Its matrices are small: a second thread only waits for the first, and takes a core for that.
   export OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
   keep_bytecode
-  unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH ROS_DISTRO
+  unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH ROS_DISTRO PYTHONPATH
   set +u # the hooks of ROS read variables that are not set
   # shellcheck source=/dev/null
   . "$WORKSPACE/devel/setup.bash"
