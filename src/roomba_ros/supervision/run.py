@@ -28,6 +28,7 @@ from roomba_ros.runtime.parameters import folder_for
 from roomba_ros.runtime.senders import SUPERVISOR
 from roomba_ros.supervision.kept_master import be_master, wait_for_master
 from roomba_ros.supervision.launch_file import Launch, ProcessEntry, described, read_launch
+from roomba_ros.supervision.launch_parameters import set_parameters
 from roomba_ros.supervision.launch_xml import launch_file, package_folder
 from roomba_ros.supervision.scripts import be_node, import_for
 from roomba_ros.supervision.supervisor import Supervisor
@@ -35,7 +36,6 @@ from roomba_ros.supervision.supervisor_node import be_supervisor_node
 
 USAGE: Final = 2
 """The exit status for a wrong argument."""
-_CALLER: Final = "/roomba_run"
 _HOME: Final = "/home_sim_node/home"
 """The end of the parameter's name."""
 _MAP: Final = "/position_pub_node/map"
@@ -85,7 +85,7 @@ def _run(launch: Launch, scripts: Path) -> int:
                 print("./roomba run: the master does not answer", file=sys.stderr)
                 return 1
             if not supervisor.is_ending:
-                _set_parameters(launch, run_id)
+                set_parameters(launch.parameters, run_id)
                 import_for(scripts / each.script for each in launch.processes if each.script)
             supervisor.add(SUPERVISOR, partial(be_supervisor_node, supervisor.tell_to()))
             for entry in launch.processes:
@@ -141,14 +141,6 @@ def _refuse_second(launch: Launch) -> None:
             f"expected no such robot on {rosgraph.get_master_uri()}, got {', '.join(there)}; end "
             "it first, set ROS_NAMESPACE for another robot, or ROS_MASTER_URI for another master"
         )
-
-
-def _set_parameters(launch: Launch, run_id: str) -> None:
-    master = rosgraph.Master(_CALLER)
-    if not master.hasParam("/run_id"):
-        master.setParam("/run_id", run_id)
-    for name, value in launch.parameters.items():
-        master.setParam(name, value)
 
 
 def _be_node(entry: ProcessEntry, scripts: Path, logs: Path) -> None:

@@ -1,0 +1,36 @@
+"""The parameters of a run, on a master that may have had another run before."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import rosgraph
+from rosgraph.names import get_ros_namespace, ns_join
+
+_CALLER: Final = "/roomba_run"
+_LAUNCHED: Final = "robot_launched"
+"""The parameter, in the robot's namespace, with the names of all that its last run has set."""
+
+
+def set_parameters(parameters: dict[str, Any], run_id: str) -> None:
+    """Set what the launch file says, and remove what only the run before has set.
+
+    ``parameters`` are by full name. What people have set stays. ``run_id`` is for a master that has
+    none yet.
+    """
+    master = rosgraph.Master(_CALLER)
+    if not master.hasParam("/run_id"):
+        master.setParam("/run_id", run_id)
+    launched = ns_join(get_ros_namespace(), _LAUNCHED)
+    _remove_last_run(master, launched, parameters)
+    # First: a start that is interrupted may have set any of them.
+    master.setParam(launched, sorted(parameters))
+    for name, value in parameters.items():
+        master.setParam(name, value)
+
+
+def _remove_last_run(master: rosgraph.Master, launched: str, parameters: dict[str, Any]) -> None:
+    names = master.getParam(launched) if master.hasParam(launched) else []
+    for name in names if isinstance(names, list) else []:
+        if name not in parameters and master.hasParam(name):
+            master.deleteParam(name)
