@@ -10,6 +10,7 @@ from roomba.ui.cleaning import CLEANING_HEADING
 from roomba.ui.exploring import TASKS
 from roomba.ui.menu import Menu
 from roomba_ros.client.ros_client import RosRobot
+from roomba_ros.runtime.alone import is_taken
 from roomba_ros.runtime.joining import join_graph
 from roomba_ros.runtime.node import leave, require_master, wait_for_clock
 from roomba_ros.runtime.subscriptions import tell_refusals
@@ -19,7 +20,7 @@ def main() -> None:
     """Run the menu until its user leaves."""
     require_master()
     # Ctrl-C belongs to the menu: it cancels a walk, and leaves a clean to itself.
-    join_graph("control_node")
+    join_graph("control_node", is_anonymous=is_taken("control_node"))
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     try:
         wait_for_clock()

@@ -23,9 +23,8 @@ def refuse_second(node_name: str, topic: str) -> None:
     Call before ``rospy.init_node``: registering a name that is taken ends the node that has it.
     A node that died without saying so does not count.
     """
-    mappings = rospy.names.get_mappings()
     namespace = rosgraph.names.get_ros_namespace()
-    own = ns_join(namespace, mappings.get("__name", node_name))
+    own = _full_name(node_name)
     master = rosgraph.Master("/roomba_robot_start")
     publishers = master.getSystemState()[0]
     watched = rosgraph.names.resolve_name(topic, ns_join(namespace, "node"))
@@ -40,10 +39,20 @@ def refuse_second(node_name: str, topic: str) -> None:
         sys.exit(1)
 
 
+def is_taken(node_name: str) -> bool:
+    """Whether a living node has this name: it would end if this process took it too."""
+    return bool(living([_full_name(node_name)]))
+
+
 def living(nodes: Iterable[str]) -> list[str]:
     """Return those of these nodes, by full name, that answer."""
     master = rosgraph.Master("/roomba_robot_start")
     return [node for node in nodes if _is_alive(master, node)]
+
+
+def _full_name(node_name: str) -> str:
+    name = rospy.names.get_mappings().get("__name", node_name)
+    return str(ns_join(rosgraph.names.get_ros_namespace(), name))
 
 
 def _is_alive(master: rosgraph.Master, node: str) -> bool:

@@ -1,7 +1,7 @@
 import signal
 
 from fixtures.graph import RosGraph
-from fixtures.waiting import promised
+from fixtures.waiting import promised, wait_until
 
 
 def test_end_of_input_ends_it(master: RosGraph) -> None:
@@ -20,6 +20,22 @@ def test_ctrl_c_at_the_menu_ends_it(master: RosGraph) -> None:
     menu.send(signal.SIGINT)
     promised(lambda: menu.status is not None, 1.0, "it has ended")
     assert menu.status == 130
+
+
+def test_a_second_menu_leaves_the_first_one_alone(master: RosGraph) -> None:
+    first = master.rosrun("control_node.py")
+    first.says("Select: ", 30.0)
+    second = master.rosrun("control_node.py")
+    second.says("Select: ", 30.0)
+
+    def both_hear() -> bool:
+        nodes = master.system_state()[1].get("/position", [])
+        return len(nodes) == 2 and all(master.answers(node) for node in nodes)
+
+    wait_until(both_hear, 20.0, "two menus hear the robot")
+    for menu in (first, second):
+        menu.end_of_input()
+        assert menu.ends(20.0) == 0
 
 
 def test_a_wrong_choice_is_asked_again(master: RosGraph) -> None:
