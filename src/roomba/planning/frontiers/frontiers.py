@@ -64,14 +64,15 @@ def frontiers(
     """Return the frontiers that can be looked at, the best to go to first.
 
     ``fits``, bool over the map's grid, tells where the robot's middle may be, ``roomy`` where it
-    has room; ``here`` is where it is, m. Those near a point ``left_out``, m, are left out. Raises
-    ValueError when ``here`` is not on the map.
+    has room; ``here`` is where it is, m. Those near a point ``left_out``, m, are left out. There
+    are none where it fits nowhere.
     """
     frame = occupancy.frame
-    if not frame.contains(*here):
-        raise ValueError(f"expected a place on the map, got ({here[0]:.2f}, {here[1]:.2f})")
+    nearest = _nearest_that_fits(fits, frame, here)
+    if nearest is None:
+        return []
     ways = np.empty(frame.shape)
-    ways_from(fits, *_nearest_that_fits(fits, *frame.cell_of(*here)), ways)
+    ways_from(fits, *nearest, ways)
     costs = ways + np.where(roomy, 0.0, choice.tight_cost / frame.resolution)
     labels = np.empty(frame.shape, np.int32)
     count = _numbered_frontiers(occupancy, choice.least_unknown, labels)
@@ -97,14 +98,18 @@ def frontiers(
     return sorted(found, key=lambda frontier: _cost(frontier, choice))
 
 
-def _nearest_that_fits(fits: NDArray[np.bool_], row: int, column: int) -> tuple[int, int]:
-    """Return the cell from which ways begin: of a robot that touches something not always its own.
-
-    It is its own where none fits at all.
+def _nearest_that_fits(
+    fits: NDArray[np.bool_], frame: GridFrame, here: Point
+) -> tuple[int, int] | None:
+    """Return the cell from which ways begin: of a robot that touches something not always its own,
+    and off the map none. None where it fits nowhere.
     """
-    if fits[row, column] or not fits.any():
+    row, column = frame.cell_of(*here)
+    if frame.contains(*here) and fits[row, column]:
         return row, column
     cells = np.argwhere(fits)
+    if not len(cells):
+        return None
     nearest = cells[np.argmin(np.hypot(cells[:, 0] - row, cells[:, 1] - column))]
     return int(nearest[0]), int(nearest[1])
 

@@ -38,8 +38,11 @@ def join_start(fit: FitMap, start: Point) -> Joints:
 
     A body that does not fit where it stands, because it has bumped into something or was put
     there, is joined to the nearest centre at which it fits and to which it can go straight without
-    coming nearer to anything than it is now; to none if none is nearer than its own size.
+    coming nearer to anything than it is now; to none if none is nearer than its own size. Off the
+    map it is joined to none: no cell is there from which a way could begin.
     """
+    if not fit.map.frame.contains(*start):
+        return _none()
     joints = join_goal(fit, start)
     if joints is not None and len(joints.legs):
         return joints
@@ -52,7 +55,11 @@ def join_start(fit: FitMap, start: Point) -> Joints:
             break
         if fit.room_along(start, frame.centre_of(int(row), int(column))) >= room - _ROUNDING:
             return near.among(np.arange(len(near.legs)) == index)
-    return near.among(np.zeros(len(near.legs), np.bool_))
+    return _none()
+
+
+def _none() -> Joints:
+    return Joints(np.zeros((0, 2), np.int64), np.zeros(0))
 
 
 def _in_cells(fit: FitMap, point: Point) -> tuple[float, float]:
@@ -69,7 +76,7 @@ def _centres_near(fit: FitMap, point: Point, reach: float) -> Joints:
     row, column = _in_cells(fit, point)
     rows, columns = fit.fits.shape
     if not (-reach < row < rows + reach and -reach < column < columns + reach):
-        return Joints(np.zeros((0, 2), np.int64), np.zeros(0))
+        return _none()
     first_row = max(math.ceil(row - reach - _ROUNDING), 0)
     first_column = max(math.ceil(column - reach - _ROUNDING), 0)
     window = fit.fits[

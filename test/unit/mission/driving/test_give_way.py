@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from roomba.configuration.mission import GivingWayConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, RoundObstacle
+from roomba.grid import FREE, OccupancyMap
 from roomba.mission.driving.give_way import way_aside
 from roomba.mission.driving.trail import Trail
 from roomba.mission.inputs.senses import Senses
@@ -66,3 +67,12 @@ def test_hemmed_in_it_drives_back_as_it_came() -> None:
     points = way_aside(PLANNER, IN_THE_DOOR, Standing(things), trail, CONFIG)
     assert points is not None
     assert off(points, things) > 1.1
+
+
+def test_off_the_map_there_is_no_way_aside() -> None:
+    frame = TWO_ROOMS.map.frame
+    values = np.full(frame.shape, FREE, np.int8)
+    planner = PathPlanner(OccupancyMap(frame, values), RADIUS, 0.04, 0.0025)
+    beyond = frame.origin_y + frame.rows * frame.resolution + 0.02
+    here = Senses(0.0, Pose(1.0, beyond, 0.5 * math.pi))
+    assert way_aside(planner, here, Standing([(1.0, beyond - 0.3, 0.02)]), Trail(), CONFIG) is None

@@ -187,9 +187,17 @@ def test_it_is_looked_at_from_where_there_is_room() -> None:
     assert squeezed == nearest
 
 
-def test_a_place_off_the_map_is_refused() -> None:
-    with pytest.raises(ValueError, match="expected a place on the map"):
-        found_in(room(), (-5.0, 0.5))
+@pytest.mark.parametrize("here", [(-0.57, 0.5), (-5.0, 0.5), (0.5, 9.0)])
+def test_off_the_map_ways_begin_at_the_nearest_place_that_fits(here: Point) -> None:
+    made, tight = room(), fits(room())
+    assert not made.frame.contains(*here)
+    places = np.argwhere(tight)
+    row, column = made.frame.cell_of(*here)
+    nearest = places[np.argmin(np.hypot(places[:, 0] - row, places[:, 1] - column))]
+    on_map = made.frame.centre_of(int(nearest[0]), int(nearest[1]))
+    assert found_in(made, here) == found_in(made, on_map)
+    nowhere = np.zeros_like(tight)
+    assert frontiers(made, nowhere, nowhere, here, (), CHOICE) == []
 
 
 def test_whether_one_is_left_is_told() -> None:

@@ -140,6 +140,9 @@ def test_a_start_that_does_not_fit_leaves_by_the_shortest_way_that_comes_no_near
     fitting = room.fitting()
     goal_joints = join_goal(room.fit, start)
     joints = join_start(room.fit, start)
+    if not room.fit.map.frame.contains(*start):
+        assert not len(joints.legs)
+        return
     if goal_joints is not None and len(goal_joints.legs):
         assert np.array_equal(joints.cells, goal_joints.cells)
         return
@@ -156,3 +159,12 @@ def test_a_start_that_does_not_fit_leaves_by_the_shortest_way_that_comes_no_near
     ((row, column),) = joints.cells.tolist()
     assert room.fit.fits[row, column]
     assert room.room(start, room.fit.map.frame.centre_of(row, column)) >= here - 1e-9
+
+
+@pytest.mark.parametrize("start", [(0.45, 0.92), (0.92, 0.45), (-0.02, 0.45), (0.45, -0.02)])
+def test_a_start_just_off_the_map_is_joined_to_nothing(start: Point) -> None:
+    """On the map it would be joined: all of the floor but its rim is free."""
+    room = Room(np.zeros((9, 9), np.bool_), [])
+    assert not len(join_start(room.fit, start).legs)
+    inside = min(max(start[0], 0.01), 0.89), min(max(start[1], 0.01), 0.89)
+    assert len(join_start(room.fit, inside).legs)
