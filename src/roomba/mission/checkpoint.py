@@ -23,6 +23,7 @@ from roomba.vocabulary import EdgeReason, Hindrance, OpenEdge, Phase, Reason
 class Remembered:
     """A checkpoint's content; ``ledger`` is distance m, energy Wh and dirt g; ``duration`` s.
 
+    ``driven`` is the way, m, and the energy, Wh, of that while it drove.
     ``times`` are those of a time ledger; ``open_edges`` and ``rough_way``, m, those of the job.
     ``bin_full_at`` is what the bin's sensor read as it became full, g; None: that is not known.
     """
@@ -33,6 +34,7 @@ class Remembered:
     cleaning: Cleaning | None
     exploration: Exploration | None
     ledger: tuple[float, float, float]
+    driven: tuple[float, float]
     duration: float
     is_bin_full: bool
     bin_full_at: float | None
@@ -56,6 +58,7 @@ def checkpoint_of(state: MissionState, reason: Reason, job: Job, now: float) -> 
         "cleaning": None if job.cleaning is None else job.cleaning.values(),
         "exploration": None if job.exploration is None else job.exploration.values(),
         "ledger": [job.ledger.distance, job.ledger.energy, job.ledger.dirt],
+        "driven": [job.ledger.driven, job.ledger.used],
         "duration": job.duration(now),
         "times": job.times.values(),
         "bin_full": job.bin.is_full,
@@ -103,6 +106,7 @@ def _remembered(
     times = {str(name): float(value) for name, value in values["times"].items()}
     # Older checkpoints have none of these.
     reason = Reason(str(values["message"]), Hindrance[values.get("hindrance", "NONE")])
+    driven, used = (float(value) for value in values.get("driven", (distance, energy)))
     full_at = None if values.get("bin_full_at") is None else float(values["bin_full_at"])
     rough_way = float(values.get("rough_way", 0.0))
     edges = tuple(
@@ -110,7 +114,7 @@ def _remembered(
         for length, x, y, reason in values.get("open_edges", [])
     )
     lengths = (value for edge in edges for value in (edge.length, edge.x, edge.y))
-    numbers = (distance, energy, dirt, duration, full_at or 0.0, rough_way)
+    numbers = (distance, energy, dirt, driven, used, duration, full_at or 0.0, rough_way)
     if not all(math.isfinite(value) for value in (*numbers, *times.values(), *lengths)):
         raise CheckpointError("expected finite numbers")
     return Remembered(
@@ -120,6 +124,7 @@ def _remembered(
         cleaning,
         exploration,
         (distance, energy, dirt),
+        (driven, used),
         duration,
         bool(values["bin_full"]),
         full_at,
@@ -136,6 +141,7 @@ def take_up(found: Remembered, job: Job, senses: Senses) -> None:
     job.times.restore(found.times)
     job.open_edges, job.rough_way = found.open_edges, found.rough_way
     job.ledger.distance, job.ledger.energy, job.ledger.dirt = found.ledger
+    job.ledger.driven, job.ledger.used = found.driven
     if found.is_bin_full:
         # It may have been emptied while the program was not running.
         job.bin.fill(senses.in_bin if found.bin_full_at is None else found.bin_full_at)

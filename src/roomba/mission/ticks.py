@@ -89,7 +89,8 @@ class MissionTicks:
         """Return what is wanted now."""
         self.carpet.note(senses.brush_current)
         self._job.ledger.longest_way_home = self._drives.context.longest_way
-        self._job.account(senses, self.last, sweeps=self.sweeps)
+        drives = self._is_under_way and not self._stands(senses)
+        self._job.account(senses, self.last, drives=drives, sweeps=self.sweeps)
         self._note_carpet(senses, np.array([self.last_place]))
         here, (x, y) = senses.pose, self.last_place
         self._count_time(senses, np.array([np.hypot(here.x - x, here.y - y)]))
@@ -119,7 +120,7 @@ class MissionTicks:
         if self.sweeps:
             self._job.bin.passed(places)
         self._note_carpet(senses, places)
-        self._job.ledger.note(senses, way)
+        self._job.ledger.note(senses, way, drives=self._is_under_way)
         ways = np.diff(np.vstack((self.last_place, places)), axis=0)
         self._count_time(senses, np.hypot(ways[:, 0], ways[:, 1]))
         self.last = senses
@@ -167,7 +168,6 @@ class MissionTicks:
         each = (senses.now - self.last.now) / len(ways)
         if not 0.0 <= each <= LONGEST_TICK:
             return
-        waits = self._drives.driver is None and self._retries.is_waiting(senses.now)
         cleaning = self._job.cleaning
         self._job.times.note(
             self._phase,
@@ -175,8 +175,13 @@ class MissionTicks:
             each,
             self.speed_limit(senses),
             is_again=cleaning is not None and cleaning.is_again,
-            stands=self._is_under_way and (waits or self._monitor.is_astray),
+            stands=self._is_under_way and self._stands(senses),
         )
+
+    def _stands(self, senses: Senses) -> bool:
+        """Whether it stands amid its way: it waits, or does not know its place."""
+        waits = self._drives.driver is None and self._retries.is_waiting(senses.now)
+        return waits or self._monitor.is_astray
 
     def _notice(self, senses: Senses) -> None:
         """Find out what happened, and let the machine know."""

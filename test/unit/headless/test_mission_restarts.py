@@ -210,7 +210,7 @@ def test_a_checkpoint_that_is_junk_is_refused(path: str, junk: object) -> None:
     assert not robot.mission.state.drives
 
 
-SINCE_OLDER_ONES = {"bin_full_at", "hindrance", "open_edges", "rough_way"}
+SINCE_OLDER_ONES = {"bin_full_at", "driven", "hindrance", "open_edges", "rough_way"}
 """Of these an older checkpoint has none."""
 
 

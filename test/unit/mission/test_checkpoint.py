@@ -42,6 +42,7 @@ def job() -> Job:
     job = Job(DirtMap(HOME.map), MissionConfig(), 100.0, SENSES)
     job.begin_clean(begin(CleanRequest(passes=2)), Senses(40.0, SENSES.pose))
     job.ledger.distance, job.ledger.energy, job.ledger.dirt = 12.0, 0.5, 2.0
+    job.ledger.driven, job.ledger.used = 11.0, 0.4
     job.times.restore({"turning": 20.0, "fastest": 0.3})
     job.open_edges, job.rough_way = (EDGE,), 3.0
     return job
@@ -63,6 +64,7 @@ def test_all_that_matters_comes_back() -> None:
     assert again.exploration is None
     assert again.outcome is CleanOutcome.COMPLETED
     assert (again.ledger.distance, again.ledger.energy, again.ledger.dirt) == (12.0, 0.5, 2.0)
+    assert (again.ledger.driven, again.ledger.used) == (11.0, 0.4)
     assert again.times.values() == job().times.values()
     assert (again.open_edges, again.rough_way) == ((EDGE,), 3.0)
     # By a clock that began anew.
@@ -71,10 +73,12 @@ def test_all_that_matters_comes_back() -> None:
 
 def test_a_checkpoint_of_an_older_program_goes_on() -> None:
     older = values()
-    del older["open_edges"], older["rough_way"], older["hindrance"]
+    for added in ("open_edges", "rough_way", "hindrance", "driven"):
+        del older[added]
     found = remembered(older, begin, MissionConfig().exploring)
     assert (found.open_edges, found.rough_way) == ((), 0.0)
     assert found.reason == Reason("a message")
+    assert found.driven == found.ledger[:2] == (12.0, 0.5)
 
 
 @pytest.mark.parametrize("errand", [Errand.NONE, Errand.UNDOCK])
@@ -93,6 +97,8 @@ def test_without_an_errand_there_is_nothing_to_remember(errand: Errand) -> None:
         {"exploration": 3},
         {"ledger": [1.0, 2.0]},
         {"ledger": [1.0, 2.0, float("nan")]},
+        {"driven": [1.0]},
+        {"driven": [1.0, float("nan")]},
         {"duration": "long"},
         {"rough_way": float("nan")},
         {"times": {"turning": float("inf")}},

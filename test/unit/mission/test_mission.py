@@ -271,6 +271,18 @@ def test_the_books_are_the_cleans_own() -> None:
     assert result.duration == pytest.approx(10 * TICK, abs=2 * TICK)
 
 
+def test_what_a_pause_takes_is_told_but_says_nothing_of_a_metre() -> None:
+    rig = cleaning()
+    for step in range(300):
+        rig.tick(pose=Pose(HERE.x + 0.05 * (step % 2), HERE.y, 0.0), battery=Battery(0.9, 26.0))
+    ledger = rig.mission.ledger
+    used, per_metre = ledger.energy, ledger.per_metre
+    rig.command(Event.PAUSE)
+    rig.tick(10, battery=Battery(0.5, 26.0))
+    assert ledger.energy == pytest.approx(used + 0.4 * 26.0)
+    assert ledger.per_metre == per_metre
+
+
 @pytest.mark.parametrize("jump", [-1e5, 1e5])
 def test_a_clock_that_is_set_does_not_count_as_cleaning(jump: float) -> None:
     rig = cleaning()

@@ -35,36 +35,45 @@ class ChargeGains:
 class EnergyLedger:
     """Ticked with what is sensed; ``distance`` m, ``energy`` Wh and ``dirt`` g since the begin.
 
-    No way home is longer than ``longest_way_home``, m.
+    ``driven`` m and ``used`` Wh are what of the distance and the energy came while it drove: a
+    battery gets lower while the robot stands as well, which says nothing of what a metre takes. No
+    way home is longer than ``longest_way_home``, m.
     """
 
     def __init__(self, config: EnergyConfig, senses: Senses) -> None:
         """Begin to count."""
         self._config = config
-        self.distance = self.energy = self.dirt = self.longest_way_home = 0.0
-        self._last = senses
-        self._checked = senses.now
+        self.longest_way_home = 0.0
+        self.begin(senses)
 
     def begin(self, senses: Senses) -> None:
         """Count anew."""
-        self.distance = self.energy = self.dirt = 0.0
+        self.distance = self.energy = self.dirt = self.driven = self.used = 0.0
         self._last, self._checked = senses, senses.now
 
-    def note(self, senses: Senses, way: float | None = None) -> None:
-        """Take what was sensed; ``way``, m, if it was more than the straight one."""
+    def note(self, senses: Senses, way: float | None = None, *, drives: bool = True) -> None:
+        """Take what was sensed; ``way``, m, if it was more than the straight one.
+
+        ``drives``: since the last time it was on its way, and did not just stand.
+        """
         last, self._last = self._last, senses
-        straight = senses.pose.distance_to(last.pose.x, last.pose.y)
-        if way is not None or straight < LONGEST_STEP:
-            self.distance += straight if way is None else way
-        self.energy += max(0.0, last.battery.energy - senses.battery.energy)
+        if way is None:
+            straight = senses.pose.distance_to(last.pose.x, last.pose.y)
+            way = straight if straight < LONGEST_STEP else 0.0
+        energy = max(0.0, last.battery.energy - senses.battery.energy)
+        self.distance += way
+        self.energy += energy
         self.dirt += max(0.0, senses.in_bin - last.in_bin)
+        if drives:
+            self.driven += way
+            self.used += energy
 
     @property
     def per_metre(self) -> float:
-        """What a metre of way takes, Wh, as seen on this errand."""
-        if self.distance < self._config.measured_after:
+        """What a metre of way takes, Wh, as seen on this errand while it drove."""
+        if self.driven < self._config.measured_after:
             return self._config.per_metre
-        return max(self.energy / self.distance, 0.2 * self._config.per_metre)
+        return max(self.used / self.driven, 0.2 * self._config.per_metre)
 
     def next_check(self, senses: Senses) -> float:
         """Return when it is looked at again how far it is home, s; inf while the charge is ample.

@@ -116,9 +116,9 @@ class Job:
         self.ledger.begin(senses)
         self._started = senses.now - duration
 
-    def account(self, senses: Senses, last: Senses, *, sweeps: bool) -> None:
+    def account(self, senses: Senses, last: Senses, *, drives: bool, sweeps: bool) -> None:
         """Keep the ledgers: energy, way, floor swept, dirt met."""
-        self.ledger.note(senses)
+        self.ledger.note(senses, drives=drives)
         passed = senses.now - last.now
         if not 0.0 <= passed <= LONGEST_TICK:
             self._started += passed

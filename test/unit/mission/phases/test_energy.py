@@ -85,6 +85,17 @@ def test_what_a_metre_takes_is_learned() -> None:
     assert 0.0 < driven(20.0, 0.0).per_metre < CONFIG.per_metre
 
 
+def test_what_it_takes_to_stand_is_no_part_of_what_a_metre_takes() -> None:
+    ledger = driven(20.0, 1.0)
+    ledger.note(senses(4000.0, 20.0, 0.5), drives=False)
+    assert ledger.energy == pytest.approx(1.0 + 0.4 * CAPACITY)
+    assert ledger.per_metre == pytest.approx(0.05)
+    # Its place is not told as the same each time, and that is no way that it drove.
+    for step in range(200):
+        ledger.note(senses(4001.0 + step, 20.0, 0.5, y=0.1 * (step % 2)), drives=False)
+    assert ledger.per_metre == pytest.approx(0.05)
+
+
 @given(st.floats(0.02, 1.0), st.floats(0.0, 200.0))
 def test_it_goes_home_when_what_is_left_just_suffices(level: float, way: float) -> None:
     ledger = EnergyLedger(CONFIG, senses(level=level))

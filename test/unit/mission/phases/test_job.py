@@ -128,10 +128,10 @@ def test_what_it_passes_is_swept_where_its_place_is_known_and_it_drives() -> Non
     assert job.cleaning is not None
     coverage = job.cleaning.ledger.coverage
     there = replace(AWAY, now=0.05, pose=Pose(1.05, 0.6, 0.0))
-    job.account(there, AWAY, sweeps=False)
-    job.account(replace(there, knowledge=Knowledge.SEARCHING), AWAY, sweeps=True)
+    job.account(there, AWAY, drives=True, sweeps=False)
+    job.account(replace(there, knowledge=Knowledge.SEARCHING), AWAY, drives=True, sweeps=True)
     assert coverage.swept_cells == 0
-    job.account(there, AWAY, sweeps=True)
+    job.account(there, AWAY, drives=True, sweeps=True)
     assert coverage.swept_cells > 100
 
 
@@ -152,7 +152,7 @@ def test_a_way_on_which_the_place_was_hardly_known_is_told(
     for step in range(1, 60):
         here = Pose(1.0 + 0.02 * step, 0.6, 0.0)
         senses = Senses(0.1 * step, here, knowledge=knowledge, unsure=unsure)
-        job.account(senses, last, sweeps=True)
+        job.account(senses, last, drives=True, sweeps=True)
         last = senses
     end(job, CleanOutcome.COMPLETED)
     result = job.take_result()
@@ -162,8 +162,8 @@ def test_a_way_on_which_the_place_was_hardly_known_is_told(
 
 def test_time_that_a_clock_jumps_does_not_count() -> None:
     job = cleaning_job()
-    job.account(replace(AWAY, now=1.0), AWAY, sweeps=True)
-    job.account(replace(AWAY, now=1e6), replace(AWAY, now=1.0), sweeps=True)
+    job.account(replace(AWAY, now=1.0), AWAY, drives=True, sweeps=True)
+    job.account(replace(AWAY, now=1e6), replace(AWAY, now=1.0), drives=True, sweeps=True)
     assert job.duration(1e6 + 1.0) == pytest.approx(2.0)
 
 
