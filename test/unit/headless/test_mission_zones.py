@@ -5,14 +5,26 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fixtures.robots.headless_cleans import BODY, assert_all_clean, begun
-from fixtures.robots.missions import FLOOR_TOO_LITTLE, HOME, TWO_ROOMS, WALL_X, floor_clean, until
+from fixtures.robots.missions import (
+    DEN,
+    FLOOR_TOO_LITTLE,
+    HOME,
+    TWO_ROOMS,
+    WALL_X,
+    floor_clean,
+    two_rooms,
+    until,
+)
 
+from roomba.clean_request import CleanRequest
 from roomba.configuration.docking import DockingConfig
+from roomba.geometry import Pose
 from roomba.headless.mission import HeadlessMission
 from roomba.headless.records import CleanRecord
 from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
+from roomba.vocabulary import CleanMode
 
 
 def zoned(robot: HeadlessMission, *zones: Zone) -> PlanningContext:
@@ -39,6 +51,24 @@ def inside_by(record: CleanRecord, since: float, area: tuple[float, ...]) -> flo
     dx = np.maximum(np.maximum(area[0] - rows[:, 1], rows[:, 1] - area[2]), 0.0)
     dy = np.maximum(np.maximum(area[1] - rows[:, 2], rows[:, 2] - area[3]), 0.0)
     return BODY - float(np.hypot(dx, dy).min())
+
+
+@pytest.mark.parametrize(
+    "request_", [CleanRequest(CleanMode.SPOT), CleanRequest(CleanMode.ROOMS, rooms=(DEN,))]
+)
+def test_carried_beyond_a_step_it_cleans_there_and_says_that_no_way_leads_home(
+    request_: CleanRequest,
+) -> None:
+    step = Zones((Zone("step", ZoneKind.WALL, ((WALL_X + 0.05, 0.7), (WALL_X + 0.05, 1.7))),))
+    start = Pose(2.8, 1.2, 0.0)
+    robot = HeadlessMission(TWO_ROOMS, zones=step, rooms=two_rooms(), start=start)
+    robot.mission.clean(request_, robot.senses())
+    assert robot.mission.cleaning is not None
+    wanted = robot.mission.cleaning.ledger.coverage.wanted.copy()
+    until(robot, lambda: bool(robot.mission.message))
+    assert robot.mission.message.startswith("no way home: ")
+    swept = np.count_nonzero(robot.truth.swept & wanted)
+    assert swept >= FLOOR_TOO_LITTLE * np.count_nonzero(wanted) > 0
 
 
 SPECK = 0.01

@@ -128,6 +128,7 @@ class CoverageLedger:
             raise CleanRefusedError("the floor is done, and it goes home: begin another clean")
         finished = {stage.name for stage in self.stages[: self.stage_number]}
         request = changed_request(self.request, finished, names, each)
+        coverable = self._context.coverable(self._began_at)
         stages, number = changed_stages(
             self.request,
             request,
@@ -135,7 +136,7 @@ class CoverageLedger:
             self.stages,
             self.stage_number,
             self.coverage.swept,
-            lambda name: parts_of_room(name, request, self._context),
+            lambda name: parts_of_room(name, request, self._context, coverable),
         )
         self.request, self.stages, self.stage_number = request, stages, number
         self._want(self._union())
@@ -177,7 +178,7 @@ class CoverageLedger:
     def _use_edits(self, context: PlanningContext) -> None:
         names = renamed_rooms(self._context.rooms, context.rooms)
         self.request = with_renamed(self.request, names)
-        coverable = context.coverable()
+        coverable = context.coverable(self._began_at)
         self.stages = [
             Stage(names.get(s.name, s.name), s.floor & coverable, s.again) for s in self.stages
         ]
@@ -245,7 +246,7 @@ class CoverageLedger:
         if frame.shape != self._context.frame.shape:
             raise CheckpointError(f"expected a grid of {self._context.frame}, got {frame}")
         # Zones may be newer than the checkpoint.
-        coverable = self._context.coverable()
+        coverable = self._context.coverable(self._began_at)
         wanted = unpacked(values["wanted"], frame.shape) & coverable
         stages = [
             Stage(str(name), unpacked(floor, frame.shape) & coverable, bool(again))
@@ -268,7 +269,7 @@ class CoverageLedger:
         return frame, _pose(values["station"])
 
     def _asked(self, context: PlanningContext) -> list[Stage]:
-        coverable = context.coverable()
+        coverable = context.coverable(self._began_at)
         stages = stages_of(self.request, context, self._dirt, coverable, self._began_at)
         return stages[:1] if context.is_growing else stages
 

@@ -50,11 +50,13 @@ def stages_of(
     ]
 
 
-def parts_of_room(name: str, request: CleanRequest, context: PlanningContext) -> list[Stage]:
+def parts_of_room(
+    name: str, request: CleanRequest, context: PlanningContext, coverable: Mask
+) -> list[Stage]:
     """Return the parts of one pass over a room, in their order; raises CleanRefusedError."""
     known = () if context.rooms is None else context.rooms.names
     _require_known((name,), known)
-    floor = _allowed(request, context, context.coverable()) & context.in_room(name)
+    floor = _allowed(request, context, coverable) & context.in_room(name)
     if not floor.any():
         raise CleanRefusedError(f"expected floor that can be reached in {name!r}, got none")
     return _by_edges(Stage(name, floor), request.edges, context)

@@ -250,9 +250,19 @@ class PlanningContext:
         """The fine grid that coverage is counted on."""
         return self.floor.frame
 
-    def coverable(self) -> Mask:
-        """Return the floor that can be cleaned from the station, bool over ``frame``."""
-        return self.floor.coverable((self.staging.x, self.staging.y))
+    def coverable(self, here: Pose | None = None) -> Mask:
+        """Return the floor that can be cleaned from the station, bool over ``frame``.
+
+        Where no way leads from there to ``here``, the floor around that counts as well: a robot
+        that was carried beyond a step or a virtual wall can clean there. A map that grows shows
+        only the floor that the robot saw from its station.
+        """
+        floor = self.floor.coverable((self.staging.x, self.staging.y))
+        if here is None or self.is_growing:
+            return floor
+        if self.frame.contains(here.x, here.y) and floor[self.frame.cell_of(here.x, here.y)]:
+            return floor
+        return floor | self.floor.coverable((here.x, here.y))
 
     def in_room(self, name: str) -> Mask:
         """Return a room's cells over ``frame``; raises RoomsError for a name that is none."""

@@ -72,6 +72,20 @@ def test_what_zones_keep_from_it_cannot_be_cleaned_nor_reached() -> None:
     assert (walled.occupancy.values == HOME.map.values).all()
 
 
+def test_beyond_a_step_the_floor_around_it_can_be_cleaned_as_well() -> None:
+    walled, beyond = context(zones=wall(1.5)), Pose(2.5, 0.6, 0.0)
+    column = walled.frame.cell_of(1.5, 1.0)[1]
+    home, both = walled.coverable(), walled.coverable(beyond)
+    assert (both[:, :column] == home[:, :column]).all()
+    assert both[walled.frame.cell_of(beyond.x, beyond.y)]
+    # From its station, and where a way leads there, nothing is added.
+    for here in (STATION, Pose(0.8, 0.6, 0.0)):
+        assert (walled.coverable(here) == home).all()
+    # Neither in furniture, nor off the map.
+    for here in (Pose(0.5 * (TABLE[0] + TABLE[2]), 1.25, 0.0), Pose(-9.0, 0.6, 0.0)):
+        assert (context().coverable(here) == context().coverable()).all()
+
+
 def test_a_plan_of_coverage_begins_here_and_is_counted() -> None:
     watch = PlanWatch()
     home = context(plan_watch=watch)
