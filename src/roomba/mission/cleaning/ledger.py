@@ -25,7 +25,7 @@ from roomba.mission.cleaning.room_queue import (
     renamed_rooms,
     with_renamed,
 )
-from roomba.mission.cleaning.stages import Stage, parts_of_room, stages_of
+from roomba.mission.cleaning.stages import Stage, parts_of_room, stages_of, with_floor_left
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.swept.coverage_bits import SWEPT, TRIED, WANTED
 from roomba.perception.swept.coverage_kernels import missed_of, swept_or
@@ -179,9 +179,10 @@ class CoverageLedger:
         names = renamed_rooms(self._context.rooms, context.rooms)
         self.request = with_renamed(self.request, names)
         coverable = context.coverable(self._began_at)
-        self.stages = [
+        stages = [
             Stage(names.get(s.name, s.name), s.floor & coverable, s.again) for s in self.stages
         ]
+        self.stages = with_floor_left(stages, self.stage_number)
         try:
             wanted = self._floor_of(self._asked(context), context)
         except CleanRefusedError:
@@ -257,7 +258,8 @@ class CoverageLedger:
             raise CheckpointError(f"expected a stage from 0 to {len(stages)}, got {number}")
         self.coverage.cells[:] = wanted * np.uint8(WANTED) + swept * np.uint8(SWEPT)
         self.coverage.count_again()
-        self._ever, self.stages, self.stage_number = ever, stages, number
+        self._ever, self.stages = ever, with_floor_left(stages, number)
+        self.stage_number = number
 
     def _place_of(self, values: Values) -> tuple[GridFrame, Pose]:
         """Return the grid that values are of, and where the station was on that map."""

@@ -50,6 +50,14 @@ def stages_of(
     ]
 
 
+def with_floor_left(stages: Sequence[Stage], number: int) -> list[Stage]:
+    """Return the stages without those to come that have no floor any more.
+
+    Those up to ``number``, which is under way, stay: they tell what was done.
+    """
+    return [*stages[: number + 1], *(each for each in stages[number + 1 :] if each.floor.any())]
+
+
 def parts_of_room(
     name: str, request: CleanRequest, context: PlanningContext, coverable: Mask
 ) -> list[Stage]:

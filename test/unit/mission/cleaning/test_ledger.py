@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from fixtures.missions.exploring import HALL, HERE, WHOLE, context_of, known_to
-from fixtures.robots.missions import WALL_X
+from fixtures.robots.missions import DEN, TWO_ROOMS, WALL_X, two_rooms
+from fixtures.robots.missions import HALL as HALL_ROOM
 
 from roomba.clean_request import CleanRefusedError, CleanRequest
+from roomba.configuration.docking import DockingConfig
+from roomba.configuration.mission import MissionConfig
+from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.mission.cleaning.checkpoint import CheckpointError
 from roomba.mission.cleaning.ledger import CoverageLedger
 from roomba.mission.cleaning.stages import Stage
 from roomba.mission.inputs.planning_context import PlanningContext
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.perception.swept.coverage_bits import SWEPT
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.vocabulary import CleanMode
@@ -151,6 +157,49 @@ def test_a_zone_that_is_newer_than_the_values_is_not_wanted() -> None:
     edited.restore(values)
     assert np.array_equal(edited.coverage.wanted, wanted)
     assert np.array_equal(edited.stages[0].floor, wanted)
+
+
+def of_rooms(zones: Zones | None = None) -> PlanningContext:
+    parts = RobotConfig(), MissionConfig(), DockingConfig(), two_rooms(), zones
+    return PlanningContext(TWO_ROOMS.map, TWO_ROOMS.station, *parts)
+
+
+IN_THE_DOOR = Zones((Zone("door", ZoneKind.WALL, ((WALL_X + 0.05, 0.7), (WALL_X + 0.05, 1.7))),))
+ROOMS = CleanRequest(CleanMode.ROOMS, rooms=(HALL_ROOM, DEN), in_order=True, passes=2)
+
+
+def rooms_of(ledger: CoverageLedger) -> list[str]:
+    return [stage.name for stage in ledger.stages]
+
+
+def test_a_room_to_come_that_a_zone_takes_away_is_none_any_more() -> None:
+    """No floor is nearest to it: a way there would lead to the middle of the map."""
+    ledger = begun(of_rooms(), ROOMS)
+    assert rooms_of(ledger) == [HALL_ROOM, DEN, HALL_ROOM, DEN]
+    use(ledger, of_rooms(IN_THE_DOOR))
+    assert rooms_of(ledger) == [HALL_ROOM, HALL_ROOM]
+    assert ledger.queue == (HALL_ROOM,)
+    assert ledger.stage is not None
+    assert ledger.way_out_of(ledger.stage) is None
+    # When the zone is gone that room is wanted at the end.
+    use(ledger, of_rooms())
+    assert rooms_of(ledger) == [HALL_ROOM, HALL_ROOM, "what was a zone before"]
+
+
+def test_a_room_that_a_zone_takes_away_while_it_is_there_stays_the_present_one() -> None:
+    ledger = begun(of_rooms(), ROOMS)
+    ledger.next_stage()
+    use(ledger, of_rooms(IN_THE_DOOR))
+    assert rooms_of(ledger) == [HALL_ROOM, DEN, HALL_ROOM]
+    assert ledger.stage is not None
+    assert (ledger.stage.name, ledger.stage.cells) == (DEN, 0)
+
+
+def test_a_room_to_come_that_is_behind_a_newer_zone_is_not_taken_up() -> None:
+    values = json.loads(json.dumps(begun(of_rooms(), ROOMS).values()))
+    ledger = begun(of_rooms(IN_THE_DOOR), replace(ROOMS, rooms=(HALL_ROOM,)))
+    ledger.restore(values)
+    assert rooms_of(ledger) == [HALL_ROOM, HALL_ROOM]
 
 
 def test_rooms_of_a_map_without_rooms_are_refused() -> None:
