@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from roomba.errors import RequestRefusedError
+from roomba.geometry import Pose
 from roomba.vocabulary import (
     MOST_PASSES,
     MOST_ZONES,
@@ -80,11 +81,28 @@ class CleanRequest:
         """How often the floor is cleaned that is cleaned the most often."""
         return max((way.passes for way in self.each), default=self.passes)
 
+    def moved(self, old_in_new: Pose) -> CleanRequest:
+        """Return the same request in another frame, in which this one lies at ``old_in_new``.
+
+        The middle of a zone stays at its place; its sides are along the axes of the new frame.
+        """
+        spot = None if self.spot is None else old_in_new.place_of(*self.spot)
+        zones = tuple(_moved_zone(old_in_new, zone) for zone in self.zones)
+        return replace(self, zones=zones, spot=spot)
+
     def way_of(self, room: str) -> RoomWay:
         """Return how a room is cleaned: by its part of ``each``, else by ``passes`` and ``fan``."""
         if self.each and room in self.rooms:
             return self.each[self.rooms.index(room)]
         return RoomWay(self.passes, self.fan)
+
+
+def _moved_zone(old_in_new: Pose, zone: Rectangle) -> Rectangle:
+    left, bottom, right, top = zone
+    middle = 0.5 * (left + right), 0.5 * (bottom + top)
+    x, y = old_in_new.place_of(*middle)
+    off_x, off_y = x - middle[0], y - middle[1]
+    return left + off_x, bottom + off_y, right + off_x, top + off_y
 
 
 def require_passes(passes: int) -> None:

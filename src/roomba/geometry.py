@@ -83,6 +83,11 @@ class Pose:
         moved[:, 1] = self.y + sine * points[:, 0] + cosine * points[:, 1]
         return moved
 
+    def place_of(self, x: float, y: float) -> tuple[float, float]:
+        """Return a point, m, of this pose's frame in the frame that this pose is given in."""
+        there = self.compose(Pose(x, y))
+        return there.x, there.y
+
     def inverse(self) -> Pose:
         """Return the pose that undoes this one: ``p.compose(p.inverse())`` is the identity."""
         cosine, sine = math.cos(self.theta), math.sin(self.theta)
@@ -95,3 +100,11 @@ class Pose:
     def bearing_to(self, x: float, y: float) -> float:
         """Return the angle from this heading to a point of the same frame, rad in (-pi, pi]."""
         return wrap_angle(math.atan2(y - self.y, x - self.x) - self.theta)
+
+
+def old_in_new(before: Pose, after: Pose) -> Pose:
+    """Return where an old frame lies in a new one; a place is ``before`` in it, ``after`` in this.
+
+    Exactly the identity where both are the same.
+    """
+    return Pose() if before == after else after.compose(before.inverse())

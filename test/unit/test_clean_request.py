@@ -8,6 +8,7 @@ import pytest
 
 from roomba.clean_request import CleanRefusedError, CleanRequest, Rectangle
 from roomba.errors import RequestRefusedError
+from roomba.geometry import Pose
 from roomba.vocabulary import LONGEST_NAME, MOST_PASSES, MOST_ZONES, CleanMode, FanLevel, RoomWay
 
 
@@ -79,6 +80,18 @@ def test_zones_that_are_none_are_refused(zone: Rectangle) -> None:
 def test_a_spot_that_is_nowhere_is_refused(spot: tuple[float, float]) -> None:
     with pytest.raises(CleanRefusedError, match="a spot of finite numbers"):
         CleanRequest(CleanMode.SPOT, spot=spot)
+
+
+def test_in_another_frame_its_places_stay_where_they_are() -> None:
+    turn = Pose(2.0, 0.5, math.pi / 2)
+    spot = CleanRequest(CleanMode.SPOT, spot=(1.0, 0.0)).moved(turn)
+    assert spot.spot == pytest.approx((2.0, 1.5))
+    zones = CleanRequest(CleanMode.ZONES, zones=((0.0, 0.0, 2.0, 1.0),), passes=2).moved(turn)
+    # Their sides are along the axes.
+    assert zones.zones[0] == pytest.approx((0.5, 1.0, 2.5, 2.0))
+    assert zones.passes == 2
+    here = CleanRequest(CleanMode.SPOT)
+    assert here.moved(turn) == here
 
 
 def test_more_than_a_home_has_is_refused_before_it_is_looked_at() -> None:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.geometry import Pose, Twist, wrap_angle
+from roomba.geometry import Pose, Twist, old_in_new, wrap_angle
 
 angles = st.floats(-50.0, 50.0)
 metres = st.floats(-100.0, 100.0)
@@ -31,6 +31,16 @@ def test_inverse_undoes_a_pose(pose: Pose) -> None:
     assert there_and_back.x == pytest.approx(0.0, abs=1e-9)
     assert there_and_back.y == pytest.approx(0.0, abs=1e-9)
     assert math.cos(there_and_back.theta) == pytest.approx(1.0)
+
+
+@given(poses, poses)
+def test_an_old_frame_lies_where_it_brings_a_place_to_what_that_is_now(
+    before: Pose, after: Pose
+) -> None:
+    there = old_in_new(before, after).compose(before)
+    assert (there.x, there.y) == pytest.approx((after.x, after.y), abs=1e-6)
+    assert wrap_angle(there.theta - after.theta) == pytest.approx(0.0, abs=1e-9)
+    assert old_in_new(before, before) == Pose()
 
 
 def test_composition_turns_then_goes() -> None:

@@ -51,6 +51,8 @@ class ChangedHome:
         dirt.carry_on(job.dirt, moved)
         self._obstacles.use(things, moved)
         self._drives.trail.move(moved)
+        if job.exploration is not None:
+            job.exploration.move(moved)
         job.dirt = dirt
         job.bin.forget_places()
         self.use_context(context)

@@ -17,6 +17,7 @@ from roomba.clean_request import CleanRequest
 from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.robot import RobotConfig
+from roomba.geometry import old_in_new
 from roomba.grid import OccupancyMap
 from roomba.mission.changed_home import ChangedHome
 from roomba.mission.checkpoint import checkpoint_of, remembered, state_after, take_up
@@ -138,7 +139,7 @@ class Mission:
 
         ``things`` and ``dirt`` are new ones of that map.
         """
-        moved = context.station.compose(self.context.station.inverse())
+        moved = old_in_new(self.context.station, context.station)
         self._ticks.carpets = self.carpets.carried_to(context.occupancy, moved)
         self._home.use_map(context, things, dirt, moved)
 

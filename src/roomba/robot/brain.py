@@ -16,7 +16,7 @@ from roomba.configuration.nodes import PlacingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.control.speed_loop import Hazards, SpeedLoop
 from roomba.errors import RoombaError
-from roomba.geometry import STANDSTILL, Pose, Twist
+from roomba.geometry import STANDSTILL, Pose, Twist, old_in_new
 from roomba.grid import OccupancyMap
 from roomba.mission.commands import CommandRefusedError
 from roomba.mission.inputs.planning_context import PlanningContext
@@ -25,6 +25,7 @@ from roomba.mission.mission import Mission
 from roomba.mission.phases.machine import Errand, Event, next_state
 from roomba.mission.walking.walk import Walk
 from roomba.perception.calibration.calibration import Calibration
+from roomba.perception.floors.carry_over import moved
 from roomba.perception.localization.localizer import Localizer
 from roomba.perception.matching.beams import LidarBeams
 from roomba.perception.matching.scan_view import LidarModel
@@ -197,6 +198,11 @@ class Brain:
         self._rooms, self._zones = rooms, zones
         self.mission.use_context(self._context(self.mission.context.occupancy))
 
+    @property
+    def zones(self) -> Zones:
+        """The zones that it goes by, in the frame of its map."""
+        return self._zones or Zones()
+
     def _begin(self, occupancy: OccupancyMap) -> None:
         """Begin the mission on the first map."""
         context = self._context(occupancy)
@@ -215,7 +221,8 @@ class Brain:
         growing.is_whole = True
         occupancy = mapper.finish()
         # To be whole the map was turned a little; it began docked.
-        self._station = self.robot_config.body.docked_at(mapper.start)
+        before, self._station = self._station, self.robot_config.body.docked_at(mapper.start)
+        self._zones = moved(self.zones, old_in_new(before, self._station))
         self._localize_on(occupancy, mapper.pose)
         self._use(occupancy)
 

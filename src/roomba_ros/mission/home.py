@@ -15,7 +15,7 @@ from roomba.configuration.docking import DockingConfig
 from roomba.configuration.mission import MissionConfig
 from roomba.configuration.nodes import DeadlinesConfig
 from roomba.configuration.robot import RobotConfig
-from roomba.geometry import Pose
+from roomba.geometry import Pose, old_in_new
 from roomba.grid import OccupancyMap
 from roomba.storage.map_bound import map_digest
 from roomba_ros.convert.common import ToldMap, pose_in_map, told_map_of
@@ -60,6 +60,8 @@ class HomeTopics:
         self._digest = ""
         self._map_came = 0.0
         self._station: Pose | None = None
+        self._grown_by: Pose | None = None
+        """Where the station is on the newest map that is being made."""
         self._outlines: RoomOutlines | None = None
         self._is_mapped: bool | None = None
         self._held: tuple[float, ToldMap] | None = None
@@ -151,11 +153,20 @@ class HomeTopics:
                 return
             is_first = self._map is None
             self._map, self._digest, self._map_came = occupancy, digest, came
-            self._zones.follow_map(digest)
+            self._zones.follow_map(digest, self._old_in_new())
+            self._grown_by = self._station if is_growing else None
             if not is_first:
                 # Rooms of this map are told after it.
                 self._outlines = None
                 self._maker.make(is_edited=not is_growing)
+
+    def _old_in_new(self) -> Pose:
+        """Return where the frame of a map that was being made lies in that of the whole one.
+
+        Where the station is in the whole one is told before the map.
+        """
+        before, now = self._grown_by, self._station
+        return Pose() if before is None or now is None else old_in_new(before, now)
 
     def _on_rooms(self, outlines: RoomOutlines) -> None:
         with self._lock:

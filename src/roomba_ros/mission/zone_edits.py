@@ -6,6 +6,7 @@ import contextlib
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from typing import Final
 
 import rospy
 from roomba_robot.msg import ZoneArray
@@ -20,6 +21,8 @@ from roomba_robot.srv import (
 from visualization_msgs.msg import MarkerArray
 
 from roomba.files.kept import remove_kept
+from roomba.geometry import Pose
+from roomba.perception.floors.carry_over import moved
 from roomba.perception.rooms.zones import Zones, ZonesError
 from roomba.storage.map_bound import map_file_name
 from roomba.storage.zones import load_zones, save_zones
@@ -27,6 +30,9 @@ from roomba.vocabulary import listed
 from roomba_ros.convert.rooms import zone_of, zones_markers, zones_message
 from roomba_ros.mission.known_home import GROWING
 from roomba_ros.runtime.parameters import robot_name, robot_run
+
+_SAME: Final = Pose()
+"""Where a map lies in another one that has its frame."""
 
 
 class ZoneEdits:
@@ -59,10 +65,11 @@ class ZoneEdits:
         rospy.Service("set_zone", SetZone, self._on_set)
         rospy.Service("remove_zone", RemoveZone, self._on_remove)
 
-    def follow_map(self, digest: str) -> None:
+    def follow_map(self, digest: str, old_in_new: Pose = _SAME) -> None:
         """Go on with the zones of another map; hold the lock.
 
-        More of a map that is being made has the same zones.
+        More of a map that is being made has the same zones. When that is whole, its frame lay at
+        ``old_in_new`` in the new one.
         """
         before, self._digest = self._digest, digest
         if digest == before == GROWING:
@@ -71,7 +78,7 @@ class ZoneEdits:
             self._forget_growing()
         self.zones = self._kept(digest)
         if digest != GROWING:
-            self._carry_over()
+            self._carry_over(old_in_new)
         self._tell()
 
     def look_again(self) -> bool:
@@ -86,15 +93,15 @@ class ZoneEdits:
         self._tell()
         return True
 
-    def _carry_over(self) -> None:
+    def _carry_over(self, old_in_new: Pose) -> None:
         """Let zones of the map that was being made go on in the whole one, if it has none."""
         growing = self._kept(GROWING)
         if growing is None or self.zones is None:
             return
         if growing.all and not self.zones.all:
-            self.zones = growing
+            self.zones = moved(growing, old_in_new)
             try:
-                save_zones(growing, self._digest, self._path(self._digest))
+                save_zones(self.zones, self._digest, self._path(self._digest))
             except OSError as error:
                 rospy.logerr("the zones cannot be saved: %s", error)
                 return

@@ -12,6 +12,8 @@ from fixtures.robots.missions import HOME, TWO_ROOMS
 from roomba_robot.msg import Zone as ZoneMessage
 from roomba_robot.srv import RemoveZoneRequest, SetZoneRequest
 
+from roomba.geometry import Pose
+from roomba.perception.floors.carry_over import moved
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.storage.map_bound import map_digest, map_file_name
 from roomba.storage.zones import load_zones, save_zones
@@ -138,6 +140,16 @@ def test_zones_of_a_growing_map_go_on_in_the_whole_one(editing: Editing) -> None
     editing.zones.follow_map(WHOLE)
     assert editing.zones.zones == Zones((MAT,))
     assert load_zones(editing.path(), WHOLE) == Zones((MAT,))
+
+
+def test_zones_of_a_growing_map_turn_with_it(editing: Editing) -> None:
+    turn = Pose(0.5, -0.2, 0.05)
+    editing.zones.follow_map(GROWING)
+    editing.set_zone(MAT)
+    editing.zones.follow_map(WHOLE, turn)
+    expected = moved(Zones((MAT,)), turn)
+    assert editing.zones.zones == expected
+    assert load_zones(editing.path(), WHOLE) == expected
 
 
 def test_a_node_that_was_killed_finds_the_zones_of_a_map_that_is_being_made(

@@ -22,6 +22,7 @@ from roomba.mission.commands import CommandRefusedError
 from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.phases.machine import Errand, Event, MissionState
 from roomba.perception.matching.surface_field import SurfaceField
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.planning.path.planner import NoPathError
 from roomba.robot.brain import Brain
 from roomba.robot.command import Command
@@ -243,6 +244,21 @@ def test_a_walk_that_has_no_way_leaves_the_errand_alone() -> None:
     assert not robot.walking.is_under_way
     with pytest.raises(RoombaError, match="there was none"):
         _ = robot.walking.newest
+
+
+def test_zones_stay_where_they_are_when_the_map_is_turned_to_be_whole() -> None:
+    aslant = Pose(STATION.x, STATION.y, STATION.theta + 0.05)
+    robot = Brain(MappingConfig(), aslant, NOISY, MissionConfig(), DockingConfig())
+    robot.tick(first_scan())
+    zone = Zone("mat", ZoneKind.NO_GO, ((1.0, 0.5), (1.6, 0.5), (1.6, 1.0)))
+    robot.use_rooms(None, Zones((zone,)))
+    robot.finish_map()
+    station = robot.mission.context.station
+    assert station.theta != aslant.theta
+    before = aslant.inverse().transform(np.array(zone.points))
+    (after,) = robot.zones.all
+    assert station.inverse().transform(np.array(after.points)) == pytest.approx(before)
+    assert robot.mission.context.zones == robot.zones
 
 
 @pytest.mark.parametrize("lidar", ["lds_01", "neato"])

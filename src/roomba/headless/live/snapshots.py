@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from roomba.client.protocol import CleanReport, ExploreReport, RobotUnavailableError
 from roomba.client.view import GridLayer, HomeView, RobotView, exploration_as_clean
@@ -147,6 +147,9 @@ class Snapshots:
                     self._visits = Visits(occupancy.frame, robot.robot_config.brush.width)
             cells = map_cells(self._live_home.plan, occupancy)
             self._map = GridLayer.over(occupancy.frame, cells, self._shape)
+        if robot.brain.zones != self.plan.zones:
+            # They were turned with the map, as it became whole.
+            self.plan = replace(self.plan, zones=robot.brain.zones)
         self._find_rooms(robot)
         self._look_at_home(robot)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from roomba.arrays import Mask
 from roomba.clean_request import CleanRefusedError, CleanRequest
-from roomba.geometry import Pose
+from roomba.geometry import Pose, old_in_new
 from roomba.grid import GridFrame
 from roomba.mission.cleaning.checkpoint import (
     CheckpointError,
@@ -195,9 +195,10 @@ class CoverageLedger:
 
     def _use_more_map(self, context: PlanningContext) -> None:
         """Bring what is swept to the new map, and want all that this one shows."""
-        moved = context.station.compose(self._context.station.inverse())
+        moved = old_in_new(self._context.station, context.station)
         self._carry(self._context.frame, context.frame, moved)
         self._began_at = moved.compose(self._began_at)
+        self.request = self.request.moved(moved)
         self.stages, self.stage_number = self._asked(context), 0
         self._want(self._floor_of(self.stages, context))
 
@@ -233,13 +234,13 @@ class CoverageLedger:
         Raises CheckpointError, and others for junk.
         """
         frame, station = self._place_of(values)
-        moved = self._context.station.compose(station.inverse())
+        moved = old_in_new(station, self._context.station)
         self._began_at = moved.compose(_pose(values["began_at"]))
         swept, ever = unpacked(values["swept"], frame.shape), unpacked(values["ever"], frame.shape)
         if values["is_growing"]:
             self.coverage = CoverageMap(frame, np.zeros_like(swept), self._context.tool_width)
             self.coverage.cells[swept] = np.uint8(SWEPT)
-            self._ever = ever
+            self._ever, self.request = ever, self.request.moved(moved)
             self._carry(frame, self._context.frame, moved)
             self.stages = self._asked(self._context)
             self._want(self._union())

@@ -102,6 +102,13 @@ class Exploration:
             exploration.given_up[place] = GivenUp(place, float(seen_from), bool(was_looked_at))
         return exploration
 
+    def move(self, moved: Pose) -> None:
+        """Go on in another frame, in which this one lies at ``moved``."""
+        given_up = (each.moved(moved) for each in self.given_up.values())
+        self.given_up = {each.place: each for each in given_up}
+        self._vanished = [moved.place_of(*point) for point in self._vanished]
+        self.goal = self.goal and self.goal.moved(moved)
+
     def give_up(self, middle: Point, seen_from: float = 0.0) -> None:
         """Go there no more, but to a place that is nearer than that it was ``seen_from``, m."""
         self.times_given_up += 1

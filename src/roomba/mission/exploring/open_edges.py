@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
 from roomba.configuration.mission import ExploringConfig
-from roomba.geometry import Point
+from roomba.geometry import Point, Pose
 from roomba.grid import OccupancyMap
 from roomba.planning.frontiers.frontiers import lengths_near
 from roomba.vocabulary import EdgeReason, OpenEdge
@@ -25,6 +25,10 @@ class GivenUp(NamedTuple):
     place: Point
     seen_from: float
     was_looked_at: bool
+
+    def moved(self, moved: Pose) -> GivenUp:
+        """Return the same in another frame, in which this one lies at ``moved``."""
+        return self._replace(place=moved.place_of(*self.place))
 
 
 def open_edges(

@@ -7,13 +7,13 @@ Going to the nearest one each time explores a floor with little more driving tha
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.geometry import Point
+from roomba.geometry import Point, Pose
 from roomba.grid import GridFrame, OccupancyMap
 from roomba.planning.frontiers.kernels import clusters, frontier_cells, seen_from, ways_from
 
@@ -51,6 +51,11 @@ class Frontier:
     viewpoint: Point
     way: float
     length: float
+
+    def moved(self, moved: Pose) -> Frontier:
+        """Return the same in another frame, in which this one lies at ``moved``."""
+        middle, viewpoint = moved.place_of(*self.middle), moved.place_of(*self.viewpoint)
+        return replace(self, middle=middle, viewpoint=viewpoint)
 
 
 def frontiers(

@@ -28,6 +28,7 @@ from roomba.plans.plan import Plan
 from roomba.storage.kept_stop import KeptStop
 from roomba.vocabulary import CleanMode
 
+LINE = ZoneView("line", "wall", ((0.5, -0.5), (0.9, -0.5)))
 DEADLINE = 20.0
 """s of wall time."""
 
@@ -352,11 +353,16 @@ def test_without_a_map_it_explores_and_finds_rooms() -> None:
         assert client.home().rooms == ()
         first = client.layer(LayerName.MAP)
         assert first is not None
+        client.put_zone(LINE)
         client.explore()
         wait_until(lambda: client.robot().last is not None, DEADLINE, "the end of the exploration")
         layer = client.layer(LayerName.MAP)
         assert layer is not None
         assert client.home().rooms
+        # To be whole the map was turned a little, and the zone with it.
+        (line,) = client.home().zones
+        assert line.points != LINE.points
+        assert np.array(line.points) == pytest.approx(np.array(LINE.points), abs=0.2)
         assert np.count_nonzero(layer.cells == 1) > np.count_nonzero(first.cells == 1)
     finally:
         client.end()

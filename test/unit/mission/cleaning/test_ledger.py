@@ -93,6 +93,26 @@ def test_turned_to_its_walls_the_map_takes_along_what_is_clean() -> None:
     assert middle == pytest.approx((at.x, at.y), abs=0.02)
 
 
+@pytest.mark.parametrize("is_killed", [False, True])
+def test_what_is_asked_for_turns_with_the_map(*, is_killed: bool) -> None:
+    context, turn = context_of(HALL), Pose(0.02, -0.03, 0.05)
+    whole = context_of(WHOLE, is_growing=False, station=turn.compose(context.station))
+    request = CleanRequest(CleanMode.ZONES, zones=((0.6, 0.4, 1.4, 0.8),))
+    ledger = begun(context, request)
+    if is_killed:
+        values = json.loads(json.dumps(ledger.values()))
+        ledger = begun(whole, request)
+        ledger.restore(values)
+    else:
+        use(ledger, whole)
+    middle = turn.compose(Pose(1.0, 0.6))
+    left, bottom, right, top = ledger.request.zones[0]
+    assert (0.5 * (left + right), 0.5 * (bottom + top)) == pytest.approx((middle.x, middle.y))
+    assert (right - left, top - bottom) == pytest.approx((0.8, 0.4))
+    x, y = whole.frame.centres(*np.nonzero(ledger.coverage.wanted))
+    assert (x.mean(), y.mean()) == pytest.approx((middle.x, middle.y), abs=0.02)
+
+
 def test_what_was_planned_is_not_planned_again_until_something_broke_it_off() -> None:
     ledger = begun(context_of(HALL))
     ledger.coverage.sweep(1.0, 1.2)

@@ -172,6 +172,27 @@ def test_what_a_newer_map_shows_is_not_told_as_unseen() -> None:
     assert exploration.still_unseen(TWO_ROOMS.map) == ()
 
 
+def test_what_it_gave_up_and_where_it_goes_turn_with_the_map() -> None:
+    exploration = begun()
+    exploration.give_up((1.0, 2.0), 0.5)
+    goal = exploration.goal
+    assert goal is not None
+    turn = Pose(0.1, -0.2, 0.05)
+    exploration.move(turn)
+
+    def there(point: tuple[float, float]) -> tuple[float, float]:
+        place = turn.compose(Pose(*point))
+        return place.x, place.y
+
+    assert exploration.unseen == [there((1.0, 2.0))]
+    (given_up,) = exploration.given_up.values()
+    assert (given_up.place, given_up.seen_from) == (there((1.0, 2.0)), 0.5)
+    assert exploration.goal is not None
+    assert exploration.goal.middle == there(goal.middle)
+    assert exploration.goal.viewpoint == there(goal.viewpoint)
+    assert exploration.goal.way == goal.way
+
+
 def test_what_was_not_yet_reached_is_not() -> None:
     exploration = begun()
     assert exploration.next_path(at_goal(exploration, 0.3), HALL_SITE, []) is not None
