@@ -61,6 +61,9 @@ class WalkConfig(Frozen):
     carried: Length = 1.0
     """m; a robot that finds itself farther from its last known place was carried: what it
     remembers of things is of another place. Of cleans as well."""
+    hanging_wheel: Duration = 1.5
+    """s; one wheel may hang in the air for so long, as at a sill, until an errand fails; when both
+    do it fails at once."""
     least_progress: Length = 0.05
     """m; coming nearer to the goal by less is no progress."""
     least_turn: Angle = 0.2

@@ -196,6 +196,13 @@ def test_lifted_its_error_says_what_to_do() -> None:
     assert rig.mission.take_result() is None
 
 
+def test_a_wheel_in_the_air_at_a_sill_does_not_end_its_clean() -> None:
+    rig = cleaning()
+    rig.tick(wheel_hangs=True)
+    rig.tick(wheel_hangs=False)
+    assert rig.phase is Phase.CLEANING
+
+
 def test_lifted_while_it_stands_is_no_matter() -> None:
     rig = Rig()
     rig.tick(lifted=True)

@@ -116,8 +116,11 @@ def test_one_side_of_the_bumper_and_one_wheel_are_enough(side: str) -> None:
     assert pressed.hazards == Hazards(bumper=True)
     dropped = Readings(1.0, Pose(), **{f"dropped_{side}": True})  # type: ignore[arg-type]
     assert dropped.hazards == Hazards(wheel_drop=True)
-    assert senses_of(dropped, Pose(), Knowledge.KNOWN).lifted
-    assert not dropped.is_lifted
+    senses = senses_of(dropped, Pose(), Knowledge.KNOWN)
+    assert (senses.wheel_hangs, senses.lifted, dropped.is_lifted) == (True, False, False)
+    both = Readings(1.0, Pose(), dropped_left=True, dropped_right=True)
+    senses = senses_of(both, Pose(), Knowledge.KNOWN)
+    assert (senses.wheel_hangs, senses.lifted, both.is_lifted) == (True, True, True)
 
 
 def test_what_is_counted_and_weighed_is_sensed_at_its_time() -> None:

@@ -42,10 +42,10 @@ class Senses:
 
     ``knowledge`` is how well the pose is known, ``trouble`` why not better, ``unsure`` the standard
     deviation of its place, m, infinite where none is told; ``twist`` is by the wheels;
-    ``cliff_left`` tells that the left cliff sensors see no floor; ``lifted`` that wheels hang in
-    the air; ``grains`` is what the dirt sensor counts, 1/s; ``in_bin`` what was picked up, g;
-    ``brush_current`` what the brush's motor takes, A; ``emptying`` what the station tells that
-    empties the bin, None of one that does not.
+    ``cliff_left`` tells that the left cliff sensors see no floor; ``lifted`` that both wheels hang
+    in the air, ``wheel_hangs`` that one does, or both; ``grains`` is what the dirt sensor counts,
+    1/s; ``in_bin`` what was picked up, g; ``brush_current`` what the brush's motor takes, A;
+    ``emptying`` what the station tells that empties the bin, None of one that does not.
     """
 
     now: float
@@ -59,6 +59,7 @@ class Senses:
     cliff_left: bool = False
     cliff_right: bool = False
     lifted: bool = False
+    wheel_hangs: bool = False
     beams: StationBeams = NO_BEAMS
     battery: Battery = _FULL
     grains: float = 0.0

@@ -25,6 +25,7 @@ class Monitor:
         self.was_docked = senses.battery.is_docked
         self._astray: RobotTime | None = None
         self._begins_lost = senses.knowledge is Knowledge.LOST
+        self._hanging: RobotTime | None = None
         self._known_at = (senses.pose.x, senses.pose.y)
 
     @property
@@ -43,10 +44,10 @@ class Monitor:
     ) -> Failure | None:
         """Return what ends a drive; ``last_place``, m, is where it was a tick before."""
         if not state.drives:
-            self._astray = None
+            self._astray = self._hanging = None
             self._begins_lost = senses.knowledge is Knowledge.LOST
             return None
-        if senses.lifted:
+        if self._hangs_for_long(senses) or senses.lifted:
             reason = "a wheel hangs in the air: set it down and resume"
             return Failure(CleanOutcome.FAULT, reason)
         if self._ledger.is_empty(senses) and not senses.battery.is_docked:
@@ -54,6 +55,16 @@ class Monitor:
             return Failure(CleanOutcome.BATTERY, reason)
         # Docking finds its way by the station's beams.
         return None if state.phase is Phase.DOCKING else self._lost(senses, last_place)
+
+    def _hangs_for_long(self, senses: Senses) -> bool:
+        """Whether a wheel hangs in the air for longer than at a sill."""
+        if not senses.wheel_hangs:
+            self._hanging = None
+            return False
+        if self._hanging is None:
+            self._hanging = RobotTime(senses.now)
+        self._hanging.tick(senses.now)
+        return self._hanging.elapsed > self._config.hanging_wheel
 
     def _lost(self, senses: Senses, last_place: tuple[float, float]) -> Failure | None:
         is_lost = senses.knowledge is Knowledge.LOST

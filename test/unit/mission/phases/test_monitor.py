@@ -81,6 +81,23 @@ def test_what_ends_a_drive_is_no_matter_while_it_stands(
     assert Rig().failure(AWAY) is None
 
 
+def test_a_wheel_that_hangs_for_a_moment_is_a_sill_and_for_longer_a_fault() -> None:
+    rig, longest = Rig(), ROBOT.walk.hanging_wheel
+    for begin in (0.0, longest):
+        # On the floor in between, it is given its time again.
+        for now in np.arange(begin, begin + longest - 0.1, 0.1).tolist():
+            assert rig.failure(replace(AWAY, now=now, wheel_hangs=True)) is None
+        assert rig.failure(replace(AWAY, now=begin + longest - 0.05)) is None
+    for now in np.arange(10.0, 10.0 + longest + 0.15, 0.1).tolist():
+        failure = rig.failure(replace(AWAY, now=now, wheel_hangs=True))
+    assert failure is not None
+    assert failure.outcome is CleanOutcome.FAULT
+    # Resumed with the wheel in the air it is given its time again.
+    paused = MissionState(Phase.PAUSED, Errand.CLEAN)
+    assert rig.failure(replace(AWAY, now=20.0, wheel_hangs=True), paused) is None
+    assert rig.failure(replace(AWAY, now=20.1, wheel_hangs=True)) is None
+
+
 def test_astray_it_is_given_time_and_then_the_reason_is_told() -> None:
     rig, timeout = Rig(), ROBOT.walk.astray_timeout
     for now in np.arange(0.0, timeout, 0.1).tolist():
