@@ -20,9 +20,11 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.rooms import Rooms
 from roomba.perception.rooms.zones import Zones, ZonesError
+from roomba.planning.coverage.stages import OUR_STAGES
 from roomba_ros.convert.rooms import RoomOutlines
 from roomba_ros.mission.known_home import GROWING, KnownHome
 from roomba_ros.runtime.background import Background
+from roomba_ros.runtime.timing.heart import HEART
 
 MOST_FINE_CELLS: Final = 40_000_000
 """Of a map that is cleaned: 4,000 m2, its walls and surroundings included."""
@@ -137,6 +139,8 @@ class ContextMaker:
             _rooms(inputs.outlines, inputs.occupancy),
             inputs.zones,
             is_growing=inputs.digest == GROWING,
+            # The main loop plans, and gives no other sign of life meanwhile.
+            stages=OUR_STAGES.telling(HEART.beat),
         )
         if not context.is_growing:
             # It takes a while, and the mission shall not wait for it.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from dataclasses import replace
 from typing import Any
@@ -19,6 +20,7 @@ from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba_ros.mission.context_maker import ContextInputs, ContextMaker
 from roomba_ros.mission.known_home import GROWING, KnownHome
 from roomba_ros.runtime.background import Background
+from roomba_ros.runtime.timing.heart import Heart
 
 MAT = Zones((Zone("mat", ZoneKind.NO_GO, ((1.0, 1.8), (1.4, 1.8), (1.4, 2.2))),))
 INPUTS = ContextInputs(HOME.map, "whole", HOME.station, None, Zones(), "")
@@ -72,6 +74,24 @@ def test_what_is_made_is_of_what_was_known_and_taken_once(making: Making) -> Non
     )
     assert not home.context.is_growing
     assert making.maker.take() is None
+
+
+def test_a_plan_gives_signs_of_life(making: Making, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Over a large home it takes longer than a loop may hang."""
+    heart = Heart()
+    monkeypatch.setattr("roomba_ros.mission.context_maker.HEART", heart)
+    making.want()
+    home = making.made()
+    assert home is not None
+    reading, writing = os.pipe()
+    heart.use(writing)
+    heart.begin()
+    making.now = 1.0
+    context = home.context
+    context.plan_coverage((1.0, 0.6), context.coverable(), [], edges_only=False)
+    os.close(writing)
+    with os.fdopen(reading, "rb") as signs:
+        assert signs.read()
 
 
 def test_of_many_that_are_wanted_the_last_is_made(making: Making) -> None:

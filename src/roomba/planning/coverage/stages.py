@@ -7,8 +7,8 @@ What each stage takes and gives is said where ours is.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, fields
+from typing import Final, ParamSpec, TypeVar
 
 from roomba.arrays import Floats, Mask, Polyline
 from roomba.configuration.coverage import CoverageConfig
@@ -19,6 +19,9 @@ from roomba.planning.coverage.tour.net import Net
 from roomba.planning.coverage.tour.order import ordered as our_order
 from roomba.planning.coverage.tour.polish import polished as our_polish
 from roomba.planning.coverage.tour.rounding import rounded as our_rounding
+
+_Given = ParamSpec("_Given")
+_Made = TypeVar("_Made")
 
 Edges = Callable[[list[Polyline], Mask, Mask, float, float, CoverageConfig], list[Polyline]]
 """rings, need, middles, radius, length of a piece, configuration: lines along walls."""
@@ -45,6 +48,19 @@ class CoverageStages:
     connection: Connection = our_connection
     polish: Polish = our_polish
     rounding: Rounding = our_rounding
+
+    def telling(self, tell: Callable[[], None]) -> CoverageStages:
+        """Return the same stages, each of which calls ``tell`` first: a large plan takes long."""
+        told = {field.name: _telling(getattr(self, field.name), tell) for field in fields(self)}
+        return CoverageStages(**told)
+
+
+def _telling(stage: Callable[_Given, _Made], tell: Callable[[], None]) -> Callable[_Given, _Made]:
+    def told(*given: _Given.args, **named: _Given.kwargs) -> _Made:
+        tell()
+        return stage(*given, **named)
+
+    return told
 
 
 OUR_STAGES: Final = CoverageStages()

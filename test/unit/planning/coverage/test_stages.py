@@ -44,3 +44,10 @@ def test_a_stage_of_ones_own_decides() -> None:
     assert without.swaths == ()
     assert len(ours.swaths) > 3
     assert without.length < ours.length
+
+
+def test_before_each_stage_it_is_told_that_the_plan_goes_on() -> None:
+    calls: list[int] = []
+    plan = plan_by(OUR_STAGES.telling(lambda: calls.append(len(calls))))
+    assert len(calls) == len(NAMES)
+    assert np.array_equal(plan.points, plan_by(OUR_STAGES).points)
