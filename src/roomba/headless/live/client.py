@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
 
@@ -54,7 +56,7 @@ class LiveClient:
         self._snapshots = Snapshots(robot, plan, live_home)
         self._live = LiveRobot(robot, speed, self._observe)
         self._watchers: list[Watcher] = []
-        self._stop = HeldStop(self.obey, _hold, _release)
+        self._stop = HeldStop(self._put, _hold, _release)
         self._kept_plan: KeptFloorPlan | None = None
         body = robot.robot_config.body
         has_camera = live_home.camera is not None
@@ -109,22 +111,22 @@ class LiveClient:
 
         Raises RequestRefusedError with the reason, RobotUnavailableError.
         """
-        try:
+        with _refusals():
             return self._live.carry_out(question, timeout)
-        except (RobotUnavailableError, RequestRefusedError):
-            raise
-        except (RoombaError, ValueError) as refusal:
-            raise RequestRefusedError(str(refusal)) from refusal
 
     def obey(self, command: Callable[[Embodied], None]) -> None:
         """Let the robot obey; what it refuses is RequestRefusedError with its reason."""
+        self.ask(lambda robot: self._obey(robot, command))
 
-        def obey(robot: Embodied) -> None:
+    def _put(self, command: Callable[[Embodied], None]) -> Future[None]:
+        """Let the robot obey when its turn comes, as :meth:`obey` does."""
+        return self._live.put(lambda robot: self._obey(robot, command))
+
+    def _obey(self, robot: Embodied, command: Callable[[Embodied], None]) -> None:
+        with _refusals():
             command(robot)
-            self._snapshots.look(robot)
-            self._tell(robot)
-
-        self.ask(obey)
+        self._snapshots.look(robot)
+        self._tell(robot)
 
     @property
     def bin_capacity(self) -> float:
@@ -246,7 +248,8 @@ class LiveClient:
     def emergency_stop(self, reason: str) -> None:
         """Hold the drive until it is released; a walk ends, however soon that is.
 
-        A disk that does not keep it is told as part of why it is held.
+        A disk that does not keep it is told as part of why it is held. Raises
+        RobotUnavailableError for a robot that does not answer in time: it holds once it does.
         """
         self._live.drive(STANDSTILL)
         self._stop.engage(reason)
@@ -364,6 +367,17 @@ class LiveClient:
     def _tell(self, robot: Embodied) -> None:
         for watcher in self._watchers:
             watcher(robot, self._snapshots.ended)
+
+
+@contextmanager
+def _refusals() -> Iterator[None]:
+    """Raise RequestRefusedError for what the robot refuses."""
+    try:
+        yield
+    except (RobotUnavailableError, RequestRefusedError):
+        raise
+    except (RoombaError, ValueError) as refusal:
+        raise RequestRefusedError(str(refusal)) from refusal
 
 
 def _hold(robot: Embodied, reason: str) -> None:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as FutureTimeoutError
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import Final, Generic, TypeVar
 
-from roomba.client.protocol import RequestRefusedError
+from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.storage.kept_stop import NO_REASON, KeptStop
+
+ANSWER: Final = 5.0
+"""s of wall time within which the robot tells that it holds, or is free."""
 
 _Robot = TypeVar("_Robot")
 
@@ -15,20 +21,23 @@ _Robot = TypeVar("_Robot")
 class HeldStop(Generic[_Robot]):
     """Holds and frees the drive of one robot; its methods may be called from any thread.
 
-    ``obey`` lets the robot's thread carry out a command; ``hold``, given the reason, and ``free``
-    are such commands.
+    ``put`` lets the robot's thread carry out a command after those that were put before, and
+    returns the answer to come; ``hold``, given the reason, and ``free`` are such commands. A stop
+    that was asked for is never taken back: a robot that is busy holds as soon as it is not.
     """
 
     def __init__(
         self,
-        obey: Callable[[Callable[[_Robot], None]], None],
+        put: Callable[[Callable[[_Robot], None]], Future[None]],
         hold: Callable[[_Robot, str], None],
         free: Callable[[_Robot], None],
     ) -> None:
         """Let the drive be free, and keep nothing on the disk until :meth:`keep_in`."""
-        self._obey, self._hold_drive, self._free_drive = obey, hold, free
+        self._put, self._hold_drive, self._free_drive = put, hold, free
         self._kept: KeptStop | None = None
         self._reason = ""
+        self._asked: list[str] = []
+        self._asking = threading.Lock()
 
     @property
     def reason(self) -> str:
@@ -47,17 +56,35 @@ class HeldStop(Generic[_Robot]):
     def engage(self, reason: str) -> None:
         """Hold the drive until it is released.
 
-        A disk that does not keep it is told as part of why it is held.
+        A disk that does not keep it is told as part of why it is held. Raises
+        RobotUnavailableError for a robot that does not answer in time: it holds once it does.
         """
-        self._obey(lambda robot: self._hold(robot, reason.strip() or NO_REASON))
+        answers = [self._ask_to_hold(reason.strip() or NO_REASON)]
         if refused := self._keep_newest():
-            self._obey(lambda robot: self._tell_not_kept(robot, refused))
+            answers.append(self._put(lambda robot: self._tell_not_kept(robot, refused)))
+        for answer in answers:
+            _wait_for(answer, "the emergency stop holds as soon as it answers")
 
     def release(self) -> None:
-        """Free the drive; raises RequestRefusedError too if the next start holds it again."""
-        self._obey(self._free)
+        """Free the drive; raises RequestRefusedError too if the next start holds it again.
+
+        RobotUnavailableError is for a robot that does not answer in time.
+        """
+        answer = self._put(self._free)
+        try:
+            _wait_for(answer, "the emergency stop may still hold")
+        finally:
+            answer.cancel()
         if refused := self._keep_newest():
             raise RequestRefusedError(f"the drive is free; but {refused}")
+
+    def _ask_to_hold(self, reason: str) -> Future[None]:
+        """Let the robot hold when its turn comes; it counts as the newest reason until then."""
+        with self._asking:
+            self._asked.append(reason)
+            answer = self._put(lambda robot: self._hold(robot, reason))
+        answer.add_done_callback(lambda _: self._asked.remove(reason))
+        return answer
 
     def _hold(self, robot: _Robot, reason: str) -> None:
         self._hold_drive(robot, reason)
@@ -73,4 +100,19 @@ class HeldStop(Generic[_Robot]):
 
     def _keep_newest(self) -> str:
         """Keep why the drive is held, or that it is free; return what the disk refused."""
-        return "" if self._kept is None else self._kept.keep(lambda: self._reason)
+        return "" if self._kept is None else self._kept.keep(self._newest)
+
+    def _newest(self) -> str:
+        """Return the newest reason of those that were asked for and those that hold."""
+        asked = self._asked[-1:]
+        return asked[0] if asked else self._reason
+
+
+def _wait_for(answer: Future[None], late: str) -> None:
+    """Wait for an answer; raises RobotUnavailableError, which tells ``late``, if none comes."""
+    try:
+        answer.result(ANSWER)
+    except FutureTimeoutError:
+        raise RobotUnavailableError(
+            f"expected the robot's answer within {ANSWER:g} s, got none; {late}"
+        ) from None

@@ -94,10 +94,7 @@ class LiveRobot(Generic[_Robot]):
         Raises what it raises, and RobotUnavailableError when the robot ended or does not answer
         within ``timeout`` s of wall time: then a command that it has not begun is left undone.
         """
-        if self.ending:
-            raise RobotUnavailableError(f"{self.ending}; start it again")
-        answer: Future[_Answer] = Future()
-        self._commands.put((command, answer))
+        answer = self.put(command)
         try:
             return answer.result(timeout)
         except FutureTimeoutError:
@@ -105,6 +102,19 @@ class LiveRobot(Generic[_Robot]):
             raise RobotUnavailableError(
                 f"expected the robot's answer within {timeout:g} s, got none{self._reason}"
             ) from None
+
+    def put(self, command: Callable[[_Robot], _Answer]) -> Future[_Answer]:
+        """Let the robot's thread call ``command`` after those that wait; return its answer to come.
+
+        It is called however long that thread is busy, unless the answer is cancelled before. That
+        of a robot which has ended is RobotUnavailableError.
+        """
+        answer: Future[_Answer] = Future()
+        if self.ending:
+            answer.set_exception(RobotUnavailableError(f"{self.ending}; start it again"))
+        else:
+            self._commands.put((command, answer))
+        return answer
 
     def tick_times(self) -> TickTimes:
         """Return how long ticks took to compute; those of one frame count alike."""

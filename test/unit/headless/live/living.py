@@ -3,9 +3,18 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+import threading
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Protocol, TypeVar
+
+import pytest
+
+from roomba.client.protocol import RobotUnavailableError
+from roomba.headless.live import held_stop
+
+DEADLINE = 20.0
+"""s of wall time."""
 
 
 class Living(Protocol):
@@ -13,6 +22,9 @@ class Living(Protocol):
 
     def keep_stop(self, folder: Path) -> None:
         """Keep the emergency stop in a folder."""
+
+    def emergency_stop(self, reason: str) -> None:
+        """Hold the drive."""
 
     def start(self) -> None:
         """Let the robot live."""
@@ -31,3 +43,25 @@ def living(client: _Client, stops: Path) -> Iterator[_Client]:
     client.start()
     yield client
     client.end()
+
+
+def stop_while_busy(
+    client: Living,
+    ask: Callable[[Callable[[object], None]], object],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Ask for the emergency stop while the robot's thread, by ``ask``, has no time to answer."""
+    is_busy, may_go_on = threading.Event(), threading.Event()
+
+    def work(_: object) -> None:
+        is_busy.set()
+        may_go_on.wait(DEADLINE)
+
+    monkeypatch.setattr(held_stop, "ANSWER", 0.05)
+    busy = threading.Thread(target=ask, args=(work,))
+    busy.start()
+    assert is_busy.wait(DEADLINE)
+    with pytest.raises(RobotUnavailableError, match="holds as soon as it answers"):
+        client.emergency_stop("the cat")
+    may_go_on.set()
+    busy.join(DEADLINE)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures.waiting import wait_until
-from unit.headless.live.living import living
+from unit.headless.live.living import living, stop_while_busy
 
 from roomba.clean_request import CleanRequest
 from roomba.client.plain import home_from, home_of
@@ -99,6 +99,13 @@ def test_the_emergency_stop_holds_until_it_is_released(client: LiveClient) -> No
     last = client.robot().last
     assert last is not None
     assert last.outcome.value == "completed"
+
+
+def test_an_emergency_stop_that_a_busy_robot_did_not_answer_holds_it(
+    client: LiveClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stop_while_busy(client, client.ask, monkeypatch)
+    wait_until(lambda: client.robot().held == "the cat", DEADLINE, "it holds")
 
 
 def lives(stops: Path) -> AbstractContextManager[LiveClient]:

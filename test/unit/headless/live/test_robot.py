@@ -43,7 +43,7 @@ def live() -> Iterator[LiveRobot[StandingRobot]]:
     live.stop()
 
 
-def test_what_was_told_to_have_no_answer_is_not_carried_out_later(
+def test_what_was_told_to_have_no_answer_is_not_carried_out_later_but_what_was_put_is(
     live: LiveRobot[StandingRobot],
 ) -> None:
     is_held, goes_on = threading.Event(), threading.Event()
@@ -54,15 +54,25 @@ def test_what_was_told_to_have_no_answer_is_not_carried_out_later(
         goes_on.wait(DEADLINE)
         done.append("held")
 
-    holder = threading.Thread(target=live.carry_out, args=(hold, DEADLINE))
-    holder.start()
+    held = live.put(hold)
     assert is_held.wait(DEADLINE)
     with pytest.raises(RobotUnavailableError, match=r"within 0\.05 s, got none"):
         live.carry_out(lambda robot: done.append("too late"), 0.05)
+    put = live.put(lambda robot: done.append("put"))
+    assert not put.done()
     goes_on.set()
-    holder.join(DEADLINE)
+    held.result(DEADLINE)
     live.carry_out(lambda robot: done.append("in time"))
-    assert done == ["held", "in time"]
+    assert put.done()
+    assert done == ["held", "put", "in time"]
+
+
+def test_what_is_put_to_a_robot_that_has_ended_is_told_so(
+    live: LiveRobot[StandingRobot],
+) -> None:
+    live.stop()
+    with pytest.raises(RobotUnavailableError, match="has ended; start it again"):
+        live.put(lambda robot: None).result(DEADLINE)
 
 
 def test_a_command_that_is_refused_says_why_to_who_gave_it(

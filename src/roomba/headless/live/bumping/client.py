@@ -6,6 +6,7 @@ import itertools
 import math
 import threading
 from collections.abc import Callable
+from concurrent.futures import Future
 from pathlib import Path
 
 from roomba.bumping.brain import BumpingState
@@ -44,7 +45,7 @@ class BumpingClient(WithoutMap):
         self._home_of: Pose | None = None
         self._last: CleanReport | None = None
         self._clean: _CleanUnderWay | None = None
-        self._stop = HeldStop(self._obey, _hold, _release)
+        self._stop = HeldStop(self._put, _hold, _release)
         body = robot.robot_config.body
         self._top_speed = body.max_speed
         self._limits = view.PageLimits(
@@ -147,7 +148,8 @@ class BumpingClient(WithoutMap):
     def emergency_stop(self, reason: str) -> None:
         """Hold the drive until it is released.
 
-        A disk that does not keep it is told as part of why it is held.
+        A disk that does not keep it is told as part of why it is held. Raises
+        RobotUnavailableError for a robot that does not answer in time: it holds once it does.
         """
         self._live.drive(STANDSTILL)
         self._stop.engage(reason)
@@ -181,11 +183,20 @@ class BumpingClient(WithoutMap):
             )
 
     def _obey(self, command: Callable[[BumpingRobot], None]) -> None:
+        self._live.carry_out(self._observed(command))
+
+    def _put(self, command: Callable[[BumpingRobot], None]) -> Future[None]:
+        """Let the robot obey when its turn comes."""
+        return self._live.put(self._observed(command))
+
+    def _observed(self, command: Callable[[BumpingRobot], None]) -> Callable[[BumpingRobot], None]:
+        """Return the command, after which snapshots are taken."""
+
         def obey(robot: BumpingRobot) -> None:
             command(robot)
             self._observe(robot)
 
-        self._live.carry_out(obey)
+        return obey
 
     def _observe(self, robot: BumpingRobot) -> None:
         """Take snapshots after a frame, or a command."""

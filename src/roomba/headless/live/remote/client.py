@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Final
 
@@ -58,7 +59,7 @@ class RemoteClient(WithoutMap):
         self._held, self._not_stopped = "", ""
         self._has_to_stop = False
         self._holding = threading.Lock()
-        self._stop = HeldStop(lambda command: command(self), _hold, _release)
+        self._stop = HeldStop(self._put, _hold, _release)
         self._teller = Teller()
         self._watch = RemoteWatch(remote, now, self._stop_where_held)
 
@@ -185,6 +186,17 @@ class RemoteClient(WithoutMap):
         with self._holding:
             self._held, self._has_to_stop = "", False
             self._not_stopped = ""
+
+    def _put(self, command: Callable[[RemoteClient], None]) -> Future[None]:
+        """Carry out a command at once, in the caller's thread."""
+        answer: Future[None] = Future()
+        try:
+            command(self)
+        except RobotUnavailableError as over:
+            answer.set_exception(over)
+        else:
+            answer.set_result(None)
+        return answer
 
     def _require_free(self) -> None:
         """Raise RequestRefusedError where it is held or another program has it."""

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from fixtures.bumping import BumpingHome
 from fixtures.waiting import wait_until
-from unit.headless.live.living import living
+from unit.headless.live.living import living, stop_while_busy
 
 from roomba.clean_request import CleanRequest
 from roomba.client.plain import state_of
@@ -92,6 +92,13 @@ def test_told_to_stop_it_stays_and_its_clean_is_told_as_stopped(client: BumpingC
     before = client.robot().pose
     client.drive(0.2, 0.0)
     wait_until(lambda: math.dist(client.robot().pose[:2], before[:2]) > 0.02, 10.0, "it drives")
+
+
+def test_an_emergency_stop_that_a_busy_robot_did_not_answer_holds_it(
+    client: BumpingClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stop_while_busy(client, client._obey, monkeypatch)
+    wait_until(lambda: client.robot().held == "the cat", 20.0, "it holds")
 
 
 def lives(stops: Path) -> AbstractContextManager[BumpingClient]:
