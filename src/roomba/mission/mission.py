@@ -289,9 +289,10 @@ class Mission:
     def seconds_to_go(self) -> float:
         """Return about how long the clean still takes, s of robot time; charging left out.
 
-        While it charges, waits or is paused that is what comes afterwards.
+        While it charges, waits or is paused that is what comes afterwards. Once the floor is done,
+        on its way home, it is 0.
         """
-        if self.cleaning is None:
+        if self.cleaning is None or self.state.errand is Errand.HOME:
             return 0.0
         driving = 0.0 if self.driver is None else self.driver.left
         if self.state.errand is Errand.CLEAN and self.state.phase is not Phase.EXPLORING:

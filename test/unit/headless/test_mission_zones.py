@@ -23,8 +23,9 @@ from roomba.headless.mission import HeadlessMission
 from roomba.headless.records import CleanRecord
 from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.inputs.planning_context import PlanningContext
+from roomba.mission.phases.machine import Errand, MissionState
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
-from roomba.vocabulary import CleanMode
+from roomba.vocabulary import CleanMode, Phase
 
 
 def zoned(robot: HeadlessMission, *zones: Zone) -> PlanningContext:
@@ -127,3 +128,15 @@ def test_a_virtual_wall_before_the_rest_leaves_it_out() -> None:
     # What the wall shuts off is not missed; specks may be.
     assert all(each.area < SPECK for each in record.result.missed)
     assert floor_clean(robot, context.coverable()) >= FLOOR_TOO_LITTLE
+
+
+def test_when_a_zone_leaves_nothing_to_clean_nothing_is_to_go_on_the_way_home() -> None:
+    robot = HeadlessMission(TWO_ROOMS)
+    mission = robot.mission
+    mission.clean(CleanRequest(CleanMode.SPOT, spot=(2.9, 0.7)), robot.senses())
+    until(robot, lambda: mission.sweeps and robot.simulator.pose.x > 2.6)
+    assert mission.seconds_to_go() > 0.0
+    mission.use_context(zoned(robot, no_go(2.2, 0.0, 3.6, 1.4)))
+    until(robot, lambda: mission.state.errand is Errand.HOME and mission.driver is not None)
+    assert mission.state == MissionState(Phase.RETURNING, Errand.HOME)
+    assert mission.seconds_to_go() == 0.0
