@@ -8,8 +8,8 @@ from typing import Any, Final
 
 from roomba.client.plain import known, report_of
 from roomba.client.protocol import CleanReport
+from roomba.client.under_way import is_running
 from roomba.client.view import RobotView
-from roomba.vocabulary import AT_REST
 
 EVENT_KINDS: Final = ("state", "begun", "ended", "trouble")
 """``state``: what it does changed; ``begun`` and ``ended``: a run; ``trouble``: what is wrong, in
@@ -47,14 +47,13 @@ class EventFinder:
         if vacuum.phase != self._phase:
             self._phase = vacuum.phase
             yield RobotEvent("state", {**_where(view), "battery": known(vacuum.battery)})
-        # A run that met an error may go on.
-        is_running = self._is_running if vacuum.state == "error" else vacuum.state not in AT_REST
+        running = is_running(vacuum, before=self._is_running)
         if self._is_running is not None:
-            if is_running and not self._is_running:
+            if running and not self._is_running:
                 yield RobotEvent("begun", _where(view))
             if view.last is not None and view.last != self._last:
                 yield RobotEvent("ended", {"time": round(view.time, 2), **report_of(view.last)})
-        self._is_running, self._last = is_running, view.last
+        self._is_running, self._last = running, view.last
         told = vacuum.message or view.held or view.doubt
         yield from self._troubles(view.time, vacuum.hindrance.value or told, told)
 

@@ -11,12 +11,12 @@ from pydantic import BaseModel, ValidationError
 from roomba.clean_request import CleanRequest
 from roomba.client.observed import ObservedRobot
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
+from roomba.client.under_way import goes_on
 from roomba.files.plain_json import load_json
 from roomba.ui.smart_home.told_state import shortened
 from roomba.ui.web.routes.wishes import CleanWish, PlaceWish, request_of
-from roomba.vocabulary import HELD, CleanMode, FanLevel, Phase
+from roomba.vocabulary import HELD, CleanMode, FanLevel
 
-_UNDER_WAY: Final = (Phase.UNDOCKING, Phase.CLEANING)
 _Model = TypeVar("_Model", bound=BaseModel)
 _FANS: Final = tuple(level.value for level in FanLevel)
 
@@ -94,11 +94,11 @@ class SmartCommands:
         return {"command": name[:60], "ok": not refusal, "message": shortened(refusal)}
 
     def _start(self) -> None:
-        """Go on with what is paused, else clean all; while it cleans that is so already."""
-        phase = self._robot.robot().vacuum.phase
-        if phase in HELD:
+        """Go on with what is paused, else clean all; what goes on by itself is left alone."""
+        vacuum = self._robot.robot().vacuum
+        if vacuum.phase in HELD:
             self._robot.resume()
-        elif phase not in _UNDER_WAY:
+        elif not goes_on(vacuum):
             self._robot.clean(CleanRequest(fan=self.fan))
 
     def _clean(self, values: Any) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
+from roomba.client.under_way import is_running
 from roomba.client.view import HomeView, RobotView
-from roomba.vocabulary import AT_REST, Phase
+from roomba.vocabulary import Phase
 
 _LONGEST: Final = 255
 """Characters of a state in Home Assistant."""
@@ -28,14 +29,14 @@ class StateTeller:
         with which a clean begins.
         """
         vacuum, last = view.vacuum, view.last
-        is_running = vacuum.state not in AT_REST
-        if not is_running:
+        running = is_running(vacuum, before=self._began is not None)
+        if not running:
             self._began = None
         elif self._began is None or self._began > view.time:
             self._began = view.time
-        area = vacuum.covered if is_running or last is None else last.covered
+        area = vacuum.covered if running or last is None else last.covered
         since = view.time - self._began if self._began is not None else math.nan
-        time = since if is_running or last is None else last.duration
+        time = since if running or last is None else last.duration
         return {
             "state": vacuum.state,
             "phase": vacuum.phase,

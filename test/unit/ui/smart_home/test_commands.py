@@ -22,22 +22,38 @@ def in_phase(phase: str) -> WrittenRobot:
     return robot
 
 
+def on_its_way_home(to_go: float) -> WrittenRobot:
+    robot = in_phase("returning")
+    robot.view = replace(robot.view, vacuum=replace(robot.view.vacuum, seconds_to_go=to_go))
+    return robot
+
+
 @pytest.mark.parametrize(
     ("phase", "told"),
     [
         ("docked", [("clean", (CleanRequest(),))]),
         ("idle", [("clean", (CleanRequest(),))]),
-        ("returning", [("clean", (CleanRequest(),))]),
         ("paused", [("resume", ())]),
         ("error", [("resume", ())]),
         ("cleaning", []),
         ("undocking", []),
+        ("exploring", []),
+        ("charging", []),
+        ("bin full", []),
     ],
 )
 def test_a_start_goes_on_or_cleans_all(phase: str, told: list[Any]) -> None:
     robot = in_phase(phase)
     assert SmartCommands(robot).command("start")["ok"]
     assert robot.told == told
+
+
+def test_a_start_leaves_a_clean_alone_that_only_charges_and_begins_after_one_that_is_done() -> None:
+    charges, done = on_its_way_home(60.0), on_its_way_home(0.0)
+    for robot in (charges, done):
+        assert SmartCommands(robot).command("start")["ok"]
+    assert charges.told == []
+    assert done.told == [("clean", (CleanRequest(),))]
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,20 @@ def test_a_run_and_after_it() -> None:
     json.dumps(again, allow_nan=False)
 
 
+def test_a_run_that_charges_in_its_middle_is_one_run() -> None:
+    teller = StateTeller()
+    teller.state_of(seen("cleaning", 0.0, "undocking", last=REPORT), "quiet")
+    charging = teller.state_of(seen("docked", 100.0, "charging", last=REPORT), "quiet")
+    assert (charging["state"], charging["time"], charging["area"]) == ("docked", 100, 1)
+    emptying = teller.state_of(seen("docked", 150.0, "emptying", last=REPORT), "quiet")
+    assert emptying["time"] == 150
+    goes_on = teller.state_of(seen("cleaning", 200.0, last=REPORT), "quiet")
+    assert goes_on["time"] == 200
+    after = teller.state_of(seen("docked", 300.0, last=REPORT), "quiet")
+    emptied = teller.state_of(seen("docked", 310.0, "emptying", last=REPORT), "quiet")
+    assert after["time"] == emptied["time"] == 1310
+
+
 def test_the_bin_and_what_is_wrong() -> None:
     teller = StateTeller()
     full = teller.state_of(seen("error", 1.0, "bin full"), "standard")

@@ -104,6 +104,17 @@ def test_a_hindrance_that_goes_on_is_told_once_though_its_words_change() -> None
     ]
 
 
+def test_a_run_that_charges_in_its_middle_is_begun_once() -> None:
+    events = Events()
+    for state, phase in (
+        *(("docked", "docked"), ("cleaning", "undocking"), ("returning", "docking")),
+        *(("docked", "emptying"), ("docked", "charging"), ("cleaning", "undocking")),
+        *(("docked", "docked"), ("docked", "emptying"), ("docked", "docked")),
+    ):
+        events.note(seen(state, phase))
+    assert [event["type"] for event in told(events, 0, 10)].count("begun") == 1
+
+
 def test_a_run_that_ended_before_is_no_news() -> None:
     events = Events()
     events.note(seen("docked", last=REPORT))
