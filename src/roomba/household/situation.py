@@ -6,6 +6,7 @@ import math
 from typing import Final
 
 from roomba.client.protocol import CleanReport, ErrandOutcome
+from roomba.client.under_way import is_done
 from roomba.client.view import RobotView
 from roomba.plans.scheduler import PlanEnd, Situation
 from roomba.vocabulary import AT_REST, Phase
@@ -43,7 +44,15 @@ def situation_of(
     end, message = (None, "") if ended is None else _ending(ended)
     phase = view.vacuum.phase
     is_busy, is_paused = phase not in AT_REST, phase == Phase.PAUSED
-    return Situation(_unfit(view, least_battery), is_busy, is_paused, bool(view.held), end, message)
+    return Situation(
+        _unfit(view, least_battery),
+        is_busy,
+        is_paused,
+        bool(view.held),
+        is_done(view.vacuum),
+        end,
+        message,
+    )
 
 
 def _unfit(view: RobotView, least_battery: float) -> str:

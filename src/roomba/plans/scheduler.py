@@ -43,13 +43,15 @@ class Situation:
     """What the robot does now.
 
     ``unfit`` says why it cannot begin a clean, empty if it can. ``is_held``: the emergency stop
-    holds it. ``ended`` and ``message`` tell of an errand that ended since the last step.
+    holds it; ``is_done``: its floor is done, and it is on its way home. ``ended`` and ``message``
+    tell of an errand that ended since the last step.
     """
 
     unfit: str = ""
     is_working: bool = False
     is_paused: bool = False
     is_held: bool = False
+    is_done: bool = False
     ended: PlanEnd | None = None
     message: str = ""
 
@@ -250,9 +252,10 @@ class Scheduler:
     ) -> tuple[Memory, Act | None]:
         """Send the robot home in quiet hours, and pause it while a person is at home.
 
-        Once a person pressed the emergency stop the clean is left to people.
+        Once a person pressed the emergency stop the clean is left to people. One that is done goes
+        home all the same.
         """
-        if running.is_left_to_people:
+        if running.is_left_to_people or situation.is_done:
             return memory, None
         quiet = self._quiet(now)
         if quiet and not running.is_overruled:

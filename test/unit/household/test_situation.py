@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime as dt
 import math
 from dataclasses import replace
 
@@ -9,8 +10,11 @@ import pytest
 from fixtures.households.written_robot import VIEW
 
 from roomba.client.protocol import CleanReport, ErrandOutcome
+from roomba.configuration.household import PlansConfig
 from roomba.household.situation import EndedErrands, situation_of
-from roomba.plans.scheduler import PlanEnd, Situation
+from roomba.plans.memory import Memory, Running
+from roomba.plans.plan import HouseholdPlans, QuietHours
+from roomba.plans.scheduler import Deed, PlanEnd, Scheduler, Situation
 
 REPORT = CleanReport(ErrandOutcome.COMPLETED, "", 5.0, 6.0, 1.0, 30.0, 60.0, 1.0)
 UNTOLD = replace(REPORT, covered=math.nan, wanted=math.nan)
@@ -59,3 +63,20 @@ def test_why_it_cannot_begin() -> None:
     assert situation_of(VIEW, None, 0.3) == Situation("the robot is busy", is_working=True)
     assert situation_of(low, None, 0.3).unfit == "the battery is below 30 %"
     assert situation_of(replace(low, held="the cat"), None, 0.3).is_held
+
+
+@pytest.mark.parametrize("is_quiet", [False, True])
+def test_a_plans_clean_that_is_done_is_neither_paused_nor_broken_off(*, is_quiet: bool) -> None:
+    now = dt.datetime(2026, 3, 2, 22, 30, tzinfo=dt.timezone.utc)
+    quiet = (QuietHours(begins=dt.time(22, 0), ends=dt.time(7, 0)),) if is_quiet else ()
+    household = HouseholdPlans(zone="UTC", quiet=quiet, is_person_home=not is_quiet)
+    memory = Memory(running=Running(plan="all", due=now, began=now))
+    scheduler = Scheduler(household, PlansConfig())
+
+    def deed(to_go: float) -> Deed | None:
+        home = replace(VIEW.vacuum, state="returning", phase="returning", seconds_to_go=to_go)
+        _, act = scheduler.step(memory, now, situation_of(replace(VIEW, vacuum=home), None, 0.3))
+        return None if act is None else act.deed
+
+    assert deed(60.0) is (Deed.DOCK if is_quiet else Deed.PAUSE)
+    assert deed(0.0) is None
