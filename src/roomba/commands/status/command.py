@@ -12,10 +12,10 @@ from typing import Any, Final
 
 from rich.console import Console
 from rich.live import Live
-from rich.table import Table
 
 from roomba.client.ports import DEFAULT_PORT, LAST_PORT, PORTS
 from roomba.commands.options import HelpfulParser, whole
+from roomba.commands.output import named_table
 from roomba.commands.program_name import spelled
 from roomba.commands.status.asking import NoRobotError, find_robot, state_at
 from roomba.ui.state_words import lines_of
@@ -48,10 +48,10 @@ def _tell(port: int, *, is_json: bool, is_watched: bool) -> None:
     if is_watched and console.is_terminal:
         with Live(console=console, auto_refresh=False) as live:
             for state in _states(port, is_watched=True):
-                live.update(_table(state), refresh=True)
+                live.update(named_table(lines_of(state)), refresh=True)
         return
     for state in _states(port, is_watched=is_watched):
-        console.print(_table(state), highlight=False, soft_wrap=True)
+        console.print(named_table(lines_of(state)), highlight=False, soft_wrap=True)
 
 
 def _states(port: int, *, is_watched: bool) -> Iterable[dict[str, Any]]:
@@ -59,13 +59,6 @@ def _states(port: int, *, is_watched: bool) -> Iterable[dict[str, Any]]:
     while is_watched:
         time.sleep(_PERIOD)
         yield state_at(port)
-
-
-def _table(state: dict[str, Any]) -> Table:
-    table = Table(show_header=False, box=None, pad_edge=False)
-    for name, value in lines_of(state):
-        table.add_row(name, value)
-    return table
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -79,6 +79,15 @@ def test_it_tells_what_is_wrong_and_how_the_last_errand_ended(
     assert [each.strip() for each in troubles] == ["both wheels spin", "held: a hand", "it is dark"]
 
 
+@pytest.mark.parametrize("room", ["Kitchen [eg]", "Bad [/]"])
+def test_a_name_is_told_as_it_is(
+    robot: WrittenRobot, port: int, capsys: pytest.CaptureFixture[str], room: str
+) -> None:
+    robot.view = replace(VIEW, vacuum=replace(VIEW.vacuum, room=room))
+    assert main(["--port", str(port)]) == 0
+    assert rows(capsys.readouterr().out)["state"] == f"cleaning, in {room}"
+
+
 def test_dirt_that_is_not_known_is_not_told(
     robot: WrittenRobot, port: int, capsys: pytest.CaptureFixture[str]
 ) -> None:
