@@ -16,7 +16,7 @@ from roomba.client.plain import home_of, replay_of, state_of
 from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
 from roomba.errors import RoombaError
 from roomba.history.recorder import HistoryKeeper
-from roomba.ui.web.streams.events import Events
+from roomba.ui.web.streams.events import Events, first_of
 from roomba.ui.web.streams.metrics import RobotMetrics
 from roomba.ui.web.streams.told import Told
 from roomba.ui.web.streams.trail import ShownTrail
@@ -43,7 +43,7 @@ class Feed:
         self._looked = asyncio.Event()
         self._looks = 0
         self.number = 0
-        self.events = Events()
+        self.events = Events(first_of(time.time()))
         self.metrics = RobotMetrics(robot)
         self.state = Told({"type": "state", "link": "connecting"})
         self.home: Told | None = None

@@ -29,17 +29,18 @@ class Events:
     ``missed``: of some older ones a listener knows nothing any more.
     """
 
-    def __init__(self) -> None:
-        """Begin without events."""
+    def __init__(self, first: int = 1) -> None:
+        """Begin without events; ``first`` is the number of the first one, above 0."""
+        self._first = first
         self._kept: deque[tuple[int, str]] = deque(maxlen=MOST_KEPT)
-        self._numbers = itertools.count(1)
+        self._numbers = itertools.count(first)
         self._came = asyncio.Event()
         self._finder = EventFinder()
 
     @property
     def newest(self) -> int:
-        """The number of the newest event; 0 before the first one."""
-        return self._kept[-1][0] if self._kept else 0
+        """The number of the newest event; one below the first one before that."""
+        return self._kept[-1][0] if self._kept else self._first - 1
 
     def note(self, view: RobotView) -> list[RobotEvent]:
         """Find out what changed since the last look, keep it, and return it."""
@@ -50,7 +51,13 @@ class Events:
         return self._keep(self._finder.gone(reason))
 
     async def after(self, number: int) -> AsyncIterator[str]:
-        """Give all events after a number as lines of an event stream, for ever."""
+        """Give all events after a number as lines of an event stream, for ever; 0: all.
+
+        A number of a server from before is none of this one's: how many were missed is not known.
+        """
+        if number and not self._first - 1 <= number <= self.newest:
+            number = self._first - 1
+            yield _lines(number, "missed", {"count": None})
         while True:
             came = self._came
             kept = [(at, text) for at, text in self._kept if at > number]
@@ -73,6 +80,14 @@ class Events:
             came, self._came = self._came, asyncio.Event()
             came.set()
         return found
+
+
+def first_of(now: float) -> int:
+    """Return the number of the first event of a server that begins ``now``, s since 1970.
+
+    It is above all those of a server from before, which notes less than one in a millisecond.
+    """
+    return round(1000.0 * now)
 
 
 def _lines(number: int, kind: str, values: dict[str, Any]) -> str:

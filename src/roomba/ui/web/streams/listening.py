@@ -29,7 +29,8 @@ is the time of day and `time` that of the robot's clock, s:
 - `begun`: a run began
 - `ended`: a run ended: `outcome`, `message`, `covered`, `wanted`, `missed` …
 - `trouble`: what is wrong, in words; empty when all is well again
-- `missed`: that many older events (`count`) are not kept any more
+- `missed`: that many older events (`count`) are not kept any more; `null`: those of a server that
+  was started anew since, so that it is not known how many
 
 The stream begins with what comes next, or after the number in `Last-Event-ID` (or `after`); 200
 events are kept. Every 15 s of silence an empty line comes."""
@@ -75,9 +76,6 @@ def events_api(events: Events) -> APIRouter:
         last_event_id: Annotated[int | None, Header(ge=0, le=2**53)] = None,
     ) -> StreamingResponse:
         wanted = after if last_event_id is None else last_event_id
-        # A number from before the server was started anew is none of its own.
-        newest = events.newest
-        start = newest if wanted is None else 0 if wanted > newest else wanted
-        return _Listening(stream(start), listeners)
+        return _Listening(stream(events.newest if wanted is None else wanted), listeners)
 
     return api

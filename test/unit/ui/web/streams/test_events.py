@@ -24,7 +24,7 @@ from roomba.ui.web.app import create_app
 from roomba.ui.web.bounded.limits import MOST_LISTENERS
 from roomba.ui.web.guard import Guard
 from roomba.ui.web.server import PageServer, listen
-from roomba.ui.web.streams.events import MOST_KEPT, Events
+from roomba.ui.web.streams.events import MOST_KEPT, Events, first_of
 from roomba.vocabulary import Hindrance
 
 REPORT = CleanReport(ErrandOutcome.COMPLETED, "", 4.0, 4.0, 1.0, 9.0, 60.0, float("nan"))
@@ -131,6 +131,21 @@ def test_a_listener_that_comes_late_hears_how_many_it_missed() -> None:
     assert first["id"] == missed["id"] + 1 == 51
 
 
+@pytest.mark.parametrize("before", [9, 2**50])
+def test_a_listener_of_a_server_from_before_hears_that_it_missed_some_and_then_all(
+    before: int,
+) -> None:
+    first = first_of(1_790_000_000.0)
+    events = Events(first)
+    assert events.newest == first - 1
+    events.note(seen("docked"))
+    events.note(seen("cleaning"))
+    missed, *heard = told(events, before, 4)
+    assert (missed["type"], missed["count"], missed["id"]) == ("missed", None, first - 1)
+    assert [event["id"] for event in heard] == [first, first + 1, first + 2]
+    assert [event["id"] for event in told(events, 0, 3)] == [event["id"] for event in heard]
+
+
 def _asking(server: PageServer) -> socket.socket:
     host, port = server.address.removeprefix("http://").strip("/").split(":")
     return socket.create_connection((host, int(port)), timeout=30.0)
@@ -166,8 +181,13 @@ def test_programs_listen_over_http(server: PageServer, robot: WrittenRobot) -> N
     robot.view = seen("docked")
     data = next(line for line in stream if '"docked"' in line)
     assert json.loads(data.removeprefix("data: "))["type"] == "state"
-    # A number of a server from before is none of this one: it begins at the beginning.
-    assert "id: 1" in [next(again) for again in [lines("999")] for _ in range(5)]
+    # A server that was started before had smaller numbers.
+    again = lines("9")
+    missed, first = (
+        json.loads(line.removeprefix("data: "))
+        for line in [next(line for line in again if line.startswith("data: ")) for _ in range(2)]
+    )
+    assert (missed["type"], missed["count"], first["type"]) == ("missed", None, "state")
 
 
 def test_of_many_that_come_at_once_no_more_listen_than_are_allowed(server: PageServer) -> None:
