@@ -19,14 +19,18 @@ from roomba.history.run import RunFigures, RunRecording
 from roomba.history.run_file import RunFileError, packed, unpacked
 from roomba.history.run_rows import (
     ADDED,
+    CHOSEN,
     COLUMNS,
     MIGRATIONS,
+    Choice,
     KeptRun,
     insert,
     insert_row,
     row_of,
     select,
+    transaction,
 )
+from roomba.history.totals import WeekTotals, weeks_of
 
 if TYPE_CHECKING:
     from roomba.client.household import TotalsView
@@ -77,14 +81,14 @@ class History:
         """Keep a run, and return its number; it is on the disk then."""
         with self._opened() as database:
             content = None if recording is None else packed(figures, recording)
-            with _transaction(database):
+            with transaction(database):
                 return self._insert(database, figures, content)
 
     def add_all(self, runs: Sequence[RunFigures]) -> int:
         """Keep many runs without recordings, all or none; return how many."""
         if not runs:
             return 0
-        with self._opened() as database, _transaction(database):
+        with self._opened() as database, transaction(database):
             for figures in runs:
                 self._insert(database, figures)
         return len(runs)
@@ -100,12 +104,19 @@ class History:
 
     def runs(self, limit: int = 1000, home: str | None = None) -> list[KeptRun]:
         """Return the newest runs, the newest first; ``home`` chooses those of one home."""
+        return self.chosen(Choice(home), limit)
+
+    def chosen(self, choice: Choice, limit: int, before: int | None = None) -> list[KeptRun]:
+        """Return the newest runs of a choice; those older than the run ``before``."""
+        older = "? IS NULL OR (began, id) < (SELECT began, id FROM runs WHERE id = ?)"
+        which = f"{CHOSEN} AND ({older}) ORDER BY began DESC, id DESC LIMIT ?"
         with self._opened() as database:
-            return select(
-                database,
-                "(? IS NULL OR home = ?) ORDER BY began DESC, id DESC LIMIT ?",
-                (home, home, limit),
-            )
+            return select(database, which, (*choice.values, before, before, limit))
+
+    def weeks(self, choice: Choice) -> list[WeekTotals]:
+        """Return the totals by week over all runs of a choice, the newest first."""
+        with self._opened() as database:
+            return weeks_of(database, CHOSEN, choice.values)
 
     def totals(self, program: str) -> TotalsView:
         """Return the sums over all runs of a program; what is not known counts as nothing."""
@@ -252,7 +263,7 @@ class History:
         """Fill a new database with the figures of the journal."""
         # Of a number that was given twice the first writer was killed before it was kept.
         rows = {row.pop("number", None): ADDED | row for row in read_lines(self._journal)}
-        with _transaction(database):
+        with transaction(database):
             for number, row in rows.items():
                 if isinstance(number, int) and set(row) == {*COLUMNS, "missed"}:
                     insert_row(database, row, number)
@@ -284,14 +295,3 @@ def _migrate(database: sqlite3.Connection, version: int) -> None:
     for step in range(version, len(MIGRATIONS)):
         script = f"BEGIN;{MIGRATIONS[step]};PRAGMA user_version = {step + 1};COMMIT;"
         database.executescript(script)
-
-
-@contextlib.contextmanager
-def _transaction(database: sqlite3.Connection) -> Iterator[None]:
-    database.execute("BEGIN IMMEDIATE")
-    try:
-        yield
-    except BaseException:
-        database.execute("ROLLBACK")
-        raise
-    database.execute("COMMIT")

@@ -27,6 +27,8 @@ TRACE_STEP: Final = 0.5
 """s of the robot's clock between two rows of a trace."""
 REQUEST: Final = "request"
 """In a configuration: what was asked for, as the API of a page takes it, or as sim has it."""
+CAMPAIGN: Final = "campaign"
+"""The program of runs on a cluster, of which there may be thousands."""
 CELL_LAYERS: Final = ("map", "coverage")
 
 

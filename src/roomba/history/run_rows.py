@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import sqlite3
+from collections.abc import Iterator
 from dataclasses import asdict, astuple, dataclass
 from typing import Any, Final
 
 from roomba.client.protocol import MissedFloor
-from roomba.history.run import RunFigures, RunSource
+from roomba.history.run import CAMPAIGN, RunFigures, RunSource
 from roomba.time_spent import TimeSpent
 from roomba.vocabulary import EdgeReason, OpenEdge
 
@@ -123,6 +125,24 @@ def _known(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """Runs of one home, and of one program; with ``campaigns`` theirs are among those of all."""
+
+    home: str | None = None
+    program: str | None = None
+    campaigns: bool = True
+
+    @property
+    def values(self) -> tuple[Any, ...]:
+        """What stands in the places of :data:`CHOSEN`."""
+        return self.home, self.home, self.program, self.program, self.campaigns, CAMPAIGN
+
+
+CHOSEN: Final = "(? IS NULL OR home = ?) AND (? IS NULL OR program = ?) AND (? OR program != ?)"
+"""The condition of SQL that is true of the runs of a choice."""
+
+
 def select(database: sqlite3.Connection, which: str, values: tuple[Any, ...]) -> list[KeptRun]:
     """Return the runs of which a condition of SQL is true, as its order says."""
     names = ", ".join(COLUMNS)
@@ -165,3 +185,15 @@ def _edges_of(rows: list[tuple[float, float, float, str]]) -> tuple[OpenEdge, ..
         for length, x, y, reason in rows
         if reason in EdgeReason.__members__
     )
+
+
+@contextlib.contextmanager
+def transaction(database: sqlite3.Connection) -> Iterator[None]:
+    """Keep all that is changed meanwhile, or nothing of it."""
+    database.execute("BEGIN IMMEDIATE")
+    try:
+        yield
+    except BaseException:
+        database.execute("ROLLBACK")
+        raise
+    database.execute("COMMIT")

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import datetime as dt
 import math
+import sqlite3
 import time
 from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any, Final
 
 from roomba.history.run import RunFigures
+
+_SUMMED: Final = ("covered", "duration", "dirt", "distance", "energy")
+_THURSDAY: Final = "date(began, 'unixepoch', 'localtime', '-3 days', 'weekday 4')"
+"""Of the week of a run, by local time: the day that says to which year a week belongs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +42,22 @@ def totals_by_week(runs: Iterable[RunFigures]) -> list[WeekTotals]:
             len(those),
             *(
                 sum(value for run in those if math.isfinite(value := getattr(run, name)))
-                for name in ("covered", "duration", "dirt", "distance", "energy")
+                for name in _SUMMED
             ),
         )
         for week, those in sorted(weeks.items(), reverse=True)
+    ]
+
+
+def weeks_of(database: sqlite3.Connection, which: str, values: tuple[Any, ...]) -> list[WeekTotals]:
+    """Return the same of those runs in a database of which a condition of SQL is true."""
+    sums = ", ".join(f"TOTAL({name})" for name in _SUMMED)
+    rows = database.execute(
+        f"SELECT {_THURSDAY} AS thursday, COUNT(*), {sums} FROM runs WHERE {which} "
+        "GROUP BY thursday ORDER BY thursday DESC",
+        values,
+    )
+    return [
+        WeekTotals(dt.date.fromisoformat(thursday).strftime("%G-W%V"), *rest)
+        for thursday, *rest in rows
     ]

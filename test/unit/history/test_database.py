@@ -19,7 +19,8 @@ from roomba.files.journal import read_lines, write_lines
 from roomba.files.lock import locked
 from roomba.history.database import History, HistoryError
 from roomba.history.run import RunFigures, RunRecording
-from roomba.history.run_rows import MIGRATIONS
+from roomba.history.run_rows import MIGRATIONS, Choice
+from roomba.history.totals import totals_by_week
 from roomba.time_spent import TimeSpent
 
 WRITER = """
@@ -61,6 +62,19 @@ def test_the_newest_comes_first_and_homes_are_told_apart(
     assert [run.figures.began for run in history.runs()] == [259200.0, 172800.0, 86400.0, 0.0]
     assert [run.figures.source.home for run in history.runs(home="flat")] == ["flat"]
     assert len(history.runs(limit=2)) == 2
+    assert [run.number for run in history.chosen(Choice("box"), 2, before=1)] == [3, 2]
+
+
+def test_weeks_are_summed_as_those_of_runs_are(tmp_path: Path, figures: RunFigures) -> None:
+    history = History(tmp_path)
+    days = [replace(figures, began=1.7e9 + 43_200.0 * half) for half in range(800)]
+    history.add_all(days)
+    weeks, expected = history.weeks(Choice()), totals_by_week(days)
+    assert [(week.week, week.runs) for week in weeks] == [
+        (week.week, week.runs) for week in expected
+    ]
+    assert weeks[1].covered == pytest.approx(expected[1].covered)
+    assert weeks[1].energy == expected[1].energy == 0.0
 
 
 def test_two_processes_that_write_at_the_same_time_lose_nothing(tmp_path: Path) -> None:

@@ -10,10 +10,9 @@ from roomba.client.protocol import MissedFloor
 from roomba.commands.campaign.running.specification import Campaign
 from roomba.commands.campaign.running.store import Row
 from roomba.history.database import History
-from roomba.history.run import RunFigures, RunSource
+from roomba.history.run import CAMPAIGN, RunFigures, RunSource
 from roomba.mission.cleaning.result import CleanOutcome
 
-PROGRAM: Final = "campaign"
 _KEY: Final = "key"
 _AT_ONCE: Final = 200
 """Runs that are kept at a time: other writers wait for that."""
@@ -21,7 +20,7 @@ _AT_ONCE: Final = 200
 
 def keep_runs(history: History, campaign: Campaign, rows: Sequence[Row], repeat: str) -> int:
     """Keep the runs that are not in the history yet; return how many. Raises HistoryError."""
-    there = history.configured(PROGRAM, _KEY)
+    there = history.configured(CAMPAIGN, _KEY)
     new = [row for row in rows if row["figures"] is not None and row["key"] not in there]
     for first in range(0, len(new), _AT_ONCE):
         batch = new[first : first + _AT_ONCE]
@@ -40,7 +39,7 @@ def figures_of(campaign: Campaign, row: Row, repeat: str) -> RunFigures:
         **variant.model_dump(mode="json", exclude_defaults=True),
     }
     return RunFigures(
-        RunSource(PROGRAM, row["home"], row["seed"], repeat, configuration),
+        RunSource(CAMPAIGN, row["home"], row["seed"], repeat, configuration),
         "clean",
         row["began"],
         CleanOutcome[figures["outcome"]].value,

@@ -20,8 +20,7 @@ from roomba.history.database import History
 from roomba.history.replay import RecordedRobot
 from roomba.history.report.document import comparison_of, report_of
 from roomba.history.run import RunRecording
-from roomba.history.run_rows import KeptRun
-from roomba.history.totals import totals_by_week
+from roomba.history.run_rows import Choice, KeptRun
 
 REPORT_POLICY: Final = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
@@ -29,6 +28,10 @@ REPORT_POLICY: Final = (
 )
 """What a report may do: it has its style inside, pictures as data, and no scripts."""
 _MOST_RUNS: Final = 500
+_LONGEST: Final = 200
+"""Characters of a name that is asked for."""
+_PROGRAM: Final = "of this program: play, run, sim or campaign; else of all but campaigns"
+_BEFORE: Final = "older than the run of this number, which the list before ended with"
 _MOST_OPEN: Final = 4
 """Runs that are played at the same time."""
 _NUMBERED: Final = re.compile(r"/([0-9]{1,19})(/|$)")
@@ -47,9 +50,15 @@ def history_api(history: History) -> APIRouter:
             raise HTTPException(404, _sentence(refusal, history)) from refusal
 
     @api.get("", summary="The runs, the newest first, and totals by week")
-    def runs(limit: int = Query(default=_MOST_RUNS, ge=1, le=_MOST_RUNS)) -> dict[str, Any]:
-        found = asked(lambda: history.runs(limit))
-        weeks = totals_by_week(run.figures for run in found)
+    def runs(
+        limit: int = Query(default=_MOST_RUNS, ge=1, le=_MOST_RUNS),
+        program: str | None = Query(default=None, description=_PROGRAM, max_length=_LONGEST),
+        home: str | None = Query(default=None, description="of this home", max_length=_LONGEST),
+        before: int | None = Query(default=None, description=_BEFORE, ge=1, le=2**53),
+    ) -> dict[str, Any]:
+        choice = Choice(home, program, campaigns=program is not None)
+        found = asked(lambda: history.chosen(choice, limit, before))
+        weeks = asked(lambda: history.weeks(choice))
         return {
             "runs": [_run_values(run) for run in found],
             "weeks": [{name: getattr(week, name) for name in week.__slots__} for week in weeks],

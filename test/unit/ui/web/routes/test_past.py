@@ -6,6 +6,7 @@ import contextlib
 import json
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -61,6 +62,25 @@ def test_the_runs_are_told(client: TestClient) -> None:
     assert told["runs"][0]["fraction"] == pytest.approx(11.0 / 12.0)
     assert told["weeks"][0]["runs"] == 2
     assert [run["number"] for run in client.get("/api/v1/history?limit=1").json()["runs"]] == [2]
+
+
+def test_a_campaign_does_not_hide_the_runs_of_the_household(
+    client: TestClient, history: History
+) -> None:
+    def told(query: str) -> tuple[list[int], list[int]]:
+        values = client.get(f"/api/v1/history?{query}").json()
+        return [run["number"] for run in values["runs"]], [week["runs"] for week in values["weeks"]]
+
+    figures = made_figures()
+    source = replace(figures.source, program="campaign", home="random-1")
+    history.add_all([replace(figures, source=source, began=figures.began + 1.0)] * 3)
+    assert told("") == ([2, 1], [2])
+    assert told("program=campaign") == ([5, 4, 3], [3])
+    assert told("home=random-1") == ([], [])
+    assert told(f"home={figures.source.home}&program={figures.source.program}") == ([2, 1], [2])
+    assert told("limit=1") == ([2], [2]), "weeks are of all"
+    assert told("limit=1&before=2") == ([1], [2])
+    assert told("before=1") == ([], [2])
 
 
 def test_what_is_asked_for_is_noted_and_forgotten_when_it_is_refused(history: History) -> None:
