@@ -174,6 +174,19 @@ def page_at(
     assert errors == []
 
 
+@contextmanager
+def served_instead(opened: Opened, app: FastAPI) -> Iterator[PageServer]:
+    """End the page's server, and serve another application at its address."""
+    port = int(opened.server.address.rsplit(":", 1)[1].strip("/"))
+    opened.server.stop()
+    again = PageServer(app, listen("127.0.0.1", port, is_fixed=True))
+    again.start()
+    try:
+        yield again
+    finally:
+        again.stop()
+
+
 def in_each_scheme(page: Page) -> Iterator[str]:
     """Let the viewer prefer light, then dark."""
     for scheme in ("light", "dark"):

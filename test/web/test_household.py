@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 from fixtures.pages.windows import Windows
 from fixtures.waiting import wait_until
-from web.conftest import Opened, page_at, serving
+from web.conftest import Opened, page_at, served_instead, serving
 from web.test_page import DEADLINE, check_it_can_be_read
 
 from roomba.client.household import TotalsView
 from roomba.commands.play.living import live_client
 from roomba.configuration.household import HouseholdConfig, UpkeepConfig
 from roomba.household.household import LiveHousehold
+from roomba.plans.plan import Plan
 from roomba.ui.web.app import create_app
 from roomba.ui.web.guard import Guard, new_token
 
@@ -154,3 +155,21 @@ def test_a_preset_is_made_and_begun(opened: Opened, household: LiveHousehold) ->
     opened.wait_for_phase("cleaning")
     (preset,) = household.plans().household.presets
     assert preset.order.mode.value == "edges"
+
+
+def test_plans_of_a_server_that_was_started_anew_are_shown(
+    opened: Opened, household: LiveHousehold, tmp_path: Path
+) -> None:
+    page = opened.page
+    household.put_plan(Plan(name="Before", rule="FREQ=DAILY"))
+    opened.show("more")
+    page.locator("#plans summary").click()
+    page.locator("#plan-list").get_by_text("Before").wait_for()
+    anew = LiveHousehold(household.robot, tmp_path / "anew", HouseholdConfig(), 100.0, pytest.fail)
+    anew.start()
+    anew.put_plan(Plan(name="After", rule="FREQ=DAILY"))
+    wait_until(lambda: anew.plans().version == household.plans().version, DEADLINE, "one number")
+    with served_instead(opened, create_app(household.robot, opened.guard, household=anew)):
+        page.locator("#plan-list").get_by_text("After").wait_for()
+        assert page.locator("#plan-list li").count() == 1
+    anew.stop()

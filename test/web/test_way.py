@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import io
+
+import numpy as np
 import pytest
 from fixtures.waiting import wait_until
-from playwright.sync_api import CDPSession
-from web.conftest import SIZES, Opened
+from PIL import Image
+from playwright.sync_api import CDPSession, Page
+from web.conftest import SIZES, Opened, served_instead
 from web.test_page import DEADLINE
 
 from roomba.client.view import ZoneView
+from roomba.commands.play.living import live_client
 from roomba.ui.web.app import create_app
 from roomba.ui.web.server import PageServer, listen
 
+MOST_DIFFERENT = 0.005
+"""Share of pixels in which two pictures of the same floor may differ."""
+HOME = """async () => (await import("/store.js")).get("home")?.name"""
 DRAWING = "async () => Boolean((await import('/store.js')).get('drawing'))"
 
 
@@ -198,3 +206,37 @@ def test_the_network_is_cut_and_back_while_it_cleans(opened: Opened) -> None:
         opened.wait_for_phase("cleaning")
     finally:
         again.stop()
+
+
+def difference(one: Page, other: Page) -> float:
+    """Return the share of pixels in which two maps differ; 1 for maps of another size."""
+    first, second = (
+        np.asarray(Image.open(io.BytesIO(page.locator("#floor").screenshot())).convert("RGB"))
+        for page in (one, other)
+    )
+    return float((first != second).any(axis=2).mean()) if first.shape == second.shape else 1.0
+
+
+@pytest.mark.parametrize("size", [SIZES["desktop"]])
+def test_of_a_server_that_was_started_anew_the_other_home_is_drawn(opened: Opened) -> None:
+    page, other = opened.page, live_client("studio", seed=1, speed=1.0, knows_map=True)
+    page.keyboard.press("1")
+    page.get_by_role("button", name="Zoom in").click()
+    other.start()
+    with served_instead(opened, create_app(other, opened.guard)) as server:
+        wait_until(lambda: page.evaluate(HOME) == "studio", DEADLINE, "the other home")
+        page.wait_for_selector("body[data-link='live']")
+        assert page.inner_text("#clean") == "Clean all"
+        fresh = page.context.new_page()
+        fresh.set_viewport_size({"width": SIZES["desktop"][0], "height": SIZES["desktop"][1]})
+        fresh.emulate_media(reduced_motion="reduce")
+        fresh.goto(f"{server.address}#token={opened.guard.token}")
+        fresh.wait_for_selector("body[data-phase='docked']")
+        found = list[float]()
+
+        def is_same() -> bool:
+            found.append(difference(page, fresh))
+            return found[-1] < MOST_DIFFERENT
+
+        wait_until(is_same, DEADLINE, lambda: f"the map of a new page, not {found[-1]:.3f} of it")
+    other.end()

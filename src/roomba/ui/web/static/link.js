@@ -1,6 +1,7 @@
 /** The connection to the server: a stream of snapshots that comes back by itself, and wishes. */
 import { get, set } from "./store.js";
-import { takeTiles } from "./map/grids.js";
+import { forgetGrids, takeTiles } from "./map/grids.js";
+import { view } from "./map/view.js";
 import { sentence } from "./words.js";
 
 const STALE = 1500; // ms without news after which what is shown is told to be old
@@ -14,6 +15,8 @@ const underWay = new Set(); // what was asked for, and is not answered yet
 let attempts = 0;
 let heard = 0; // ms of the page's clock
 let heardAt = 0; // and of the day
+let homes = 0; // how often a home was told
+let isHomeTold = false; // whether this connection has told of one
 
 /** The token of the printed address; it is kept for this tab alone. */
 function token() {
@@ -35,6 +38,8 @@ export function connect() {
   socket.binaryType = "arraybuffer";
   socket.onopen = () => {
     attempts = 0;
+    isHomeTold = false;
+    set("connection", get("connection") + 1);
     socket.send(JSON.stringify({ type: "hello", token: TOKEN }));
   };
   socket.onmessage = (event) => {
@@ -63,7 +68,7 @@ function take(message) {
       if (message.link === "live") set("seenAt", heardAt);
       set("link", message.link);
       break;
-    case "home": set("home", message); break;
+    case "home": takeHome(message); break;
     case "trail": {
       const before = message.whole ? [] : get("trail");
       set("trail", before.concat(message.points).slice(-20000));
@@ -78,6 +83,22 @@ function take(message) {
       break;
     case "refused": refuse(message.reason); break;
   }
+}
+
+/** Numbers of the server mean something within one connection only: the page counts what it is told itself. */
+function takeHome(message) {
+  if (!isHomeTold) forgetFloor(message.name);
+  isHomeTold = true;
+  set("home", { ...message, number: ++homes });
+}
+
+/** Forget what another connection told of the floor; where that was of another home, also what was chosen there. */
+function forgetFloor(name) {
+  forgetGrids();
+  set("trail", []);
+  if (!get("home") || get("home").name === name) return;
+  for (const [what, none] of Object.entries({ chosen: [], hows: {}, drawing: null, zone: null, edge: null })) set(what, none);
+  view.isFitted = false;
 }
 
 /** Show the robot's sentence for a while. */

@@ -2,7 +2,7 @@
 
 /** @type {Record<string, any>} */
 const values = {
-  link: "connecting", age: 0, state: null, home: null, limits: null, mayChange: null, hasHistory: false, hasCamera: false, hasMaps: false,
+  link: "connecting", connection: 0, age: 0, state: null, home: null, limits: null, mayChange: null, hasHistory: false, hasCamera: false, hasMaps: false,
   trail: [], chosen: [], hows: {}, drawing: null, zone: null, edge: null, carried: null,
   layers: { coverage: true, trail: true, path: true, rooms: true, furniture: true, zones: true, carpets: true, edges: true, scan: false, dirt: false, truth: false },
 };

@@ -19,9 +19,9 @@ let colours = null; // those by which all is drawn
 
 /** Layers from below: when each has to be drawn anew, and how. */
 const LAYERS = [
-  { when: () => [version("map"), get("home")?.version], paint: drawGround },
+  { when: () => [version("map"), get("home")?.number], paint: drawGround },
   { when: () => [version("coverage"), version("dirt"), version("true dirt"), get("trail").length, get("trail").at(-1)], paint: drawSwept },
-  { when: () => [get("home")?.version, get("chosen"), JSON.stringify(get("zone")), JSON.stringify(openEdges()), get("edge")], paint: drawThings },
+  { when: () => [get("home")?.number, get("chosen"), JSON.stringify(get("zone")), JSON.stringify(openEdges()), get("edge")], paint: drawThings },
 ].map((layer) => ({ ...layer, canvas: document.createElement("canvas"), key: "" }));
 
 /** Draw whenever something moved. */

@@ -32,6 +32,12 @@ export function takeTiles(buffer) {
   versions.set(header.layer, version(header.layer) + 1);
 }
 
+/** Forget all grids. */
+export function forgetGrids() {
+  for (const name of grids.keys()) versions.set(name, version(name) + 1);
+  grids.clear();
+}
+
 /** Draw all cells anew, as for other colours. */
 export function repaint() {
   for (const [name, grid] of grids) {

@@ -25,6 +25,7 @@ export function begin() {
   $("plan-waits").onchange = () => change("household/waits", { wanted: $("plan-waits").checked });
   $("plan-person").onchange = () => change("household/presence", { at_home: $("plan-person").checked });
   $("plans").ontoggle = () => { asked = 0; show(); };
+  on("connection", () => { asked = 0; }); // a version means something within one connection only
   on("state", show);
 }
 
