@@ -124,6 +124,19 @@ def test_without_the_token_nothing_is_changed(opened: Opened) -> None:
     assert opened.phase() == "docked"
 
 
+def test_the_printed_address_gives_an_open_tab_the_token(opened: Opened) -> None:
+    other = opened.page.context.new_page()
+    other.goto("about:blank")
+    other.goto(opened.server.address)
+    other.get_by_text("This page may only look").wait_for()
+    other.goto(f"{opened.server.address}#token={opened.guard.token}")
+    other.locator("#only-looks").wait_for(state="hidden")
+    assert other.url == opened.server.address
+    other.locator("#clean:enabled").wait_for()
+    other.reload()
+    other.locator("#clean:enabled").wait_for()
+
+
 def test_a_page_whose_wish_is_obeyed_says_no_more_that_it_may_only_look(opened: Opened) -> None:
     page = opened.page
     page.evaluate("async () => (await import('/store.js')).set('mayChange', false)")

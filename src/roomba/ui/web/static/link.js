@@ -18,16 +18,19 @@ let heardAt = 0; // and of the day
 let homes = 0; // how often a home was told
 let isHomeTold = false; // whether this connection has told of one
 
-/** The token of the printed address; it is kept for this tab alone. */
-function token() {
+let token = sessionStorage.getItem("token") ?? "";
+takeToken();
+
+/** Take the token of the printed address, if that is there, and keep it for this tab alone; returns whether it was. */
+function takeToken() {
   const given = new URLSearchParams(location.hash.slice(1)).get("token");
-  if (given) {
-    sessionStorage.setItem("token", given);
-    history.replaceState(null, "", location.pathname);
-  }
-  return sessionStorage.getItem("token") ?? "";
+  if (!given) return false;
+  token = given;
+  sessionStorage.setItem("token", given);
+  history.replaceState(null, "", location.pathname);
+  return true;
 }
-const TOKEN = token();
+
 /** Where this page lies on its server: a run of the history lies in a folder of its own. */
 export const BASE = new URL(".", location.href).pathname;
 
@@ -40,7 +43,7 @@ export function connect() {
     attempts = 0;
     isHomeTold = false;
     set("connection", get("connection") + 1);
-    socket.send(JSON.stringify({ type: "hello", token: TOKEN }));
+    hello();
   };
   socket.onmessage = (event) => {
     heard = performance.now();
@@ -53,6 +56,11 @@ export function connect() {
     setTimeout(connect, RETRY[Math.min(attempts++, RETRY.length - 1)]);
   };
 }
+
+function hello() { socket.send(JSON.stringify({ type: "hello", token })); }
+
+/** An address that is typed into an open tab does not load the page anew. */
+addEventListener("hashchange", () => { if (takeToken() && socket?.readyState === WebSocket.OPEN) hello(); });
 
 setInterval(() => {
   const age = performance.now() - heard;
@@ -147,7 +155,7 @@ async function send(path, body, method) {
   try {
     const answer = await fetch(`${BASE}api/v1/${path}`, {
       method,
-      headers: { "Content-Type": "application/json", Authorization: `Bearer ${TOKEN}` },
+      headers: { "Content-Type": "application/json", Authorization: `Bearer ${token}` },
       body: JSON.stringify(body ?? {}),
       signal: AbortSignal.timeout(PATIENCE),
     });
@@ -178,7 +186,7 @@ export async function picture(angle) {
   try {
     const answer = await fetch(`${BASE}api/v1/camera`, {
       method: "POST",
-      headers: { "Content-Type": "application/json", Authorization: `Bearer ${TOKEN}` },
+      headers: { "Content-Type": "application/json", Authorization: `Bearer ${token}` },
       body: JSON.stringify({ angle }),
     });
     if (answer.ok) return await answer.blob();

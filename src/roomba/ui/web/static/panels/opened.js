@@ -2,12 +2,15 @@
 
 const HELD = "opened"; // in the state of the entry of the browser's history that the way back takes away
 const things = []; // [name, how it is closed]
+let isHeld = Boolean(history.state?.[HELD]); // whether the entry that is shown is that one
 
 /** Listen to the way back, and to dialogs that close. */
 export function begin() {
   for (const dialog of document.querySelectorAll("dialog")) dialog.addEventListener("close", () => closed(dialog.id));
   addEventListener("popstate", () => {
-    if (history.state?.[HELD]) return; // it was the way forward
+    const wasHeld = isHeld;
+    isHeld = Boolean(history.state?.[HELD]);
+    if (isHeld || !wasHeld) return; // it was the way forward, or an address that was typed
     if (!closeNewest()) history.back(); // all was closed before: the page is left
     else if (things.length) hold();
   });
@@ -49,5 +52,6 @@ export function remember(part, isShown) { history.replaceState({ ...history.stat
 export function wasShown(part) { return Boolean(history.state?.[part]); }
 
 function hold() {
-  if (!history.state?.[HELD]) history.pushState({ [HELD]: true }, "");
+  if (!isHeld) history.pushState({ [HELD]: true }, "");
+  isHeld = true;
 }
