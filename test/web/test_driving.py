@@ -14,6 +14,9 @@ HIDE = """(is_hidden) => {
     Object.defineProperty(document, "visibilityState", { configurable: true, value: state });
     document.dispatchEvent(new Event("visibilitychange"));
 }"""
+REFUSES_TO_KEEP = """for (const name of ["sessionStorage", "localStorage"])
+    Object.defineProperty(window, name, { get() { throw new Error("refused"); } });
+"""
 
 
 def test_the_emergency_stop_is_a_button_and_a_key(opened: Opened) -> None:
@@ -135,6 +138,15 @@ def test_the_printed_address_gives_an_open_tab_the_token(opened: Opened) -> None
     other.locator("#clean:enabled").wait_for()
     other.reload()
     other.locator("#clean:enabled").wait_for()
+
+
+def test_a_browser_that_keeps_nothing_shows_the_page_and_may_command(opened: Opened) -> None:
+    other = opened.page.context.new_page()
+    other.add_init_script(REFUSES_TO_KEEP)
+    other.goto(f"{opened.server.address}#token={opened.guard.token}")
+    other.wait_for_selector("body[data-link='live']")
+    other.get_by_role("button", name="Clean all").click()
+    opened.wait_for_phase("cleaning")
 
 
 def test_a_page_whose_wish_is_obeyed_says_no_more_that_it_may_only_look(opened: Opened) -> None:

@@ -18,7 +18,7 @@ let heardAt = 0; // and of the day
 let homes = 0; // how often a home was told
 let isHomeTold = false; // whether this connection has told of one
 
-let token = sessionStorage.getItem("token") ?? "";
+let token = keptToken();
 takeToken();
 
 /** Take the token of the printed address, if that is there, and keep it for this tab alone; returns whether it was. */
@@ -26,9 +26,23 @@ function takeToken() {
   const given = new URLSearchParams(location.hash.slice(1)).get("token");
   if (!given) return false;
   token = given;
-  sessionStorage.setItem("token", given);
+  keepToken();
   history.replaceState(null, "", location.pathname);
   return true;
+}
+
+function keptToken() {
+  try {
+    return sessionStorage.getItem("token") ?? "";
+  } catch {
+    return ""; // a browser that keeps nothing
+  }
+}
+
+function keepToken() {
+  try {
+    sessionStorage.setItem("token", token);
+  } catch { /* a browser that keeps nothing: it holds until the page is loaded anew */ }
 }
 
 /** Where this page lies on its server: a run of the history lies in a folder of its own. */
