@@ -173,3 +173,28 @@ def test_plans_of_a_server_that_was_started_anew_are_shown(
         page.locator("#plan-list").get_by_text("After").wait_for()
         assert page.locator("#plan-list li").count() == 1
     anew.stop()
+
+
+def test_a_new_plan_replaces_none_and_an_edited_one_keeps_its_rule_and_the_focus(
+    opened: Opened, household: LiveHousehold
+) -> None:
+    page, form = opened.page, opened.page.locator("#plan-form")
+    rule = "FREQ=WEEKLY;BYDAY=MO;INTERVAL=12"
+    household.put_plan(Plan(name="Windows", rule=rule))
+    opened.show("more")
+    page.locator("#plans summary").click()
+    page.get_by_role("button", name="New plan …").click()
+    form.get_by_label("Name").fill("Windows")
+    form.get_by_role("button", name="Save").click()
+    form.get_by_role("alert").get_by_text("that none of the plans has").wait_for()
+    assert household.plans().household.plans[0].rule == rule
+    form.get_by_role("button", name="Cancel").click()
+    page.get_by_role("button", name="Edit Windows").click()
+    form.get_by_label("Times").fill("10:00")
+    form.get_by_role("button", name="Save").click()
+    page.locator("#plan-list").get_by_text("10:00").wait_for()
+    assert household.plans().household.plans[0].rule == rule
+    page.get_by_role("button", name="Windows: on").focus()
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Windows: off").wait_for()
+    assert page.evaluate("() => document.activeElement.ariaLabel") == "Windows: off"

@@ -95,17 +95,21 @@ class Household(Protocol):
     def plans(self) -> PlansView:
         """Return the plans, and what comes of them."""
 
-    def put_plan(self, plan: Plan) -> None:
+    def put_plan(self, plan: Plan, *, is_new: bool = False) -> None:
         """Add a plan, or replace the one of the same name; its times count from now on.
 
+        One that ``is_new`` replaces none: it is refused if there is one of its name.
         Its rooms are of the present map; those of a plan that is off may be any.
         """
 
     def remove_plan(self, name: str) -> None:
         """Remove a plan; a clean that it began goes on."""
 
-    def put_preset(self, preset: Preset) -> None:
-        """Add a preset, or replace the one of the same name; its rooms are of the present map."""
+    def put_preset(self, preset: Preset, *, is_new: bool = False) -> None:
+        """Add a preset, or replace the one of the same name; its rooms are of the present map.
+
+        One that ``is_new`` replaces none.
+        """
 
     def remove_preset(self, name: str) -> None:
         """Remove a preset."""

@@ -21,7 +21,7 @@ from roomba.household.emptying import is_to_be_emptied
 from roomba.household.folder import KeptValues, Tell
 from roomba.household.in_use import InUse
 from roomba.household.local_zone import local_zone
-from roomba.household.plan_changes import Change, removed, replaced
+from roomba.household.plan_changes import Change, added, removed, replaced
 from roomba.household.plan_keeper import PlanKeeper
 from roomba.household.room_names import require_rooms
 from roomba.household.steps import NotDoneError, Steps
@@ -130,24 +130,24 @@ class LiveHousehold:
         """Return the plans, and what comes of them."""
         return self._plans.view()
 
-    def put_plan(self, plan: Plan) -> None:
-        """Add a plan, or replace the one of the same name.
+    def put_plan(self, plan: Plan, *, is_new: bool = False) -> None:
+        """Add a plan, or replace the one of the same name, unless it ``is_new``.
 
         One that is off may name any rooms, and may be over.
         """
         if plan.is_on:
             self._require_rooms(plan.order)
             self._plans.require_day_to_come(plan)
-        self._change(lambda plans: replaced(plans, "plans", plan.name, plan))
+        self._put("plans", plan, is_new=is_new)
 
     def remove_plan(self, name: str) -> None:
         """Remove a plan."""
         self._change(lambda plans: removed(plans, "plans", name))
 
-    def put_preset(self, preset: Preset) -> None:
-        """Add a preset, or replace the one of the same name."""
+    def put_preset(self, preset: Preset, *, is_new: bool = False) -> None:
+        """Add a preset, or replace the one of the same name, unless it ``is_new``."""
         self._require_rooms(preset.order)
-        self._change(lambda plans: replaced(plans, "presets", preset.name, preset))
+        self._put("presets", preset, is_new=is_new)
 
     def remove_preset(self, name: str) -> None:
         """Remove a preset."""
@@ -240,6 +240,12 @@ class LiveHousehold:
         # Without a robot that answers its rooms are not known.
         with contextlib.suppress(RobotUnavailableError):
             require_rooms(order, self.robot.home().rooms)
+
+    def _put(self, kind: str, value: Plan | Preset, *, is_new: bool) -> None:
+        if is_new:
+            self._change(lambda plans: added(plans, kind, value))
+        else:
+            self._change(lambda plans: replaced(plans, kind, value.name, value))
 
     def _change(self, change: Change) -> None:
         _kept(lambda: self._plans.change(change))

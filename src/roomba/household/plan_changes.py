@@ -26,6 +26,15 @@ def replaced(
     return household.model_copy(update={kind: tuple(values)})
 
 
+def added(household: HouseholdPlans, kind: str, value: Plan | Preset) -> HouseholdPlans:
+    """Return the household with another plan or preset; refuses a name that there is already."""
+    if value.name in [each.name for each in getattr(household, kind)]:
+        raise RequestRefusedError(
+            f"expected a name that none of the {kind} has, got {value.name!r}: give it another one"
+        )
+    return replaced(household, kind, value.name, value)
+
+
 def removed(household: HouseholdPlans, kind: str, name: str) -> HouseholdPlans:
     """Return the household without a plan or preset; raises RequestRefusedError without one."""
     values = getattr(household, kind)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from roomba.client.protocol import RequestRefusedError
-from roomba.household.plan_changes import removed, replaced, with_orders_again
+from roomba.household.plan_changes import added, removed, replaced, with_orders_again
 from roomba.plans.plan import HouseholdPlans, Plan, PlannedOrder, Preset
 from roomba.vocabulary import CleanMode
 
@@ -21,6 +21,12 @@ def test_the_one_of_the_same_name_is_replaced_in_its_place() -> None:
 def test_another_one_is_added() -> None:
     changed = replaced(PLANS, "presets", "c", Preset(name="c"))
     assert [preset.name for preset in changed.presets] == ["a", "c"]
+
+
+def test_a_new_one_takes_the_place_of_none() -> None:
+    assert [plan.name for plan in added(PLANS, "plans", Plan(name="c")).plans] == ["a", "b", "c"]
+    with pytest.raises(RequestRefusedError, match="that none of the plans has, got 'a'"):
+        added(PLANS, "plans", Plan(name="a"))
 
 
 def test_one_is_removed_and_what_there_is_not_is_refused() -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Header
 from pydantic import Field
 
 from roomba.client.household import Household, plans_of, upkeep_of
@@ -13,6 +13,11 @@ from roomba.ui.web.routes.api import obeyed
 from roomba.ui.web.routes.wishes import Answer, Wish
 from roomba.upkeep.parts import Part
 from roomba.vocabulary import LONGEST_NAME
+
+OnlyNew = Annotated[
+    Literal["*"] | None,
+    Header(alias="If-None-Match", description="Refuse to replace the one of the same name"),
+]
 
 
 class PartWish(Wish):
@@ -73,16 +78,16 @@ def _add_plans(api: APIRouter, household: Household) -> None:
         return plans_of(household.plans())
 
     @api.put("/plans", summary="Add a plan, or replace the one of the same name")
-    def put_plan(plan: Plan) -> Answer:
-        return obeyed(lambda: household.put_plan(plan))
+    def put_plan(plan: Plan, only_new: OnlyNew = None) -> Answer:
+        return obeyed(lambda: household.put_plan(plan, is_new=only_new is not None))
 
     @api.delete("/plans/{name:path}", summary="Remove a plan")
     def remove_plan(name: str) -> Answer:
         return obeyed(lambda: household.remove_plan(name))
 
     @api.put("/presets", summary="Add a preset, or replace the one of the same name")
-    def put_preset(preset: Preset) -> Answer:
-        return obeyed(lambda: household.put_preset(preset))
+    def put_preset(preset: Preset, only_new: OnlyNew = None) -> Answer:
+        return obeyed(lambda: household.put_preset(preset, is_new=only_new is not None))
 
     @api.delete("/presets/{name:path}", summary="Remove a preset")
     def remove_preset(name: str) -> Answer:

@@ -18,6 +18,14 @@ export function button(text, act, label) {
   return made;
 }
 
+/** Replace the lines of a list; the button that has the focus keeps it in the new line of the same name. */
+export function replaceLines(list, lines) {
+  const focused = document.activeElement, line = list.contains(focused) ? focused.closest("li") : null;
+  const index = line ? [...line.querySelectorAll("button")].indexOf(focused) : -1;
+  list.replaceChildren(...lines);
+  if (line) lines.find((one) => one.dataset.name === line.dataset.name)?.querySelectorAll("button")[index]?.focus();
+}
+
 /** Return a part of a line of text. */
 export function span(kind, text) {
   const made = document.createElement("span");

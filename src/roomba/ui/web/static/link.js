@@ -155,21 +155,21 @@ export async function wish(path, body, method = "POST") {
  * Ask the robot for something; returns why it is refused, empty when the robot obeys, null when the same action is
  * under way. A refusal of before is old news then.
  */
-export async function askFor(path, body, method = "POST") {
+export async function askFor(path, body, method = "POST", headers = {}) {
   const isOnce = method === "POST" && !AGAIN.includes(path);
   if (isOnce && underWay.has(path)) return null;
   if (isOnce) underWay.add(path);
   document.getElementById("refusal").hidden = true;
-  const reason = await send(path, body, method);
+  const reason = await send(path, body, method, headers);
   underWay.delete(path);
   return reason;
 }
 
-async function send(path, body, method) {
+async function send(path, body, method, headers) {
   try {
     const answer = await fetch(`${BASE}api/v1/${path}`, {
       method,
-      headers: { "Content-Type": "application/json", Authorization: `Bearer ${token}` },
+      headers: { "Content-Type": "application/json", Authorization: `Bearer ${token}`, ...headers },
       body: JSON.stringify(body ?? {}),
       signal: AbortSignal.timeout(PATIENCE),
     });

@@ -124,6 +124,20 @@ def test_quiet_hours_presets_and_the_zone_are_set(served: Served) -> None:
     assert served.ask("POST", "presets/quick/begin") == 409
 
 
+@pytest.mark.parametrize(("kind", "body"), [("plans", PLAN), ("presets", {"name": "kitchen"})])
+def test_one_that_is_new_replaces_none(served: Served, kind: str, body: dict[str, Any]) -> None:
+    def add() -> Any:
+        headers = {"If-None-Match": "*"}
+        return served.client.put(f"/api/v1/{kind}", json=body, headers=headers)
+
+    assert add().status_code == 200
+    refused = add()
+    assert refused.status_code == 409
+    assert f"expected a name that none of the {kind} has" in refused.json()["detail"]
+    assert served.ask("PUT", kind, body) == 200
+    assert len(served.get("plans")[kind]) == 1
+
+
 def test_what_has_a_slash_in_its_name_is_begun_and_removed(served: Served) -> None:
     for name in ("up/down", "x/begin"):
         path = quote(name, safe="")

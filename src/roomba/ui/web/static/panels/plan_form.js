@@ -110,7 +110,7 @@ function parsed(rule) {
   const { FREQ, INTERVAL = "1", BYDAY = "", ...others } = parts, days = BYDAY.split(",").filter(Boolean);
   if (Object.keys(others).length) return null;
   if (FREQ === "DAILY" && INTERVAL === "1" && !days.length) return { days: Object.keys(DAYS), weeks: 1 };
-  const isShown = FREQ === "WEEKLY" && days.length && days.every((day) => day in DAYS) && "1234".includes(INTERVAL);
+  const isShown = FREQ === "WEEKLY" && days.length && days.every((day) => day in DAYS) && ["1", "2", "3", "4"].includes(INTERVAL);
   return isShown ? { days: Object.keys(DAYS).filter((day) => days.includes(day)), weeks: Number(INTERVAL) } : null;
 }
 

@@ -1,5 +1,5 @@
 /** Plans: what comes next, what waits and why; plans, presets, quiet hours, people. */
-import { $, button, put, span } from "../dom.js";
+import { $, button, put, replaceLines, span } from "../dom.js";
 import { ask, askFor, note, wish } from "../link.js";
 import { get, mayMove, on } from "../store.js";
 import { sentence, title } from "../words.js";
@@ -10,6 +10,7 @@ import { askPlan, daysInWords } from "./plan_form.js";
 const MOST_NOTES = 12;
 const EMPTY = { mode: "whole", rooms: [], passes: 1, fan: "standard", carpets: "boost", edges: "any" };
 const QUIET_DAYS = { all: [0, 1, 2, 3, 4, 5, 6], work: [0, 1, 2, 3, 4], rest: [5, 6] };
+const ONLY_NEW = { "If-None-Match": "*" }; // to be added, and to replace none
 const WEEK = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
 
 let told = null; // what the server told last
@@ -58,11 +59,11 @@ async function showAll(version) {
   const before = changes, found = await ask("plans");
   if (!found || before !== changes) return;
   told = found;
-  $("plan-list").replaceChildren(...told.plans.map(planLine));
-  $("preset-list").replaceChildren(...told.presets.map(presetLine));
+  replaceLines($("plan-list"), told.plans.map(planLine));
+  replaceLines($("preset-list"), told.presets.map(presetLine));
   $("needs").hidden = told.needs.length === 0;
   $("need-list").replaceChildren(...told.needs.map((need) => line(`${title(need.room)}: ${often(need.every)}; ${need.reason}.`)));
-  $("quiet-list").replaceChildren(...told.quiet.map(quietLine));
+  replaceLines($("quiet-list"), told.quiet.map(quietLine));
   $("plan-waits").checked = told.waits_for_empty_home;
   $("plan-person").checked = told.is_person_home;
   $("plan-notes").replaceChildren(...told.notes.slice(0, MOST_NOTES).map((one) => line(`${day(one.at)} · ${one.plan}: ${one.text}`)));
@@ -107,6 +108,7 @@ function quietLine(hours, index) {
 
 function entry(name, about) {
   const item = document.createElement("li"), words = document.createElement("div");
+  item.dataset.name = name;
   words.className = "words";
   words.append(span("name", name), span("about", about));
   item.append(words);
@@ -123,10 +125,10 @@ function remover(kind, name, values) {
 
 async function edit(heading, given, isPlan) {
   if (!await known()) return;
-  const path = isPlan ? "plans" : "presets", isNew = given.name === "";
+  const path = isPlan ? "plans" : "presets", isNew = given.name === "", headers = isNew ? ONLY_NEW : {};
   // What is refused comes back into the form, with what was entered.
   let entered = await askPlan(heading, given, told.presets, isPlan, isNew, ""), fault = "";
-  while (entered && (fault = await askFor(path, entered, "PUT")))
+  while (entered && (fault = await askFor(path, entered, "PUT", headers)))
     entered = await askPlan(heading, entered, told.presets, isPlan, isNew, sentence(fault));
   await showAll(get("state")?.plans?.version ?? 0);
 }
