@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from fixtures.waiting import wait_until
 from PIL import Image
-from playwright.sync_api import CDPSession, Page
+from playwright.sync_api import CDPSession, Page, WebSocketRoute
 from web.conftest import SIZES, Opened, served_instead
 from web.test_page import DEADLINE
 
@@ -20,6 +20,15 @@ from roomba.ui.web.server import PageServer, listen
 MOST_DIFFERENT = 0.005
 """Share of pixels in which two pictures of the same floor may differ."""
 HOME = """async () => (await import("/store.js")).get("home")?.name"""
+ASKED_IN_VAIN = """async () => {
+    const { ask, picture, wish } = await import("/link.js");
+    const real = AbortSignal.timeout;
+    AbortSignal.timeout = () => AbortSignal.abort();
+    const answers = [await ask("state"), await picture(0), await wish("speed", { speed: 0.2 })];
+    AbortSignal.timeout = real;
+    return answers;
+}"""
+"""Ask for all as if it had been waited for too long."""
 DRAWING = "async () => Boolean((await import('/store.js')).get('drawing'))"
 
 
@@ -240,3 +249,26 @@ def test_of_a_server_that_was_started_anew_the_other_home_is_drawn(opened: Opene
 
         wait_until(is_same, DEADLINE, lambda: f"the map of a new page, not {found[-1]:.3f} of it")
     other.end()
+
+
+@pytest.mark.parametrize("size", [SIZES["desktop"]])
+def test_a_path_that_dies_without_a_word_is_given_up(opened: Opened) -> None:
+    page, paths, dead = opened.page, list[WebSocketRoute](), list[WebSocketRoute]()
+
+    def lead(path: WebSocketRoute) -> None:
+        paths.append(path)
+        server = path.connect_to_server()
+        server.on_message(lambda told: None if path in dead else path.send(told))
+
+    page.route_web_socket("**/live", lead)
+    page.reload()
+    opened.wait_for_phase("docked")
+    dead.extend(paths)
+    page.wait_for_selector("body[data-link='stale']")
+    page.wait_for_selector("body[data-link='live']")
+    assert len(paths) == 2
+
+
+@pytest.mark.parametrize("size", [SIZES["desktop"]])
+def test_no_answer_is_waited_for_without_end(opened: Opened) -> None:
+    assert opened.page.evaluate(ASKED_IN_VAIN) == [None, None, False]

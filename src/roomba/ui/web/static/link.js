@@ -5,6 +5,7 @@ import { view } from "./map/view.js";
 import { sentence } from "./words.js";
 
 const STALE = 1500; // ms without news after which what is shown is told to be old
+const DEAD = 8000; // ms without news after which a path is dead: after 5 s the server tells that its robot is silent
 const PATIENCE = 10_000; // ms until an answer counts as lost
 const RETRY = [300, 1000, 2000, 4000]; // ms before another attempt
 const AGAIN = ["emergency_stop", "speed", "replay", "play/put"]; // the stop is never held back, and of the others the newest value counts
@@ -13,6 +14,7 @@ const timers = {};
 let socket = null;
 const underWay = new Set(); // what was asked for, and is not answered yet
 let attempts = 0;
+let began = 0; // ms of the page's clock: when the connection was begun
 let heard = 0; // ms of the page's clock
 let heardAt = 0; // and of the day
 let homes = 0; // how often a home was told
@@ -51,6 +53,7 @@ export const BASE = new URL(".", location.href).pathname;
 /** Connect, and stay connected. */
 export function connect() {
   const scheme = location.protocol === "https:" ? "wss" : "ws";
+  began = performance.now();
   socket = new WebSocket(`${scheme}://${location.host}${BASE}live`);
   socket.binaryType = "arraybuffer";
   socket.onopen = () => {
@@ -65,10 +68,20 @@ export function connect() {
     if (event.data instanceof ArrayBuffer) takeTiles(event.data);
     else take(JSON.parse(event.data));
   };
-  socket.onclose = () => {
-    set("link", "reconnecting");
-    setTimeout(connect, RETRY[Math.min(attempts++, RETRY.length - 1)]);
-  };
+  socket.onclose = connectAgain;
+}
+
+function connectAgain() {
+  socket = null;
+  set("link", "reconnecting");
+  setTimeout(connect, RETRY[Math.min(attempts++, RETRY.length - 1)]);
+}
+
+/** Connect anew although nothing was closed: a path may die without a word. */
+function giveUp() {
+  socket.onopen = socket.onmessage = socket.onclose = null;
+  socket.close();
+  connectAgain();
 }
 
 function hello() { socket.send(JSON.stringify({ type: "hello", token })); }
@@ -77,9 +90,10 @@ function hello() { socket.send(JSON.stringify({ type: "hello", token })); }
 addEventListener("hashchange", () => { if (takeToken() && socket?.readyState === WebSocket.OPEN) hello(); });
 
 setInterval(() => {
-  const age = performance.now() - heard;
+  const now = performance.now(), age = now - heard;
   set("age", age);
   if (get("link") === "live" && age > STALE) set("link", "stale");
+  if (socket && now - Math.max(began, heard) > DEAD) giveUp();
 }, 500);
 
 function take(message) {
@@ -186,7 +200,7 @@ async function send(path, body, method, headers) {
 /** Return what the server has at a path, or null; what is wrong is shown. */
 export async function ask(path) {
   try {
-    const answer = await fetch(`${BASE}api/v1/${path}`), told = await answer.json();
+    const answer = await fetch(`${BASE}api/v1/${path}`, { signal: AbortSignal.timeout(PATIENCE) }), told = await answer.json();
     if (answer.ok) return told;
     refuse(told.detail);
   } catch {
@@ -202,6 +216,7 @@ export async function picture(angle) {
       method: "POST",
       headers: { "Content-Type": "application/json", Authorization: `Bearer ${token}` },
       body: JSON.stringify({ angle }),
+      signal: AbortSignal.timeout(PATIENCE),
     });
     if (answer.ok) return await answer.blob();
     refuse((await answer.json()).detail);
