@@ -126,3 +126,10 @@ def test_a_wide_window_has_the_rate_of_dirt_under_the_map(opened: Opened) -> Non
     tops = "line => Math.min(...line.getAttribute('points').split(' ').map(at => at.split(',')[1]))"
     # The line rises above the middle of its picture.
     assert page.locator("#rate-line .line").evaluate(tops) < 32
+
+
+def test_the_browser_keeps_the_page_clear_of_a_notch(opened: Opened) -> None:
+    """With viewport-fit=cover the page would lie below it, and had to keep clear itself."""
+    content = opened.page.get_attribute("meta[name=viewport]", "content")
+    assert content is not None
+    assert "viewport-fit" not in content
