@@ -6,6 +6,7 @@ import math
 
 import pytest
 from fixtures.waiting import wait_until
+from playwright.sync_api import Route
 from web.conftest import SIZES, Opened
 from web.test_page import DEADLINE
 
@@ -25,6 +26,7 @@ PIXEL = """async (place) => {
     const [x, y] = toScreen(...place).map((at) => Math.round(at * devicePixelRatio));
     return [...canvas.getContext("2d").getImageData(x, y, 1, 1).data];
 }"""
+SHOWN = """async () => (await import("/store.js")).chosenZone()?.points ?? []"""
 PLACE = """async ([px, py]) => (await import("/map/view.js")).toFloor(px, py)"""
 
 
@@ -122,6 +124,86 @@ def test_two_fingers_zoom_and_the_map_stays_under_them(opened: Opened) -> None:
     wait_until(are_under_them, DEADLINE, "the same floor under the fingers")
     fingers("touchEnd")
     assert opened.page.inner_text("#clean") == "Clean all"
+
+
+def wait_until_shown(opened: Opened, points: tuple[tuple[float, float], ...]) -> None:
+    """Wait until the page shows the chosen zone there."""
+    shown = list[object]()
+
+    def is_shown() -> bool:
+        shown[:] = opened.page.evaluate(SHOWN)
+        return shown == [pytest.approx(point, abs=0.001) for point in points]
+
+    wait_until(is_shown, DEADLINE, lambda: f"{points}, not {shown}")
+
+
+def choose(opened: Opened) -> None:
+    """Have a zone, and choose it on the map."""
+    opened.robot.put_zone(ZoneView("Zone 1", "no-go", CORNERS))
+    opened.show_map()
+    opened.page.locator("#zones li", has_text="Zone 1").wait_for(state="attached")
+    opened.tap(1.5, 2.0)
+    opened.page.get_by_text("Zone 1: drag it, or a corner").wait_for()
+
+
+@DESKTOP
+def test_the_zone_that_is_chosen_is_shown_where_the_robot_has_it(opened: Opened) -> None:
+    page, robot = opened.page, opened.robot
+    choose(opened)
+    robot.put_zone(ZoneView("Zone 1", "no-go", ELSEWHERE))
+    wait_until_shown(opened, ELSEWHERE)
+    page.locator("#floor").focus()
+    for _ in range(10):
+        page.keyboard.down("ArrowUp")
+    page.keyboard.up("ArrowUp")
+    higher = tuple((x, y + 1.0) for x, y in ELSEWHERE)
+    wait_for_points(opened, higher)
+    wait_until_shown(opened, higher)
+    robot.put_zone(ZoneView("Zone 1", "no-go", CORNERS))
+    wait_until_shown(opened, CORNERS)
+
+
+@DESKTOP
+def test_one_place_of_a_zone_is_asked_for_at_a_time_and_the_newest_wins(opened: Opened) -> None:
+    page, asked = opened.page, list[Route]()
+
+    def hold_the_first(route: Route) -> None:
+        asked.append(route)
+        if len(asked) > 1:
+            route.continue_()
+
+    choose(opened)
+    page.route("**/api/v1/zones", hold_the_first)
+    page.locator("#floor").focus()
+    for _ in range(5):
+        page.keyboard.press("ArrowUp")
+    higher = tuple((x, y + 0.5) for x, y in CORNERS)
+    wait_until_shown(opened, higher)
+    assert len(asked) == 1
+    asked[0].continue_()
+    wait_until(lambda: page.evaluate("true") and len(asked) == 2, DEADLINE, "the newest place")
+    wait_for_points(opened, higher)
+
+
+@pytest.mark.parametrize("size", [SIZES["phone"]])
+def test_a_second_finger_leaves_a_zone_where_the_robot_has_it(opened: Opened) -> None:
+    page = opened.page
+    choose(opened)
+    touch = page.context.new_cdp_session(page)
+
+    def fingers(kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": x, "y": y} for x, y in places]
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    x, y = opened.pixels(1.5, 2.0)
+    fingers("touchStart", (x, y))
+    fingers("touchMove", (x + 40.0, y))
+    wait_until(lambda: page.evaluate(SHOWN)[0][0] > 1.1, DEADLINE, "a zone that is dragged")
+    fingers("touchStart", (x + 40.0, y), (x + 40.0, y + 90.0))
+    fingers("touchMove", (x + 40.0, y), (x + 40.0, y + 110.0))
+    fingers("touchEnd")
+    wait_until_shown(opened, CORNERS)
+    assert points_of(opened) == CORNERS
 
 
 @DESKTOP

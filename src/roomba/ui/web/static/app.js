@@ -27,6 +27,6 @@ import * as zones from "./panels/zones.js";
 import { connect } from "./link.js";
 
 draw.begin();
-gestures.begin({ tapped, drawn: zones.drawn, changed: zones.change, mayCarry: play.mayCarry, carried: play.carried });
+gestures.begin({ tapped, drawn: zones.drawn, zoneMoved: zones.moved, mayCarry: play.mayCarry, carried: play.carried });
 for (const panel of [opened, status, openEdges, stop, card, actions, rooms, queue, zones, drive, play, tools, keys, replay, maps, lowThings, plans, upkeep, camera, charts, history, sheet]) panel.begin();
 connect();

@@ -26,6 +26,18 @@ export function on(names, listener) {
   listener();
 }
 
+/** Return the zone that is chosen, where it is being moved to or else where the robot has it; undefined without one. */
+export function chosenZone() {
+  const chosen = get("zone"), zone = get("home")?.zones.find((one) => one.name === chosen?.name);
+  return zone && { ...zone, points: chosen.points ?? zone.points };
+}
+
+/** Show the chosen zone where it is being moved to; with nothing, where the robot has it. */
+export function moveZone(points) {
+  const chosen = get("zone");
+  if (chosen && chosen.points !== points) set("zone", { name: chosen.name, points });
+}
+
 /** Return where the map of the last run stays open. */
 export function openEdges() { return get("state")?.last?.open_edges ?? []; }
 

@@ -1,5 +1,5 @@
 /** Pointer, touch and wheel on the map: pan, pinch, zoom, tap, long press, and dragging things. */
-import { get, mayAsk, set } from "../store.js";
+import { chosenZone, get, mayAsk, moveZone, set } from "../store.js";
 import { pan, toFloor, toScreen, zoom } from "./view.js";
 import { cornerAt, isHit, shifted, withCorner } from "./zones.js";
 
@@ -13,14 +13,14 @@ let pressed = null; // what a long press waits for
 let drag = null; // what is dragged: "pan", "draft", or a function of the place, m
 
 /**
- * Call `tapped(x, y, px, py)` for a tap on the floor, m and pixels, `drawn(draft)` for a draft, `changed(zone)`
+ * Call `tapped(x, y, px, py)` for a tap on the floor, m and pixels, `drawn(draft)` for a draft, `zoneMoved()`
  * for a zone that was dragged; `mayCarry()` tells whether the robot may be dragged, `carried(begin or end, x, y)` follows it.
  */
-export function begin({ tapped, drawn, changed, mayCarry, carried }) {
+export function begin({ tapped, drawn, zoneMoved, mayCarry, carried }) {
   canvas.addEventListener("pointerdown", (event) => {
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, place(event));
-    if (pointers.size > 1) { stopWaiting(); if (drag !== "draft") drag = "pan"; return; }
+    if (pointers.size > 1) { stopWaiting(); if (drag !== "draft") drag = "pan"; letGo(); return; }
     moved = 0;
     drag = grasp(place(event), { mayCarry, carried });
   });
@@ -42,7 +42,7 @@ export function begin({ tapped, drawn, changed, mayCarry, carried }) {
     const isDone = event.type === "pointerup", at = place(event);
     if (drag === "draft") endDraft(isDone, drawn);
     else if (get("carried")) { carried(isDone && moved > TAP ? "end" : "back", ...get("carried")); set("carried", null); }
-    else if (typeof drag === "function" && moved > TAP) { if (isDone) changed(get("zone")); }
+    else if (typeof drag === "function" && (moved > TAP || !isDone)) dragged(isDone, at, zoneMoved);
     else if (isDone && moved <= TAP) tapped(...toFloor(...at), ...at);
     drag = null;
   };
@@ -58,15 +58,15 @@ export function begin({ tapped, drawn, changed, mayCarry, carried }) {
 /** Return what is dragged from now on. */
 function grasp([px, py], { mayCarry, carried }) {
   if (!mayAsk()) return "pan";
-  const [x, y] = toFloor(px, py), drawing = get("drawing"), zone = get("zone"), state = get("state");
+  const [x, y] = toFloor(px, py), drawing = get("drawing"), zone = chosenZone(), state = get("state");
   if (drawing) {
     set("drawing", { ...drawing, from: [x, y], to: [x, y] });
     return "draft";
   }
   if (zone) {
     const corner = cornerAt(zone, px, py);
-    if (corner >= 0) return (toX, toY) => set("zone", withCorner(zone, corner, toX, toY));
-    if (isHit(zone, x, y, px, py)) return (toX, toY) => set("zone", shifted(zone, toX - x, toY - y));
+    if (corner >= 0) return (toX, toY) => moveZone(withCorner(zone, corner, toX, toY).points);
+    if (isHit(zone, x, y, px, py)) return (toX, toY) => moveZone(shifted(zone, toX - x, toY - y).points);
   }
   if (mayCarry() && state && isOnRobot(state, px, py)) {
     carried("begin", x, y);
@@ -92,6 +92,16 @@ function endDraft(isDone, drawn) {
   if (isDone && moved > TAP) drawn(drawing);
   else set("drawing", drawing.kind === "any" || !isDone ? null : { kind: drawing.kind, room: drawing.room });
 }
+
+/** A zone was dragged: its last place counts, whatever the robot told meanwhile. */
+function dragged(isDone, at, zoneMoved) {
+  if (!isDone) { letGo(); return; }
+  drag(...toFloor(...at));
+  zoneMoved();
+}
+
+/** Leave the zone that was dragged where the robot has it. */
+function letGo() { moveZone(null); }
 
 function stopWaiting() {
   clearTimeout(pressed);

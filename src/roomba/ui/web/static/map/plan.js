@@ -1,5 +1,5 @@
 /** Draws what seldom changes: walls, floors, furniture, rooms, zones, station. */
-import { get, openEdges } from "../store.js";
+import { chosenZone, get, openEdges } from "../store.js";
 import { letter, title } from "../words.js";
 import { floorFill } from "./floors.js";
 import { grid } from "./grids.js";
@@ -52,7 +52,7 @@ export function drawThings(context) {
   if (layers.carpets) (home.felt_carpets ?? []).forEach((carpet) => drawCarpet(context, carpet));
   if (layers.furniture) drawFurniture(context, home);
   if (layers.rooms) drawRooms(context, home);
-  if (layers.zones) home.zones.forEach((zone) => drawZone(context, get("zone")?.name === zone.name ? get("zone") : zone));
+  if (layers.zones) home.zones.forEach((zone) => drawZone(context, get("zone")?.name === zone.name ? chosenZone() : zone));
   (home.changes ?? []).forEach((change) => drawChange(context, change));
   (home.low_things ?? []).forEach((thing) => drawLow(context, thing));
   if (layers.edges) openEdges().forEach((edge, index) => drawEdge(context, edge, index));

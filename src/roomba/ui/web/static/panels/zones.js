@@ -3,7 +3,7 @@ import { $, button } from "../dom.js";
 import { askFor, note, refuse, wish } from "../link.js";
 import { toFloor, view } from "../map/view.js";
 import { shifted, withCorner } from "../map/zones.js";
-import { get, on, set } from "../store.js";
+import { chosenZone, get, moveZone, on, set } from "../store.js";
 import { title, ZONES } from "../words.js";
 import { beginClean } from "./actions.js";
 import { askName } from "./ask.js";
@@ -15,7 +15,12 @@ import * as sheet from "./sheet.js";
 const DRAWS = { "draw-clean": "clean", "draw-no-go": "no-go", "draw-wall": "wall", "draw-carpet": "carpet" };
 const HINTS = { clean: "Drag over the floor to be cleaned.", "no-go": "Drag over the floor that it shall not enter.", wall: "Drag a line that it shall not cross.", carpet: "Drag over the carpet.", split: "Drag a line through the room." };
 const STEP = 0.1; // m that an arrow moves
+const SAME = 0.001; // m by which a place may differ from what was asked for
 const FIRST = 0.5; // m; half the side of what is drawn with keys
+
+const wished = new Map(); // zones that are to be put where they were moved to, by their names
+let isSending = false;
+let settles = false; // whether the next home tells where the robot has what was moved
 
 /** Connect the buttons, and keep the list up to date. */
 export function begin() {
@@ -23,6 +28,7 @@ export function begin() {
     $(id).onclick = (event) => draw(get("drawing")?.kind === kind ? null : { kind }, event);
   $("split").onclick = (event) => draw({ kind: "split", room: get("chosen")[0] }, event);
   $("hint-cancel").onclick = () => set("drawing", null);
+  on("home", () => { if (settles && !isSending) settle(); });
   on("home zone", showZones);
   on("drawing", showDrawing);
   for (const name of ["drawing", "zone"]) on(name, () => (get(name) ? opened(name, () => set(name, null)) : closed(name)));
@@ -60,22 +66,43 @@ async function make({ kind, room, from, to }) {
   if (kind === "clean") return beginClean({ mode: "zones", zones: [[left, low, right, high]] });
   const points = kind === "wall" ? [from, to] : [[left, low], [right, low], [right, high], [left, high]];
   const name = newName(kind);
-  if (await change({ name, kind, points })) note(`${name} is drawn. Tap it to move it.`, () => wish(path(name), {}, "DELETE"));
+  if (await wish("zones", { name, kind, points }, "PUT")) note(`${name} is drawn. Tap it to move it.`, () => wish(path(name), {}, "DELETE"));
 }
 
-/** Put a zone where it was drawn or dragged to. */
-export async function change(zone) {
-  const isDone = await wish("zones", zone, "PUT");
-  if (!isDone && get("zone")?.name === zone.name) select(get("home").zones.find((one) => one.name === zone.name) ?? null);
-  return isDone;
+/** Put the chosen zone where it was moved to: one wish at a time, and then the newest place. */
+export async function moved() {
+  const chosen = chosenZone();
+  if (chosen) wished.set(chosen.name, chosen);
+  if (isSending) return;
+  isSending = settles = true;
+  let isSettled = true;
+  for (const [name, zone] of wished) {
+    wished.delete(name);
+    isSettled = !await wish("zones", zone, "PUT") || isThere(zone);
+  }
+  isSending = false;
+  if (isSettled) settle();
+}
+
+/** Whether the robot has told already that it has a zone there. */
+function isThere({ name, points }) {
+  const told = get("home").zones.find((one) => one.name === name);
+  return Boolean(told) && told.points.every(([x, y], index) => Math.hypot(x - points[index][0], y - points[index][1]) < SAME);
+}
+
+/** From now on the chosen zone is where the robot has it. */
+function settle() {
+  settles = false;
+  moveZone(null);
 }
 
 /** Choose a zone, to be moved or removed. */
-export function select(zone) { set("zone", zone && { ...zone }); }
+export function select(zone) { set("zone", { name: zone.name, points: null }); }
 
 /** Remove a zone; it can be brought back. */
 export async function remove(zone) {
   if (!await wish(path(zone.name), {}, "DELETE")) return;
+  wished.delete(zone.name);
   set("zone", null);
   note(`${zone.name} is removed.`, () => wish("zones", zone, "PUT"));
 }
@@ -96,7 +123,8 @@ function rename(zone) {
 
 /** Returns why it is refused; the zone of the old name goes last, so that the robot is kept out all the time. */
 async function giveName(zone, name) {
-  const refused = await askFor("zones", { ...zone, name }, "PUT");
+  const now = get("home").zones.find((one) => one.name === zone.name) ?? zone; // it may have been moved meanwhile
+  const refused = await askFor("zones", { ...now, name }, "PUT");
   if (refused) return refused;
   const kept = await askFor(path(zone.name), {}, "DELETE");
   if (kept) await askFor(path(name), {}, "DELETE");
@@ -106,13 +134,13 @@ async function giveName(zone, name) {
 /** Offer what can be done with the zone that is chosen. */
 export function offerZone(zone) {
   select(zone);
-  const now = () => get("zone") ?? zone;
+  const now = () => chosenZone() ?? zone;
   card.open(`${zone.name}: drag it, or a corner`, [["Rename", () => rename(now())], ["Remove", () => remove(now())], ["Done", () => set("zone", null)]], zone.points[0]);
 }
 
 /** Draw or move with keys; returns whether the key meant something here. */
 export function key(event) {
-  const draft = get("drawing"), zone = get("zone");
+  const draft = get("drawing"), zone = chosenZone();
   const [dx, dy] = { ArrowUp: [0, STEP], ArrowDown: [0, -STEP], ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0] }[event.key] ?? [0, 0];
   const ends = ["Delete", "Backspace"].includes(event.key);
   if (draft) {
@@ -130,8 +158,8 @@ export function key(event) {
   else if (event.key === "Enter") set("zone", null);
   else if (dx || dy) {
     const corner = zone.points.length === 2 ? 1 : 2, [x, y] = zone.points[corner];
-    select(event.shiftKey ? withCorner(zone, corner, x + dx, y + dy) : shifted(zone, dx, dy));
-    change(get("zone"));
+    moveZone((event.shiftKey ? withCorner(zone, corner, x + dx, y + dy) : shifted(zone, dx, dy)).points);
+    moved();
   } else return false;
   return true;
 }
