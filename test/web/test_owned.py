@@ -102,6 +102,12 @@ def test_its_state_is_shown_and_what_it_does_not_tell_is_left_open(
     page.wait_for_selector("body[data-phase='idle']", timeout=PATIENCE)
     assert page.locator("#battery").text_content() == "85 %"
     assert page.locator("#dirt").text_content() == "–"
+    # It makes no map that is told, takes no zones, and is not driven by hand.
+    page.locator("#draw-no-go").wait_for(state="hidden")
+    page.locator("details.drive summary", has_text="Find it").click()
+    page.locator("#locate").wait_for()
+    for part in ("#no-map", "#rooms-hint", "#drive-pad"):
+        assert page.locator(part).is_hidden(), part
     page.get_by_role("button", name="Clean all").click()
     page.wait_for_selector("body[data-phase='cleaning']", timeout=PATIENCE)
     page.locator("#charts").evaluate("charts => { charts.open = true; }")

@@ -218,7 +218,8 @@ class PageLimits:
 
     ``hand_speed`` and ``hand_turning`` are those at which a hand drives; ``camera_angles`` are in
     degrees to the left, and ``play`` has the values of :class:`PlayAct` that the robot offers.
-    ``each_room`` says that each room of a clean can have passes and a fan level of its own.
+    ``each_room`` says that each room of a clean can have passes and a fan level of its own,
+    ``explores`` that it makes its map itself, and ``drives`` that it can be driven by hand.
     """
 
     max_speed: float
@@ -231,6 +232,8 @@ class PageLimits:
     hand_speed: float = 0.25
     hand_turning: float = 1.0
     each_room: bool = True
+    explores: bool = True
+    drives: bool = True
     modes: tuple[str, ...] = tuple(mode.value for mode in CleanMode)
     fans: tuple[str, ...] = tuple(level.value for level in FanLevel)
     carpets: tuple[str, ...] = tuple(way.value for way in CarpetWay)

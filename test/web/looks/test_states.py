@@ -5,9 +5,16 @@ from __future__ import annotations
 import threading
 
 import pytest
+from fixtures.households.written_robot import WrittenRobot
+from fixtures.pages.windows import Windows
 from fixtures.waiting import wait_until
-from web.conftest import SIZES, Opened
+from web.conftest import SIZES, Opened, page_at, serving
 from web.test_page import DEADLINE
+
+from roomba.client.protocol import RobotUnavailableError
+from roomba.client.view import PageLimits
+from roomba.ui.web.app import create_app
+from roomba.ui.web.guard import Guard, new_token
 
 WATCH = """async () => {
     const { grid } = await import("/map/grids.js");
@@ -97,3 +104,27 @@ def test_the_drive_is_not_released_by_an_old_look(opened: Opened) -> None:
         held.join()
     release.click()
     page.wait_for_selector("body[data-held=no]")
+
+
+class LateRobot(WrittenRobot):
+    """Tells not even its limits while it is gone."""
+
+    def limits(self) -> PageLimits:
+        if self.is_gone:
+            raise RobotUnavailableError("it begins to live")
+        return super().limits()
+
+
+def test_what_a_robot_that_comes_late_offers_is_known_then(windows: Windows) -> None:
+    robot, guard = LateRobot(), Guard(new_token())
+    robot.is_gone = True
+    with (
+        serving(create_app(robot, guard)) as server,
+        page_at(windows, f"{server.address}#token={guard.token}", SIZES["desktop"]) as page,
+    ):
+        page.wait_for_selector("body[data-link='gone']")
+        robot.is_gone = False
+        page.wait_for_selector("body[data-link='live']")
+        page.locator(".how").wait_for()
+        page.locator("#charts").evaluate("charts => { charts.open = true; }")
+        page.locator("#chart-battery-title", has_text="Battery: not known").wait_for()

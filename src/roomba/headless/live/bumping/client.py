@@ -54,6 +54,7 @@ class BumpingClient(WithoutMap):
             most_passes=1,
             most_zones=0,
             each_room=False,
+            explores=False,
             modes=(CleanMode.WHOLE.value,),
         )
 

@@ -54,6 +54,8 @@ class RemoteClient(WithoutMap):
             most_passes=1,
             most_zones=0,
             each_room=False,
+            explores=False,
+            drives=False,
             modes=tuple(mode.value for mode in _KINDS),
         )
         self._held, self._not_stopped = "", ""

@@ -1,5 +1,5 @@
 /** The connection to the server: a stream of snapshots that comes back by itself, and wishes. */
-import { get, set } from "./store.js";
+import { get, isConnected, set } from "./store.js";
 import { forgetGrids, takeTiles } from "./map/grids.js";
 import { view } from "./map/view.js";
 import { sentence } from "./words.js";
@@ -102,6 +102,7 @@ function take(message) {
       set("state", message.pose ? { ...message, at: performance.now() } : get("state"));
       set("reason", message.reason ?? "");
       if (message.link === "live") set("seenAt", heardAt);
+      if (message.link === "live" && !isConnected()) askLimits(); // before, the robot may not have told them
       set("link", message.link);
       break;
     case "home": takeHome(message); break;
@@ -115,10 +116,14 @@ function take(message) {
       set("hasHistory", message.history);
       set("hasCamera", message.camera);
       set("hasMaps", message.maps);
-      ask("limits").then((limits) => { if (limits) set("limits", limits); });
       break;
     case "refused": refuse(message.reason); break;
   }
+}
+
+async function askLimits() {
+  const limits = await ask("limits");
+  if (limits) set("limits", limits);
 }
 
 /** Numbers of the server mean something within one connection only: the page counts what it is told itself. */

@@ -145,6 +145,8 @@ def test_what_wants_a_map_is_refused_with_the_reason(client: BumpingClient) -> N
     for ask in asked:
         with pytest.raises(RequestRefusedError, match="lidar"):
             ask()
-    assert client.limits().modes == ("whole",)
+    limits = client.limits()
+    assert (limits.modes, limits.most_zones) == (("whole",), 0)
+    assert (limits.explores, limits.drives) == (False, True)
     assert client.home().rooms == ()
     assert "wheels" in client.robot().doubt

@@ -73,6 +73,7 @@ function grasp([px, py], { mayCarry, carried }) {
     set("carried", [x, y]);
     return (toX, toY) => set("carried", [toX, toY]);
   }
+  if (get("limits")?.most_zones === 0) return "pan";
   pressed = setTimeout(() => {
     set("drawing", { kind: "any", from: [x, y], to: [x, y] });
     drag = "draft";

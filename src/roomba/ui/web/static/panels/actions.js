@@ -123,7 +123,7 @@ export function numbers(most) { return Array.from({ length: most }, (_, index) =
 function show() {
   const state = get("state"), chosen = get("chosen"), phase = state?.vacuum.phase ?? "";
   const stands = STANDS.includes(phase), isHeld = Boolean(state?.held), home = get("home");
-  const isHeard = isConnected(), hasNoMap = Boolean(home) && !home.furniture.length && !home.rooms.length;
+  const isHeard = isConnected(), hasNoMap = Boolean(get("limits")?.explores && home) && !home.furniture.length && !home.rooms.length;
   const isFull = phase === "bin full" || FULL.includes(state?.vacuum.hindrance);
   put($("clean"), adds() ? "Add what is chosen" : chosen.length ? `Clean ${chosen.length} room${chosen.length > 1 ? "s" : ""}` : "Clean all");
   put($("pause"), isPaused() ? "Go on" : "Pause");

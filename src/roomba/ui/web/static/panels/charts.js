@@ -5,9 +5,10 @@ import { get, on } from "../store.js";
 import { duration } from "../words.js";
 
 const KEPT = 600, STEP = 1; // s of the robot's clock that are shown, and between two points
+const NO_BATTERY = "Battery: not known";
 const WINDOW = 20; // s over which the rate of dirt is the mean
 
-let points = []; // [time, battery in %, g in its bin (null: not known), g that were picked up so far, speed]
+let points = []; // [time, battery in % (null: not known), g in its bin (null: not known), g that were picked up so far, speed]
 
 /** Follow the robot, whether the charts are seen or not. */
 export function begin() {
@@ -23,10 +24,12 @@ function follow() {
   const before = points.at(-1);
   if (before && state.time - before.time < STEP) return;
   const taken = before ? before.taken + more(before.dirt, state.dirt) : 0;
-  points.push({ time: state.time, battery: 100 * (state.vacuum.battery ?? 0), dirt: state.dirt, taken, speed: state.speed });
+  points.push({ time: state.time, battery: percent(state.vacuum.battery), dirt: state.dirt, taken, speed: state.speed });
   while (points[0].time < state.time - KEPT) points.shift();
   show();
 }
+
+function percent(share) { return share === null ? null : 100 * share; }
 
 function more(before, now) { return before === null || now === null ? 0 : Math.max(0, now - before); }
 
@@ -37,7 +40,9 @@ function show() {
   const dirt = now.dirt === null ? "Dirt: not known" : `Dirt ${rates.at(-1)[1].toFixed(2)} g/min`;
   if (isUnderMap) line($("rate-line"), $("rate-title"), rates, dirt);
   if (!$("charts").open) return;
-  chartOf("battery", points.map(({ time, battery }) => [time, battery]), `Battery ${now.battery.toFixed(0)} %`, 100);
+  const batteries = points.filter(({ battery }) => battery !== null).map(({ time, battery }) => [time, battery]);
+  if (batteries.length) chartOf("battery", batteries, now.battery === null ? NO_BATTERY : `Battery ${now.battery.toFixed(0)} %`, 100);
+  else { put($("chart-battery-title"), NO_BATTERY); $("chart-battery").replaceChildren(); }
   chartOf("rate", rates, dirt);
   chartOf("speed", points.map(({ time, speed }) => [time, speed]), `Speed ${now.speed.toFixed(2)} m/s`);
 }

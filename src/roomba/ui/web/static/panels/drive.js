@@ -1,4 +1,5 @@
 /** Driving by hand: a stream of twists while a button or key is held, and none when the page is hidden. */
+import { $, put } from "../dom.js";
 import { drive } from "../link.js";
 import { get, on } from "../store.js";
 
@@ -19,11 +20,18 @@ export function begin() {
   document.addEventListener("visibilitychange", () => { if (document.hidden) releaseAll(); });
   addEventListener("blur", releaseAll);
   addEventListener("pagehide", releaseAll);
+  on("limits", showWhatItCan);
   on("link", () => { if (get("link") !== "live") releaseAll(); }); // that it is let go could be missed
 }
 
 /** Whether the arrows drive now. */
-export function isOpen() { return document.querySelector("details.drive").open; }
+export function isOpen() { return document.querySelector("details.drive").open && !$("drive-pad").hidden; }
+
+function showWhatItCan() {
+  const drives = get("limits")?.drives !== false;
+  for (const id of ["drive-pad", "drive-hint"]) $(id).hidden = !drives;
+  put(document.querySelector("details.drive summary"), drives ? "Drive by hand" : "Find it");
+}
 
 /** Hold a direction, by what holds it: ahead and aside are -1, 0 or 1. */
 export function hold(by, ahead, aside) {

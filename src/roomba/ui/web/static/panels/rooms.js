@@ -61,6 +61,7 @@ export function undo() { return wish("rooms/undo"); }
 
 function show() {
   const rooms = get("home")?.rooms ?? [], chosen = get("chosen");
+  $("rooms-hint").parentElement.hidden = !rooms.length && get("limits")?.explores === false; // it will never find any
   $("rooms-hint").textContent = !get("home") ? "" : rooms.length
     ? "Tap them, here or on the map, in the order in which they shall be cleaned."
     : "There are no rooms yet: the robot finds them when its map is whole.";

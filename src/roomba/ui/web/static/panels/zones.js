@@ -31,6 +31,7 @@ export function begin() {
   on("home", () => { if (settles && !isSending) settle(); });
   on("home zone", showZones);
   on("drawing", showDrawing);
+  on("limits", () => { for (const part of document.querySelectorAll("[data-part=zones], [data-tab=zones]")) part.hidden = get("limits")?.most_zones === 0; });
   for (const name of ["drawing", "zone"]) on(name, () => (get(name) ? opened(name, () => set(name, null)) : closed(name)));
 }
 
