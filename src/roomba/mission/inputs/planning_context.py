@@ -258,11 +258,16 @@ class PlanningContext:
         only the floor that the robot saw from its station.
         """
         floor = self.floor.coverable((self.staging.x, self.staging.y))
-        if here is None or self.is_growing:
+        if here is None or self.is_growing or self._is_at_station(here):
             return floor
         if self.frame.contains(here.x, here.y) and floor[self.frame.cell_of(here.x, here.y)]:
             return floor
         return floor | self.floor.coverable((here.x, here.y))
+
+    def _is_at_station(self, here: Pose) -> bool:
+        """Whether a pose is no farther from the station than where the robot begins to dock."""
+        reach = self.station.distance_to(self.staging.x, self.staging.y)
+        return here.distance_to(self.station.x, self.station.y) <= reach
 
     def in_room(self, name: str) -> Mask:
         """Return a room's cells over ``frame``; raises RoomsError for a name that is none."""
