@@ -26,8 +26,8 @@ FLOOD = 200
 """Messages of one topic, sent as fast as one can steer."""
 FORGED = 80
 """Commands of a program that wants to drive a robot that is held."""
-OF_OTHER_BODIES = {"std_msgs/UInt16"}
-"""Kinds that nodes hear of a body that does not tell all in one message."""
+OF_OTHER_BODIES = {"roomba_robot/LineTrouble", "std_msgs/UInt16"}
+"""Kinds that nodes hear of a robot on a line, or of a body that tells in several messages."""
 
 Counts = dict[tuple[str, str], int]
 """How many messages were refused by node and topic, both without slashes before them."""
