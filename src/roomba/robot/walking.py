@@ -60,7 +60,7 @@ class Walking:
         senses: Senses,
     ) -> Walk:
         """Return a walk to a point of a map, m, and begin none; raises NoPathError."""
-        return Walk(self.planner(occupancy), self._robot, obstacles, goal, senses)
+        return Walk(self.planner(occupancy), self._robot.walk, obstacles, goal, senses)
 
     def end(self) -> None:
         """End the walk under way, if there is one."""

@@ -80,7 +80,7 @@ class PlanService:
             raise RoombaError("the robot does not know its map yet; wait for it")
         with self.lock:
             self._obstacles.begin_errand()
-            return Walk(self._planner, self._config, self._obstacles, goal, senses)
+            return Walk(self._planner, self._config.walk, self._obstacles, goal, senses)
 
     def require_allowed(self, x: float, y: float) -> None:
         """Raise RoombaError for a place, m, to which the limits do not let the robot go."""

@@ -6,11 +6,11 @@ from roomba.clock import RobotTime
 from roomba.configuration.loops import WalkConfig
 from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.driving.drives import Drives
+from roomba.mission.driving.search_patience import SearchPatience
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.phases.energy import EnergyLedger
 from roomba.mission.phases.machine import MissionState
 from roomba.mission.phases.step import Failure
-from roomba.perception.localization.estimate import Knowledge
 from roomba.vocabulary import Phase
 
 
@@ -24,7 +24,7 @@ class Monitor:
         self._config, self._drives, self._ledger = config, drives, ledger
         self.was_docked = senses.battery.is_docked
         self._astray: RobotTime | None = None
-        self._begins_lost = senses.knowledge is Knowledge.LOST
+        self._patience = SearchPatience(config, senses.knowledge)
         self._hanging: RobotTime | None = None
         self._known_at = (senses.pose.x, senses.pose.y)
 
@@ -45,7 +45,7 @@ class Monitor:
         """Return what ends a drive; ``last_place``, m, is where it was a tick before."""
         if not state.drives:
             self._astray = self._hanging = None
-            self._begins_lost = senses.knowledge is Knowledge.LOST
+            self._patience.begin(senses.knowledge)
             return None
         if self._hangs_for_long(senses) or senses.lifted:
             reason = "a wheel hangs in the air: set it down and resume"
@@ -67,9 +67,8 @@ class Monitor:
         return self._hanging.elapsed > self._config.hanging_wheel
 
     def _lost(self, senses: Senses, last_place: tuple[float, float]) -> Failure | None:
-        is_lost = senses.knowledge is Knowledge.LOST
-        self._begins_lost = self._begins_lost and is_lost
         if senses.knowledge.is_usable:
+            self._patience.begin(senses.knowledge)
             if self.is_astray:
                 self._found_again(senses)
             return None
@@ -77,9 +76,7 @@ class Monitor:
             self._astray = RobotTime(senses.now)
             self._known_at = last_place
         self._astray.tick(senses.now)
-        # One that stood lost looks around first: the search begins anew with that.
-        wait = self._config.search_wait if self._begins_lost else self._config.astray_timeout
-        if (is_lost and not self._begins_lost) or self._astray.elapsed > wait:
+        if self._patience.is_over(senses.knowledge, self._astray.elapsed):
             reason = f"the robot does not know where it is: {senses.trouble}"
             return Failure(CleanOutcome.LOST, reason)
         return None

@@ -14,9 +14,10 @@ from enum import Enum
 import numpy as np
 
 from roomba.clock import LONGEST_TICK, ClockJumps
-from roomba.configuration.robot import RobotConfig
+from roomba.configuration.loops import WalkConfig
 from roomba.geometry import Point
 from roomba.mission.driving.obstacles import Obstacles
+from roomba.mission.driving.search_patience import SearchPatience
 from roomba.mission.driving.way_ahead import LEAVING, WayAhead
 from roomba.mission.inputs.senses import Senses
 from roomba.mission.walking.path_follower import PathFollower
@@ -58,20 +59,20 @@ class Walk:
     def __init__(
         self,
         planner: PathPlanner,
-        robot: RobotConfig,
+        config: WalkConfig,
         obstacles: Obstacles,
         goal: Point,
         senses: Senses,
     ) -> None:
         """Plan the way; raises NoPathError when there is none, ValueError for a goal not finite."""
         self.goal = goal
-        self._planner, self._config, self._obstacles = planner, robot.walk, obstacles
+        self._planner, self._config, self._obstacles = planner, config, obstacles
         self._started = senses.now
         self._jumps = ClockJumps(last=senses.now, longest=LONGEST_TICK)
         self._replans = self._ways_around = 0
         self._was_touching = any(senses.touches)
         self._went_astray, self._astray_since = False, senses.now
-        self._begins_lost = senses.knowledge is Knowledge.LOST
+        self._patience = SearchPatience(config, senses.knowledge)
         self._known_at = (senses.pose.x, senses.pose.y)
         self._begin(self._plan_to_look(senses), senses)
 
@@ -120,13 +121,8 @@ class Walk:
         if not self._went_astray:
             self._went_astray, self._astray_since = True, senses.now
         self._progressed = senses.now
-        is_lost = senses.knowledge is Knowledge.LOST
-        self._begins_lost = self._begins_lost and is_lost
-        # One that stood lost looks around first: the search begins anew with that.
-        wait = self._config.search_wait if self._begins_lost else self._config.astray_timeout
-        is_over = senses.now - self._astray_since > wait
-        fails = (is_lost and not self._begins_lost) or is_over
-        state = WalkState.FAILED if fails else WalkState.ASTRAY
+        is_over = self._patience.is_over(senses.knowledge, senses.now - self._astray_since)
+        state = WalkState.FAILED if is_over else WalkState.ASTRAY
         reason = f"the robot does not know where it is: {senses.trouble}"
         return self._stay(state, senses, max_speed, reason)
 

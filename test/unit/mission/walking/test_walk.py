@@ -142,7 +142,7 @@ def stuck_walk() -> tuple[Walk, Senses]:
     senses = Senses(100.0, Pose(1.0, 1.0, 0.0))
     things = ThingLayer(SurfaceField.of(home.map))
     obstacles = Obstacles(things, CONFIG.walk, CONFIG.body, MissionConfig().driving)
-    return Walk(planner, CONFIG, obstacles, (4.0, 3.0), senses), senses
+    return Walk(planner, CONFIG.walk, obstacles, (4.0, 3.0), senses), senses
 
 
 def test_where_it_stands_it_has_arrived_though_no_way_leads_there() -> None:
@@ -154,10 +154,10 @@ def test_where_it_stands_it_has_arrived_though_no_way_leads_there() -> None:
     goal = (beside.pose.x + 0.01, beside.pose.y)
     with pytest.raises(NoPathError):
         planner.plan((0.5, 1.0), goal)
-    walk = Walk(planner, CONFIG, obstacles, goal, beside)
+    walk = Walk(planner, CONFIG.walk, obstacles, goal, beside)
     assert walk.tick(beside, 0.5).state is WalkState.ARRIVED
     with pytest.raises(NoPathError):
-        Walk(planner, CONFIG, obstacles, (goal[0] + 0.1, goal[1]), beside)
+        Walk(planner, CONFIG.walk, obstacles, (goal[0] + 0.1, goal[1]), beside)
 
 
 def test_a_robot_that_does_not_move_gives_up_with_the_reason() -> None:
@@ -245,7 +245,7 @@ def test_a_walk_waits_for_its_place_to_be_found_but_not_for_ever() -> None:
     robot = furnished()
     at = Pose(0.5, 0.5, 0.0)
     senses = Senses(0.0, at)
-    walk = Walk(planner_of(robot), CONFIG, robot.mission.obstacles, (4.5, 3.5), senses)
+    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (4.5, 3.5), senses)
     astray = replace(senses, knowledge=Knowledge.SEARCHING, trouble="it was carried")
     steps = [walk.tick(replace(astray, now=0.05 * tick), 0.5) for tick in range(1, 1400)]
     assert steps[0].state is WalkState.ASTRAY
@@ -257,7 +257,7 @@ def test_a_walk_waits_for_its_place_to_be_found_but_not_for_ever() -> None:
 def test_a_walk_goes_on_from_where_the_robot_was_found() -> None:
     robot = furnished()
     senses = Senses(0.0, Pose(0.5, 0.5))
-    walk = Walk(planner_of(robot), CONFIG, robot.mission.obstacles, (4.5, 3.5), senses)
+    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (4.5, 3.5), senses)
     walk.tick(replace(senses, now=0.05, knowledge=Knowledge.SEARCHING), 0.5)
     found = replace(senses, now=0.1, pose=Pose(4.5, 0.5, 0.0))
     assert walk.tick(found, 0.5).state is WalkState.WALKING
@@ -267,14 +267,14 @@ def test_a_walk_goes_on_from_where_the_robot_was_found() -> None:
 def test_a_robot_that_knows_its_place_but_roughly_walks_slowly() -> None:
     robot = furnished()
     senses = Senses(0.0, Pose(0.5, 0.5), knowledge=Knowledge.ROUGH)
-    walk = Walk(planner_of(robot), CONFIG, robot.mission.obstacles, (0.5, 3.5), senses)
+    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (0.5, 3.5), senses)
     assert walk.tick(replace(senses, now=0.05), 0.5).cruise_speed <= CONFIG.walk.careful_speed
 
 
 def test_a_lost_robot_gives_its_walk_up() -> None:
     robot = furnished()
     senses = Senses(0.0, Pose(0.5, 0.5))
-    walk = Walk(planner_of(robot), CONFIG, robot.mission.obstacles, (0.5, 3.5), senses)
+    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (0.5, 3.5), senses)
     lost = replace(senses, now=0.05, knowledge=Knowledge.LOST, trouble="several places fit")
     step = walk.tick(lost, 0.5)
     assert step.state is WalkState.FAILED
@@ -284,13 +284,13 @@ def test_a_lost_robot_gives_its_walk_up() -> None:
 def test_a_walk_that_begins_lost_looks_around_first() -> None:
     robot = furnished()
     lost = Senses(0.0, Pose(0.5, 0.5), knowledge=Knowledge.LOST, trouble="several places fit")
-    walk = Walk(planner_of(robot), CONFIG, robot.mission.obstacles, (0.5, 3.5), lost)
+    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (0.5, 3.5), lost)
     assert walk.tick(replace(lost, now=0.05), 0.5).state is WalkState.ASTRAY
     searched = replace(lost, now=1.0, knowledge=Knowledge.SEARCHING)
     assert walk.tick(searched, 0.5).state is WalkState.ASTRAY
     assert walk.tick(replace(lost, now=1.05), 0.5).state is WalkState.FAILED
     # Where no search begins it says so soon.
-    walk = Walk(planner_of(robot), CONFIG, robot.mission.obstacles, (0.5, 3.5), lost)
+    walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (0.5, 3.5), lost)
     late = replace(lost, now=CONFIG.walk.search_wait + 0.1)
     assert walk.tick(replace(lost, now=0.05), 0.5).state is WalkState.ASTRAY
     assert walk.tick(replace(late, now=1.0), 0.5).state is WalkState.ASTRAY

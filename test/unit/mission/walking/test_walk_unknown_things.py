@@ -120,7 +120,7 @@ def test_a_robot_that_was_carried_forgets_what_stood_around_it() -> None:
     known = Senses(100.0, Pose(3.5, 3.5))
     walk = Walk(
         robot.brain.walking.planner(robot.mission.context.occupancy),
-        CONFIG,
+        CONFIG.walk,
         robot.mission.obstacles,
         (0.5, 0.5),
         known,

@@ -94,7 +94,7 @@ function endDraft(isDone, drawn) {
   else set("drawing", drawing.kind === "any" || !isDone ? null : { kind: drawing.kind, room: drawing.room });
 }
 
-/** A zone was dragged: its last place counts, whatever the robot told meanwhile. */
+/** Ask for the place to which the user dragged a zone; a place that the robot reported during the drag does not count. */
 function dragged(isDone, at, zoneMoved) {
   if (!isDone) { letGo(); return; }
   drag(...toFloor(...at));
