@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime as dt
 import math
 import sqlite3
 import time
@@ -14,8 +13,6 @@ from typing import Any, Final
 from roomba.history.run import RunFigures
 
 _SUMMED: Final = ("covered", "duration", "dirt", "distance", "energy")
-_THURSDAY: Final = "date(began, 'unixepoch', 'localtime', '-3 days', 'weekday 4')"
-"""Of the week of a run, by local time: the day that says to which year a week belongs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +32,7 @@ def totals_by_week(runs: Iterable[RunFigures]) -> list[WeekTotals]:
     """Return the weeks in which there were runs, by local time, the newest first."""
     weeks: dict[str, list[RunFigures]] = defaultdict(list)
     for run in runs:
-        weeks[time.strftime("%G-W%V", time.localtime(run.began))].append(run)
+        weeks[_week_of(run.began)].append(run)
     return [
         WeekTotals(
             week,
@@ -51,13 +48,16 @@ def totals_by_week(runs: Iterable[RunFigures]) -> list[WeekTotals]:
 
 def weeks_of(database: sqlite3.Connection, which: str, values: tuple[Any, ...]) -> list[WeekTotals]:
     """Return the same of those runs in a database of which a condition of SQL is true."""
+    database.create_function("week_of", 1, _week_of, deterministic=True)
     sums = ", ".join(f"TOTAL({name})" for name in _SUMMED)
     rows = database.execute(
-        f"SELECT {_THURSDAY} AS thursday, COUNT(*), {sums} FROM runs WHERE {which} "
-        "GROUP BY thursday ORDER BY thursday DESC",
+        f"SELECT week_of(began) AS week, COUNT(*), {sums} FROM runs WHERE {which} "
+        "GROUP BY week ORDER BY week DESC",
         values,
     )
-    return [
-        WeekTotals(dt.date.fromisoformat(thursday).strftime("%G-W%V"), *rest)
-        for thursday, *rest in rows
-    ]
+    return [WeekTotals(*row) for row in rows]
+
+
+def _week_of(began: float) -> str:
+    """Return the week of a time, s since 1970, by local time."""
+    return time.strftime("%G-W%V", time.localtime(began))
