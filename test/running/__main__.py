@@ -20,7 +20,7 @@ from roomba.commands.process_end import quiet_end
 
 CHECKS = (sys.executable, "-m", "running.checks")
 SAFETY = (sys.executable, "-m", "safety")
-COMPUTING_AT_ONCE = 3
+COMPUTING_AT_ONCE = 4
 """Some of what computes waits for programs that it starts: two would leave a third of the cores."""
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -45,21 +46,29 @@ while True:
 """
 
 
-@pytest.fixture
-def killed_at(tmp_path: Path) -> float:
-    """Kill a program in the middle of a run; the time by the robot's clock of its last look, s."""
+@pytest.fixture(scope="module")
+def killed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Kill a program in the middle of a run, and return its folder."""
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
-    told = tmp_path / "told"
+    folder = tmp_path_factory.mktemp("killed")
+    told = folder / "told"
     with told.open("w") as output:
         program = subprocess.Popen(
-            [sys.executable, "-c", WRITER, str(tmp_path)], stdout=output, env=environment, cwd=ROOT
+            [sys.executable, "-c", WRITER, str(folder)], stdout=output, env=environment, cwd=ROOT
         )
     try:
         wait_until(lambda: looks(told)[-1:] > [101.5], 30.0, "a run of 1.5 s")
     finally:
         program.send_signal(signal.SIGKILL)
         program.wait(10.0)
-    return looks(told)[-1]
+    return folder
+
+
+@pytest.fixture
+def killed_at(tmp_path: Path, killed: Path) -> float:
+    """Put the killed program's folder here; the time by its robot's clock of its last look, s."""
+    shutil.copytree(killed, tmp_path, dirs_exist_ok=True)
+    return looks(tmp_path / "told")[-1]
 
 
 @pytest.fixture
