@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from roomba.commands.trials.trial import RANDOM, Trial
-from roomba.files.home_layer import MAP_NAME
+from roomba.files.home_layer import MAP_NAME, files_of_home
 from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import HOMES
 from roomba.geometry import Pose
@@ -23,7 +22,7 @@ ZONES_NAME: Final = "zones.yaml"
 
 
 def zones_of(trial: Trial) -> Zones:
-    """Return the zones of a trial in its home; raises ZonesError."""
+    """Return the zones of a trial in its home; raises HomeError and ZonesError."""
     of_home = Zones() if trial.home == RANDOM else zones_of_home(trial.home)
     asked = (
         Zone(
@@ -45,8 +44,12 @@ def _turned(zone: Zone, degrees: float) -> Zone:
 
 
 def zones_of_home(name_or_path: str) -> Zones:
-    """Return the zones beside a home's map, none without such a file; raises ZonesError."""
-    path = Path(name_or_path).expanduser()
-    folder = path if path.is_dir() else HOMES / name_or_path
-    file = folder / ZONES_NAME
-    return load_zones(file, map_digest(load_map(folder / MAP_NAME))) if file.is_file() else Zones()
+    """Return the zones beside a home's map, none without such a file.
+
+    Beside a map of another name they are of the folder's home. Raises HomeError and ZonesError.
+    """
+    map_path, _ = files_of_home(name_or_path, HOMES)
+    file = map_path.with_name(ZONES_NAME)
+    if map_path.name != MAP_NAME or not file.is_file():
+        return Zones()
+    return load_zones(file, map_digest(load_map(map_path)))

@@ -169,17 +169,25 @@ def test_a_turned_room_is_cleaned_in_the_turned_frame(room: Path) -> None:
         assert run.home.map.values[run.home.frame.cell_of(x, y)] == FREE
 
 
-def test_zones_of_a_folder_turn_with_the_home(tmp_path: Path) -> None:
-    save_room(tmp_path / "map.yaml")
+def test_zones_of_a_folder_are_of_its_home_however_that_is_named_and_turn_with_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "flat"
+    folder.mkdir()
+    save_room(folder / "map.yaml")
     bowl = Zone("bowl", ZoneKind.WALL, ((1.0, 0.2), (1.0, 0.9)))
-    save_zones(Zones((bowl,)), map_digest(load_map(tmp_path / "map.yaml")), tmp_path / "zones.yaml")
+    save_zones(Zones((bowl,)), map_digest(load_map(folder / "map.yaml")), folder / "zones.yaml")
     asked = ((0.0, 0.0, 0.5, 0.5),)
     plain, turned = (
-        zones_of(Trial(home=str(tmp_path), turned=angle, no_go=asked)).all for angle in (0.0, 90.0)
+        zones_of(Trial(home=str(folder), turned=angle, no_go=asked)).all for angle in (0.0, 90.0)
     )
     assert plain[0] == bowl
     assert np.array(turned[0].points) == pytest.approx(np.array([[-0.2, 1.0], [-0.9, 1.0]]))
     assert turned[1] == plain[1]
+    assert zones_of(Trial(home=str(folder / "map.yaml"))).all == (bowl,)
+    # By its name the shipped home is meant, as by what loads it.
+    monkeypatch.chdir(tmp_path)
+    assert zones_of(Trial(home="flat")).all == ()
 
 
 def test_the_battery_begins_as_asked_for(room: Path) -> None:
