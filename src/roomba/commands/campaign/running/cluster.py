@@ -167,7 +167,7 @@ class _Round:
 
 def _end_of(future: Any) -> RunEnd | str:
     try:
-        end: RunEnd = future.result()
+        end: RunEnd | str = future.result()
         return end
     except KilledWorker as error:
         return f"the workers that began it ended: {' '.join(str(error).split())}"

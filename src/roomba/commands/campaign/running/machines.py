@@ -12,7 +12,7 @@ from roomba.commands.campaign.running.work import RunEnd, Work, carried_out
 from roomba.commands.trials.many import run_many
 
 ATTEMPTS: Final = 3
-"""How often a run is begun whose process ends before it has a result."""
+"""How often a run is begun that comes to no end: its process dies, or the machine fails it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,8 @@ def run_on(
     """Yield each run with what came of it, in the order in which they end.
 
     In place of an end is the reason, a text, of a run that has none after ATTEMPTS: it took its
-    process with it. Raises OtherMachineError, and ClusterError without a scheduler or workers.
+    process with it, or may have failed for the machine's sake. Raises OtherMachineError, and
+    ClusterError without a scheduler or workers.
     """
     if machines.cluster is not None:
         # Here: dask is an extra.

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from roomba.commands.campaign.running.runs import CampaignRun, OtherMachineError, require_same
+from roomba.commands.campaign.running.runs import CampaignRun, require_same
 from roomba.commands.trials.figures import Figures
 from roomba.errors import RoombaError
 
@@ -31,30 +31,34 @@ class RunEnd:
     began: float
 
 
-Work = Callable[[CampaignRun], RunEnd]
-"""Makes a run: what a worker does with each."""
+Work = Callable[[CampaignRun], RunEnd | str]
+"""Makes a run, or returns why it has no end here: what a worker does with each."""
 
 
-def carried_out(run: CampaignRun) -> RunEnd:
-    """Make a run; a failure that it would have anywhere becomes its text.
+def carried_out(run: CampaignRun) -> RunEnd | str:
+    """Make a run; a failure that it would have anywhere, which is an error of ours, is its end.
 
-    Raises OtherMachineError where this machine would not do the same run.
+    Any other one, as without memory, may be this machine's: that run has no end, and may be made
+    again. Raises OtherMachineError where this machine would not do the same run.
     """
+    with _ONE_AT_A_TIME:
+        require_same(run)
+        try:
+            return _end_of(run)
+        except (Exception, SystemExit) as error:  # the other runs go on
+            return f"a fault of the program, or of its machine: {error!r}"
+
+
+def _end_of(run: CampaignRun) -> RunEnd:
     # Here, so that the machine that only waits does not load it all.
     from roomba.commands.trials.runs import run_trial
     from roomba.commands.trials.warm import warm_up
 
-    with _ONE_AT_A_TIME:
-        require_same(run)
-        warm_up()
-        began = time.time()
-        figures, failure = None, ""
-        try:
-            figures = run_trial(run.trial).figures
-        except OtherMachineError:
-            raise
-        except RoombaError as error:
-            failure = str(error)
-        except (Exception, SystemExit) as error:  # the other runs go on
-            failure = f"a fault of the program: {error!r}"
-        return RunEnd(figures, failure, f"{socket.gethostname()}:{os.getpid()}", began)
+    warm_up()
+    began = time.time()
+    figures, failure = None, ""
+    try:
+        figures = run_trial(run.trial).figures
+    except RoombaError as error:
+        failure = str(error)
+    return RunEnd(figures, failure, f"{socket.gethostname()}:{os.getpid()}", began)

@@ -5,9 +5,12 @@ from __future__ import annotations
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
+from fixtures.campaigns.campaign_work import made_run
 
+from roomba.commands.campaign.running import work
 from roomba.commands.campaign.running.runs import (
     CampaignRun,
     OtherMachineError,
@@ -15,7 +18,10 @@ from roomba.commands.campaign.running.runs import (
     runs_of,
 )
 from roomba.commands.campaign.running.specification import read_campaign
-from roomba.commands.campaign.running.work import carried_out
+from roomba.commands.campaign.running.work import RunEnd, carried_out
+from roomba.commands.trials import runs as trials
+from roomba.commands.trials import warm
+from roomba.errors import HomeError
 from roomba.files.shipped import HOMES
 
 STAGE = "def swaths(left, middles, radius, config): return []\n"
@@ -95,3 +101,20 @@ def test_a_machine_without_the_home_refuses(folder: Path) -> None:
     gone = replace(run, trial=replace(run.trial, home=str(folder / "gone")))
     with pytest.raises(OtherMachineError, match="gone"):
         require_same(gone)
+
+
+@pytest.mark.parametrize(
+    ("error", "is_an_end"), [(HomeError("no floor"), True), (MemoryError("no 37 MiB"), False)]
+)
+def test_only_an_error_of_ours_is_the_end_of_a_run(
+    monkeypatch: pytest.MonkeyPatch, error: Exception, *, is_an_end: bool
+) -> None:
+    def failing(*_: Any) -> None:
+        raise error
+
+    monkeypatch.setattr(work, "require_same", lambda _: None)
+    monkeypatch.setattr(warm, "warm_up", lambda: None)
+    monkeypatch.setattr(trials, "run_trial", failing)
+    end = carried_out(made_run(0))
+    assert isinstance(end, RunEnd) is is_an_end
+    assert str(error) in (end.failure if isinstance(end, RunEnd) else end)
