@@ -19,8 +19,11 @@ from roomba.commands.trials.trial import RANDOM, Trial
 from roomba.compiled_sources import PACKAGE, Sources
 from roomba.errors import RoombaError
 from roomba.files.bounded import read_bytes
+from roomba.files.home_layer import files_of_home
+from roomba.files.occupancy_map import load_map
 from roomba.files.shipped import CONFIGURATION, HOMES
 from roomba.mission.cleaning.checkpoint import request_values
+from roomba.storage.map_bound import map_digest
 
 _ENTRY: Final = PACKAGE / "commands" / "trials" / "runs.py"
 """What a run is made of is this file and all that it imports."""
@@ -56,7 +59,7 @@ class CampaignRun:
 def runs_of(campaign: Campaign) -> list[CampaignRun]:
     """Return the runs; those of one home and seed one after the other, to be compared.
 
-    Raises UsageError for homes and stages that cannot be read.
+    Raises HomeError and UsageError for homes and stages that cannot be read.
     """
     file = campaign.file
     contents: dict[tuple[str, tuple[tuple[str, str], ...]], str] = {}
@@ -96,17 +99,23 @@ def require_same(run: CampaignRun) -> None:
 
 
 def content_of(trial: Trial) -> str:
-    """Return a hash of the files of a trial: its home's, and those with its stages."""
+    """Return a hash of the files of a trial: its home's, and those with its stages.
+
+    The home's map is hashed as it is read: its picture may lie in another folder. Raises HomeError
+    and UsageError.
+    """
     files: list[tuple[str, Path]] = []
+    occupancy = ""
     if trial.home != RANDOM:
-        folder = Path(trial.home) if Path(trial.home).is_absolute() else HOMES / trial.home
-        files += [(path.name, path) for path in sorted(folder.iterdir()) if path.is_file()]
+        map_path, _ = files_of_home(trial.home, HOMES)
+        occupancy = map_digest(load_map(map_path))
+        files += [(path.name, path) for path in sorted(map_path.parent.iterdir()) if path.is_file()]
     for name, stage in trial.stages:
         found = files_of_stage(name, stage, trial.code)
         if not found:
             raise UsageError(f"stages: {name}: expected a module with a file, got {stage!r}")
         files += [(f"{stage} {file}", path) for file, path in sorted(found.items())]
-    return _hash_of_files(files)
+    return _hash_of(f"{occupancy}\n{_hash_of_files(files)}")
 
 
 @functools.cache

@@ -79,6 +79,18 @@ def test_another_home_or_stage_is_another_run(folder: Path, name: str) -> None:
     assert changed == ({"own"} if name.endswith(".py") else {"usual", "same", "worn", "own"})
 
 
+def test_a_map_with_another_picture_is_another_run_also_where_that_lies_elsewhere(
+    tmp_path: Path,
+) -> None:
+    made(tmp_path)
+    picture, map_file = tmp_path / "mine" / "map.pgm", tmp_path / "mine" / "map.yaml"
+    outside = picture.rename(tmp_path / "map.pgm")
+    map_file.write_text("image: ../map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n", "utf-8")
+    before = {run.key for run in made(tmp_path)}
+    outside.write_bytes((HOMES / "flat" / "map.pgm").read_bytes())
+    assert not before & {run.key for run in made(tmp_path)}
+
+
 def test_a_machine_with_the_same_program_and_files_takes_it(folder: Path) -> None:
     for run in made(folder):
         require_same(run)
