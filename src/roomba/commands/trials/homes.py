@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import shapely
@@ -55,12 +56,26 @@ def with_doors_shut(home: Home) -> Home:
 
 
 def rooms_of(home: Home) -> Rooms:
-    """Return the rooms as the home's layer names them, else as its map shows them."""
-    outlines = [(room.name, shapely.Polygon(room.outline)) for room in home.rooms]
-    if outlines:
+    """Return the rooms as the home's layer names them, else as its map shows them.
+
+    A room within another one is no part of that.
+    """
+    names = [room.name for room in home.rooms]
+    outlines = _apart([shapely.Polygon(room.outline) for room in home.rooms])
+    if names:
         try:
-            return Rooms.from_outlines(home.frame, home.map.values == FREE, outlines)
+            named = list(zip(names, outlines, strict=True))
+            return Rooms.from_outlines(home.frame, home.map.values == FREE, named)
         except RoomsError:
             # Outlines of a layer are for people and may overlap: the robot's own rooms do not.
             pass
     return segment(home.map)
+
+
+def _apart(outlines: Sequence[shapely.Polygon]) -> list[shapely.Geometry]:
+    """Return outlines, each without those that lie within it."""
+    apart = []
+    for room in outlines:
+        within = [each for each in outlines if each is not room and room.contains(each)]
+        apart.append(room - shapely.union_all(within) if within else room)
+    return apart

@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from roomba.commands.trials.homes import rooms_of
 from roomba.commands.trials.runs import TrialSetup
 from roomba.commands.trials.trial import Trial
 from roomba.commands.valetudo.export_command import main as export
@@ -151,6 +153,18 @@ def test_a_home_with_zones_comes_back_with_them(tmp_path: Path) -> None:
     assert again.station.distance_to(home.station.x, home.station.y) < 0.01
     write_home(again, taken_zones(again).zones, tmp_path / "two")
     assert_same(read_home(str(tmp_path / "one")), read_home(str(tmp_path / "two")))
+
+
+def test_a_room_within_another_one_is_a_room_of_its_own(tmp_path: Path) -> None:
+    found = parse(foreign(tmp_path / "map.json").read_text(encoding="utf-8"))
+    (name, around), other = found.rooms
+    closet = np.zeros_like(around)
+    closet[40:60, 30:50] = True
+    rooms = (name, around & ~closet), ("Kammer", closet), other
+    home = write_home(replace(found, rooms=rooms), taken_zones(found).zones, tmp_path / "home")
+    made = rooms_of(home)
+    assert made.names == ("Büro", "Kammer", "Bad")
+    assert np.count_nonzero(made.labels == 2) == np.count_nonzero(closet)
 
 
 def assert_same(before: ValetudoHome, after: ValetudoHome) -> None:
