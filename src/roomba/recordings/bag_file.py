@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bisect
 import heapq
+import itertools
 import operator
 import shlex
 import struct
@@ -89,6 +90,7 @@ class BagFile:
             self.close()
             raise LogError(f"{path}: the bag is empty: it has no messages")
         self._runs = self._found_runs()
+        self._lengths: dict[str, int] = {}
 
     def messages(self, topic: str) -> Iterator[bytes]:
         """Yield the messages of a topic."""
@@ -98,11 +100,12 @@ class BagFile:
         """Yield the messages of topics, numbered as these are, in the order of their recording.
 
         Each topic has a reader of its own, for a reader keeps one chunk of a bag at a time, and
-        some programs write bags topic by topic.
+        some programs write bags topic by topic. What is recorded meanwhile is left out: a topic
+        that was read to its end has so many messages the next time, too.
         """
         readers = [self._opened() for _ in topics]
         streams = [
-            self._of_topic(reader, topic, number)
+            self._counted(topic, self._of_topic(reader, topic, number))
             for number, (reader, topic) in enumerate(zip(readers, topics, strict=True))
         ]
         try:
@@ -118,6 +121,14 @@ class BagFile:
             reader.close()
         self._readers.clear()
         self._file.close()
+
+    def _counted(self, topic: str, messages: Iterator[Raw]) -> Iterator[Raw]:
+        """Yield as many messages of a topic as it had when it was first read to its end."""
+        count = 0
+        for raw in itertools.islice(messages, self._lengths.get(topic)):
+            count += 1
+            yield raw
+        self._lengths[topic] = count
 
     def _of_topic(self, reader: Any, topic: str, number: int) -> Iterator[Raw]:
         """Yield the messages of a topic, run by run: a reader goes by times, of any run."""

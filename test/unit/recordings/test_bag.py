@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import math
+import sqlite3
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -139,6 +140,22 @@ def test_what_is_not_wanted_is_not_decoded(tmp_path: Path) -> None:
     wanted = np.array([True, False] * 5)
     values = list(log.values([scan], wanted, lambda *_: Mount()))
     assert [value is not None for value in values] == wanted.tolist()
+    log.close()
+
+
+def test_what_is_recorded_while_a_bag_is_read_is_left_out(tmp_path: Path) -> None:
+    path = written(tmp_path, "db3", drive(2.0))
+    log = BagLog(path)
+    channels = [each for each in log.channels if each.kind in (Kind.SCAN, Kind.ODOMETRY)]
+    entries = list(log.entries(channels))
+    with sqlite3.connect(path) as database:
+        columns = "topic_id, timestamp, data"
+        later = columns.replace("timestamp", "timestamp + 2000000000")
+        database.execute(f"INSERT INTO messages ({columns}) SELECT {later} FROM messages")
+    values = list(log.values(channels, np.ones(len(entries), np.bool_), lambda *_: Mount(LASER)))
+    kinds = {Kind.SCAN: LidarScan, Kind.ODOMETRY: Odometry}
+    expected = [kinds[channels[each.channel].kind or Kind.SCAN] for each in entries]
+    assert [type(value) for value in values] == expected
     log.close()
 
 
