@@ -46,8 +46,9 @@ class HomeTruth:
     def __init__(self, home: Home) -> None:
         """Tell of a home."""
         self._home = home
-        own = home.exact
-        self._openings = {door.name: door.opening for door in own.doors} if own is home else {}
+        self._is_turned = home.axes != Pose()
+        doors = () if self._is_turned else home.doors
+        self._openings = {door.name: door.opening for door in doors}
         self._unmapped = tuple(
             _corners(box, Pose())
             for piece in home.furniture
@@ -73,7 +74,7 @@ class HomeTruth:
 
         None for a home that was turned: its dirt lies in axes of its own.
         """
-        if self._home.turned is not None:
+        if self._is_turned:
             return None
         dirt = simulator.dirt
         return dirt.frame, np.minimum(dirt.density / _DIRTIEST, 1.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from fixtures.homes.rooms import room_home
 
 from roomba.configuration.simulation import SimulatedRobotConfig
 from roomba.files.shipped import HOMES
@@ -11,6 +12,7 @@ from roomba.geometry import STANDSTILL
 from roomba.world.engine.state.arrays import Fault
 from roomba.world.home.doors import with_leaves
 from roomba.world.home.home import Home
+from roomba.world.home.turned import turned_home, with_steps
 from roomba.world.layers.layer import load_home
 from roomba.world.simulator import Simulator
 from roomba.world.truth import HomeTruth
@@ -69,3 +71,11 @@ def test_dirt_is_a_share_of_the_dirtiest_floor(home: Home, world: Simulator) -> 
     row, column = np.argwhere(share > before[1] + 0.2).mean(axis=0)
     assert frame.origin_x + (column + 0.5) * frame.resolution == pytest.approx(1.5, abs=0.1)
     assert frame.origin_y + (row + 0.5) * frame.resolution == pytest.approx(1.5, abs=0.1)
+
+
+def test_a_home_with_free_walls_tells_its_dirt_and_a_turned_one_does_not() -> None:
+    slanted, turned = with_steps(room_home()), turned_home(room_home(), 0.3)
+    told = HomeTruth(slanted).dirt(Simulator(slanted))
+    assert told is not None
+    assert told[0].extent == slanted.frame.extent
+    assert HomeTruth(turned).dirt(Simulator(turned)) is None
