@@ -64,6 +64,9 @@ class WalkConfig(Frozen):
     hanging_wheel: Duration = 1.5
     """s; one wheel may hang in the air for so long, as at a sill, until an errand fails; when both
     do it fails at once."""
+    tipping: Duration = 1.0
+    """s; where the floor ended so shortly before both wheels hang is no edge: the robot was picked
+    up nose first. Of cleans as well."""
     least_progress: Length = 0.05
     """m; coming nearer to the goal by less is no progress."""
     least_turn: Angle = 0.2

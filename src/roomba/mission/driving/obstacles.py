@@ -77,7 +77,7 @@ class Obstacles:
         # Of errands before: in nothing's way, and stairs if it is felt again.
         self._edges_before = UnknownThings(walk, body, _FOREVER)
         self._all_edges = self._edges, self._stairs, self._edges_before
-        self._same_place = config.lasting_radius
+        self._same_place, self._tipping = config.lasting_radius, walk.tipping
         self.felt_version = 0
         """A number that changes when something that is felt comes or goes."""
         self.keep = body.radius - _SPARED
@@ -135,6 +135,12 @@ class Obstacles:
         Sensors and speed loop stop the robot there anew, if the floor does end.
         """
         self._edges_before.take(self._edges)
+        self.felt_version += 1
+
+    def forget_edges_felt_now(self, now: float) -> None:
+        """Forget where the floor ended a moment ago: the robot was being picked up."""
+        for edges in (self._edges, self._stairs):
+            edges.forget_since(now - self._tipping)
         self.felt_version += 1
 
     def forget_felt_at(self, senses: Senses) -> None:

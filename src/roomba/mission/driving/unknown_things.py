@@ -87,6 +87,10 @@ class UnknownThings:
             touch for touch in self._felt if math.dist(self._middle_of(touch), (x, y)) > self._reach
         ]
 
+    def forget_since(self, time: float) -> None:
+        """Forget what was felt at a time, s, and after it."""
+        self._felt = [touch for touch in self._felt if touch.time < time]
+
     def move(self, moved: Pose) -> None:
         """Go on in another frame, in which this one lies at ``moved``."""
         self._felt = [touch.moved(moved) for touch in self._felt]

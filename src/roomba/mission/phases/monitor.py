@@ -47,6 +47,8 @@ class Monitor:
             self._astray = self._hanging = None
             self._patience.begin(senses.knowledge)
             return None
+        if senses.lifted:
+            self._drives.obstacles.forget_edges_felt_now(senses.now)
         if self._hangs_for_long(senses) or senses.lifted:
             reason = "a wheel hangs in the air: set it down and resume"
             return Failure(CleanOutcome.FAULT, reason)

@@ -83,6 +83,8 @@ class Walk:
     def tick(self, senses: Senses, max_speed: float) -> WalkStep:
         """Return what is wanted now; ``max_speed`` in m/s."""
         self._follow_clock(senses.now)
+        if senses.lifted:
+            self._obstacles.forget_edges_felt_now(senses.now)
         if not senses.knowledge.is_usable:
             return self._wait_to_be_found(senses, max_speed)
         if senses.knowledge is Knowledge.ROUGH:

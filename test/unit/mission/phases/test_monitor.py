@@ -98,6 +98,14 @@ def test_a_wheel_that_hangs_for_a_moment_is_a_sill_and_for_longer_a_fault() -> N
     assert rig.failure(replace(AWAY, now=20.1, wheel_hangs=True)) is None
 
 
+@pytest.mark.parametrize(("before", "is_remembered"), [(0.5, False), (2.0, True)])
+def test_picked_up_nose_first_it_was_at_no_edge(before: float, is_remembered: bool) -> None:
+    rig = Rig()
+    rig.drives.obstacles.feel(replace(AWAY, cliff_left=True))
+    assert rig.failure(replace(AWAY, now=before, lifted=True)) is not None
+    assert bool(rig.drives.obstacles.edges()) is is_remembered
+
+
 def test_astray_it_is_given_time_and_then_the_reason_is_told() -> None:
     rig, timeout = Rig(), ROBOT.walk.astray_timeout
     for now in np.arange(0.0, timeout, 0.1).tolist():

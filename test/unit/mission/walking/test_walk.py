@@ -258,8 +258,12 @@ def test_a_walk_goes_on_from_where_the_robot_was_found() -> None:
     robot = furnished()
     senses = Senses(0.0, Pose(0.5, 0.5))
     walk = Walk(planner_of(robot), CONFIG.walk, robot.mission.obstacles, (4.5, 3.5), senses)
-    walk.tick(replace(senses, now=0.05, knowledge=Knowledge.SEARCHING), 0.5)
-    found = replace(senses, now=0.1, pose=Pose(4.5, 0.5, 0.0))
+    # It is picked up nose first.
+    walk.tick(replace(senses, now=0.05, cliff_left=True), 0.5)
+    held = replace(senses, now=0.1, lifted=True, knowledge=Knowledge.SEARCHING)
+    assert walk.tick(held, 0.5).state is WalkState.ASTRAY
+    assert robot.mission.obstacles.edges() == []
+    found = replace(senses, now=0.15, pose=Pose(4.5, 0.5, 0.0))
     assert walk.tick(found, 0.5).state is WalkState.WALKING
     assert tuple(walk.path.points[0]) == pytest.approx((4.5, 0.5), abs=0.06)
 
