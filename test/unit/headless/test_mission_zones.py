@@ -70,6 +70,9 @@ def test_carried_beyond_a_step_it_cleans_there_and_says_that_no_way_leads_home(
     assert robot.mission.message.startswith("no way home: ")
     swept = np.count_nonzero(robot.truth.swept & wanted)
     assert swept >= FLOOR_TOO_LITTLE * np.count_nonzero(wanted) > 0
+    result = robot.mission.take_result()
+    assert result is not None
+    assert (result.outcome, result.message) == (CleanOutcome.NOT_DOCKED, robot.mission.message)
 
 
 SPECK = 0.01

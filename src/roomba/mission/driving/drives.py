@@ -14,7 +14,7 @@ from roomba.mission.driving.rejoin import Rejoin
 from roomba.mission.driving.trail import Trail
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.mission.inputs.senses import Senses
-from roomba.planning.path.planner import NoPathError
+from roomba.planning.path.planner import NoPathError, NoPathReason
 
 
 class Drives:
@@ -103,6 +103,22 @@ class Drives:
     def may_go_home(self, senses: Senses) -> bool:
         """Whether a way leads home, by what is known to stand in it now."""
         return self._length_home(senses) is not None
+
+    def is_parted_from_home(self, senses: Senses) -> bool:
+        """Whether walls and zones alone part it from its station: they stay.
+
+        A map that grows may show a way yet.
+        """
+        context = self.context
+        if context.is_growing:
+            return False
+        try:
+            context.squeeze(
+                (senses.pose.x, senses.pose.y), (context.staging.x, context.staging.y), ()
+            )
+        except NoPathError as error:
+            return error.reason is NoPathReason.GOAL_UNREACHABLE
+        return False
 
     def distance_home(self, senses: Senses) -> float:
         """Return how far it is home, m; what cannot be told is as far as the map is wide."""

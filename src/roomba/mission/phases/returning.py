@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Final
 
 from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.driving.drives import Drives
@@ -13,6 +14,10 @@ from roomba.mission.phases.machine import Event
 from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.planning.path.planner import NoPathError
 from roomba.vocabulary import NO_REASON, Hindrance, Reason
+
+_PARTED: Final = (
+    "; walls or zones of its map part it from its station: carry it there, or take the zone away"
+)
 
 
 def go_home(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) -> PhaseStep:
@@ -50,11 +55,16 @@ def _go_home_on(drives: Drives, retries: RetryPolicy, senses: Senses, limit: flo
 
 
 def try_home_again(reason: str, drives: Drives, retries: RetryPolicy, senses: Senses) -> PhaseStep:
-    """Once more without what was remembered; a door may open; then it says there is no way."""
+    """Once more without what was remembered; a door may open; then it says there is no way.
+
+    What the map itself shows in between does not open: that is said at once.
+    """
     retries.found_no_way_home()
     if retries.is_over:
         return PhaseStep(failure=Failure(CleanOutcome.NOT_DOCKED, reason))
     if retries.must_wait:
+        if drives.is_parted_from_home(senses):
+            return PhaseStep(failure=Failure(CleanOutcome.NOT_DOCKED, f"{reason}{_PARTED}"))
         return wait(reason, drives, retries, senses)
     drives.obstacles.forget()
     return PhaseStep()

@@ -21,6 +21,7 @@ from roomba.mission.inputs.senses import Battery, Senses
 from roomba.mission.phases.machine import Event
 from roomba.mission.phases.returning import go_home
 from roomba.mission.phases.step import PhaseStep
+from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.vocabulary import NO_REASON, Hindrance
 
 ROBOT, CONFIG = RobotConfig(), MissionConfig()
@@ -32,9 +33,9 @@ MINUTE = 60.0
 
 
 class Rig:
-    def __init__(self) -> None:
+    def __init__(self, context: PlanningContext = CONTEXT) -> None:
         self.obstacles = Standing(FENCE)
-        self.drives = Drives(CONTEXT, ROBOT, CONFIG.driving, self.obstacles)
+        self.drives = Drives(context, ROBOT, CONFIG.driving, self.obstacles)
         self.retries = RetryPolicy(CONFIG.driving.waiting)
 
     def go_home(self, senses: Senses = IN_THE_DEN) -> PhaseStep:
@@ -82,6 +83,20 @@ def test_shut_in_it_waits_twenty_minutes_for_a_way_and_then_says_that_there_is_n
         assert reason.hindrance is Hindrance.NO_WAY
         assert reason.text.endswith(ends)
     assert now == pytest.approx(20.0 * MINUTE, abs=0.5 * MINUTE)
+
+
+def test_beyond_a_wall_of_its_map_it_says_at_once_that_no_way_leads_home() -> None:
+    step = Zone("step", ZoneKind.WALL, ((WALL_X + 0.05, 0.7), (WALL_X + 0.05, 1.7)))
+    walled = PlanningContext(
+        TWO_ROOMS.map, TWO_ROOMS.station, ROBOT, CONFIG, DockingConfig(), zones=Zones((step,))
+    )
+    rig = Rig(walled)
+    rig.obstacles.things = []
+    steps = [rig.go_home(replace(IN_THE_DEN, now=0.05 * tick)) for tick in range(20)]
+    failures = [step.failure for step in steps if step.failure is not None]
+    assert failures[0].outcome is CleanOutcome.NOT_DOCKED
+    assert "no way home" in failures[0].reason
+    assert "carry it there, or take the zone away" in failures[0].reason
 
 
 def test_a_door_that_is_opened_meanwhile_is_driven_through() -> None:
