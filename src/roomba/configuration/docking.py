@@ -68,6 +68,8 @@ class DockingConfig(Frozen):
     """Not knowing where it is and seeing no beam, it waits so long."""
     stuck_timeout: Wait = 3.0
     """So long it may drive without moving."""
+    left_standing: Length = 0.2
+    """One that failed for want of beams and was moved farther does not try again by itself."""
     emptying_timeout: Wait = 5.0
     """For a station to begin to empty the bin."""
     time_limit: Wait = 150.0

@@ -74,9 +74,6 @@ class Commands:
             self._end(f"it was told to {event.value}", senses)
         if event is Event.EMERGENCY and not self._outlasts_a_stop:
             self._end(f"emergency stop: {reason}", senses, CleanOutcome.FAULT)
-        if event is Event.RESUME:
-            self._retries.renew()
-            self._job.take_up()
         held = Reason(reason) if event is Event.EMERGENCY else self._transitions.reason
         self._transitions.go(event, senses)
         if event in (Event.RELEASE, Event.STOP) and senses.battery.is_docked:

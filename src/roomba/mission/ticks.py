@@ -204,6 +204,8 @@ class MissionTicks:
             self._transitions.reason = step.reason
         if step.failure is not None:
             self._transitions.fail(step.failure.outcome, step.failure.reason, senses)
+            if step.failure.awaits_beams:
+                self._at_station.await_beams(senses)
         return MissionStep(step.twist, wants_whole_map=step.wants_whole_map, empties=step.empties)
 
     def _step(self, senses: Senses) -> PhaseStep:
@@ -230,4 +232,6 @@ class MissionTicks:
                 return self._at_station.empty(senses, job, context.station)
             case Phase.BIN_FULL:
                 return PhaseStep(event=None if job.bin.is_full else Event.EMPTIED)
+            case Phase.ERROR:
+                return self._at_station.look_for_beams(senses)
         return PhaseStep()

@@ -70,6 +70,9 @@ class Transitions:
         self._at_station.forget()
         if event is not Event.FAILED:
             self.reason = NO_REASON
+        if event in (Event.RESUME, Event.POWER):
+            self._retries.renew()
+            self._job.take_up()
         if event is Event.FINISHED:
             self._job.outcome = CleanOutcome.COMPLETED
         if after.phase is Phase.DOCKED:

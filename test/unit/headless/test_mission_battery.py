@@ -128,8 +128,9 @@ def test_with_a_dead_station_it_says_that_it_is_not_docked() -> None:
     assert result.fraction >= 0.99
     assert robot.mission.state.phase is Phase.ERROR
     assert_stands(robot)
+    # It docks by itself once it sees the beams.
     robot.simulator.inject(Fault.STATION_DEAD, 0.0)
-    command(robot, Event.RESUME)
+    wait(robot, 3.0)
     assert robot.mission.message == ""
     record = robot.run()
     assert record.result.outcome is CleanOutcome.COMPLETED

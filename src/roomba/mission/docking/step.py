@@ -62,6 +62,11 @@ class Trouble(Enum):
     FAR = "the robot is too far away from its station: bring it near first"
     TIMEOUT = "it took too long"
 
+    @property
+    def is_without_beams(self) -> bool:
+        """Whether no beams were seen: where there are some again, another docking may succeed."""
+        return self in (Trouble.NO_POWER, Trouble.NOT_THERE, Trouble.HIDDEN)
+
 
 @dataclass(frozen=True, slots=True)
 class DockSenses:

@@ -11,7 +11,7 @@ from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose, Twist
 from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.docking.beams import NO_BEAMS
-from roomba.mission.docking.docking import Docking, DockSenses, DockState
+from roomba.mission.docking.docking import Docking, DockSenses, DockState, DockStep
 from roomba.mission.docking.undocking import Undocking, UndockState, stands_in
 from roomba.mission.inputs.senses import EmptyingTold, Senses
 from roomba.mission.phases.job import Job
@@ -21,6 +21,7 @@ from roomba.vocabulary import NO_REASON, Hindrance, Reason
 
 _NO_ANSWER: Final = "its station does not empty the bin: see whether its way in is free"
 _CHARGES_FIRST: Final = "the battery is empty: it stays on its station to charge"
+_AWAITS_BEAMS: Final = "; left standing, it docks by itself as soon as it sees the beams"
 _NO_CURRENT: Final = "its station gives no current: see that it is plugged in; it waits for that"
 
 
@@ -38,6 +39,8 @@ class AtStation:
         self._undocking: Undocking | None = None
         self._stood: RobotTime | None = None
         self._without_current: RobotTime | None = None
+        self._without_beams: RobotTime | None = None
+        self._gave_up_at = Pose()
         self._needed: float | None = None
         self._is_emptied = False
 
@@ -81,8 +84,27 @@ class AtStation:
         if step.state is DockState.DOCKED:
             return PhaseStep(twist, Event.CONTACT)
         if step.state is DockState.FAILED:
-            return PhaseStep(twist, failure=Failure(CleanOutcome.NOT_DOCKED, step.reason))
+            return PhaseStep(twist, failure=_not_docked(step))
         return PhaseStep(twist)
+
+    def await_beams(self, senses: Senses) -> None:
+        """Look for the station's beams from now on: for want of them it did not dock."""
+        self._without_beams, self._gave_up_at = RobotTime(senses.now), senses.pose
+
+    def look_for_beams(self, senses: Senses) -> PhaseStep:
+        """Stand until the beams that it awaits are seen for a while.
+
+        One that was moved meanwhile, by hand or by a walk, waits for them no longer.
+        """
+        if self._gave_up_at.distance_to(senses.pose.x, senses.pose.y) > self._config.left_standing:
+            self._without_beams = None
+        if self._without_beams is None:
+            return PhaseStep()
+        if senses.beams == NO_BEAMS or senses.wheel_hangs:
+            self._without_beams = RobotTime(senses.now)
+        self._without_beams.tick(senses.now)
+        are_seen = self._without_beams.elapsed > self._config.contact_wait
+        return PhaseStep(event=Event.POWER if are_seen else None)
 
     @property
     def _is_turned(self) -> bool:
@@ -152,6 +174,13 @@ class AtStation:
         if has_power or not stands_in(station, sensed, self._config):
             return PhaseStep(event=Event.CONTACT_LOST)
         return PhaseStep(reason=Reason(_NO_CURRENT))
+
+
+def _not_docked(step: DockStep) -> Failure:
+    outcome = CleanOutcome.NOT_DOCKED
+    if step.trouble is None or not step.trouble.is_without_beams:
+        return Failure(outcome, step.reason)
+    return Failure(outcome, f"{step.reason}{_AWAITS_BEAMS}", awaits_beams=True)
 
 
 def _not_emptied(why: str) -> PhaseStep:

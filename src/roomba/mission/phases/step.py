@@ -12,10 +12,14 @@ from roomba.vocabulary import Reason
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """Why the robot cannot go on by itself, as an outcome and in words."""
+    """Why the robot cannot go on by itself, as an outcome and in words.
+
+    ``awaits_beams``: it goes on as soon as it sees its station's beams.
+    """
 
     outcome: CleanOutcome
     reason: str
+    awaits_beams: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from roomba.geometry import STANDSTILL, Pose, Twist
 from roomba.mission.cleaning.result import CleanOutcome
 from roomba.mission.docking.beams import StationBeams
 from roomba.mission.docking.docking import Docking, DockState
-from roomba.mission.docking.step import DockStep
+from roomba.mission.docking.step import DockStep, Trouble
 from roomba.mission.docking.undocking import Undocking, UndockState, UndockStep
 from roomba.mission.inputs.senses import Battery, EmptyingTold, Senses
 from roomba.mission.phases import at_station
@@ -106,6 +106,32 @@ def test_how_docking_ends(
     ended = DockStep(state, BACK, "no power")
     monkeypatch.setattr(Docking, "tick", lambda docking, senses: ended)
     assert at_the_station().dock(BEFORE, STATION, STAGING) == PhaseStep(BACK, event, failure)
+
+
+def test_without_beams_it_waits_until_it_sees_them_for_a_while(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ended = DockStep(DockState.FAILED, BACK, "no power", 1, Trouble.NO_POWER)
+    monkeypatch.setattr(Docking, "tick", lambda docking, senses: ended)
+    station = at_the_station()
+    failure = station.dock(BEFORE, STATION, STAGING).failure
+    assert failure is not None
+    assert failure.awaits_beams
+    assert "as soon as it sees the beams" in failure.reason
+    lit = replace(BEFORE, beams=StationBeams(halo=True))
+    # Of another failure it waits for a person.
+    assert station.look_for_beams(replace(lit, now=100.0)) == PhaseStep()
+    station.await_beams(BEFORE)
+    seen = [replace(lit if tick > 100 else BEFORE, now=0.1 * tick) for tick in range(200)]
+    events = [station.look_for_beams(senses).event for senses in seen]
+    power = events.index(Event.POWER)
+    assert seen[power].now == pytest.approx(10.0 + DockingConfig().contact_wait, abs=0.2)
+    station.await_beams(BEFORE)
+    held = [replace(each, wheel_hangs=True) for each in seen]
+    assert not any(station.look_for_beams(senses).event for senses in held)
+    # A person has it walk, and it stands before its station again.
+    station.look_for_beams(replace(BEFORE, pose=Pose(2.0, 1.25, 0.0)))
+    assert not any(station.look_for_beams(senses).event for senses in seen)
 
 
 def test_it_goes_on_docking_until_that_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:

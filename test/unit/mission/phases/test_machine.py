@@ -158,6 +158,8 @@ def _as_exploration(state: MissionState | None, event: Event) -> MissionState | 
             Event.FAILED,
             (Phase.ERROR, Errand.CLEAN, Phase.CHARGING),
         ),
+        ((Phase.ERROR, Errand.HOME, Phase.RETURNING), Event.POWER, (Phase.RETURNING, Errand.HOME)),
+        ((Phase.PAUSED, Errand.HOME, Phase.RETURNING), Event.POWER, None),
         ((Phase.DOCKED,), Event.EXPLORE, (Phase.UNDOCKING, Errand.EXPLORE)),
         ((Phase.UNDOCKING, Errand.EXPLORE), Event.OUT, (Phase.EXPLORING, Errand.EXPLORE)),
         ((Phase.EXPLORING, Errand.EXPLORE), Event.FINISHED, (Phase.RETURNING, Errand.HOME)),
