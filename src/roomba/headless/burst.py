@@ -16,7 +16,7 @@ from roomba.geometry import Pose
 from roomba.headless.body import SimulatedBody
 from roomba.headless.burst_kernels import run
 from roomba.headless.burst_state import BURST, Drive, Floor, PlaceParts, Sight, World
-from roomba.headless.tick_rows import BELIEVED, PASSED
+from roomba.headless.tick_rows import BELIEVED, BIAS, PASSED
 from roomba.mission.cleaning.cleaning import Cleaning
 from roomba.mission.cleaning.dirty.watch_kernels import WATCH
 from roomba.mission.driving.progress_kernels import PROGRESS
@@ -88,8 +88,9 @@ class Burst:
             has_looked = self._next_look != next_look
             is_done = bool(self._burst[0]["is_left"]) or has_looked
             self._has_ended = ticks < len(self._rows) and not is_done
-            # A scan that was kept may have moved the map below it.
+            # A scan that was kept may have moved the map below it, and what is left of one is done.
             rows[-1, BELIEVED] = believed.x, believed.y, believed.theta
+            rows[-1, BIAS] = brain.keeper.gyro_bias
         return rows
 
     @property

@@ -18,7 +18,7 @@ from roomba.compilation import entry, inner_part
 from roomba.control.tracking_kernels import along_of, off_path, track
 from roomba.headless.burst_place_kernels import believed, follow
 from roomba.headless.burst_state import Drive, Floor, PlaceParts, Rows, Sight, World
-from roomba.headless.tick_rows import BELIEVED, GYRO, ODOMETRY, TIME, TRUE
+from roomba.headless.tick_rows import BELIEVED, BIAS, GYRO, ODOMETRY, TIME, TRUE
 from roomba.mission.cleaning.dirty.watch_kernels import may_be_dirty
 from roomba.mission.driving.progress_kernels import is_held
 from roomba.mission.driving.way_ahead_kernels import is_blocked
@@ -68,7 +68,7 @@ def run(
         x, y, theta = believed(burst, place)
         true = told(burst, robot)
         sweep_truth(burst, robot, floor, true[0], true[1])
-        write_down(rows[ticks], now - burst.clock, robot, true, x, y, theta)
+        write_down(rows[ticks], now - burst.clock, robot, place.belief[0], true, x, y, theta)
         ticks += 1
         if not is_settled:
             break
@@ -193,6 +193,7 @@ def write_down(
     row: Floats,
     now: float,
     robot: Any,
+    belief: Any,
     true: tuple[float, float, float],
     x: float,
     y: float,
@@ -203,4 +204,4 @@ def write_down(
     row[TRUE] = true
     row[BELIEVED] = x, y, theta
     row[ODOMETRY] = robot.odometry_x, robot.odometry_y, robot.odometry_theta
-    row[GYRO] = robot.gyro
+    row[GYRO], row[BIAS] = robot.gyro, belief.bias + belief.calibration.gyro_bias

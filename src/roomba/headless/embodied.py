@@ -143,4 +143,5 @@ class Embodied:
         now, believed = self.now, self.brain.pose
         poses = [(each.x, each.y, each.theta) for each in (believed, now.odometry)]
         turning = now.twist.angular if now.turning is None else now.turning
-        return np.array([[now.time, *_UNKNOWN, *poses[0], *poses[1], turning]])
+        bias = self.brain.keeper.gyro_bias
+        return np.array([[now.time, *_UNKNOWN, *poses[0], *poses[1], turning, bias]])

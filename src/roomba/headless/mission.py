@@ -290,7 +290,8 @@ class HeadlessMission(Embodied):
         """Return what is so now, as a tick that passed: float64 [1, PASSED]."""
         seen, believed = self.seen, self.brain.pose
         poses = [(each.x, each.y, each.theta) for each in (seen.pose, believed, seen.odometry)]
-        return np.array([[seen.time, *poses[0], *poses[1], *poses[2], seen.angular_velocity]])
+        turning = seen.angular_velocity, self.brain.keeper.gyro_bias
+        return np.array([[seen.time, *poses[0], *poses[1], *poses[2], *turning]])
 
     @property
     def _hits(self) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 from roomba.arrays import Floats
 from roomba.configuration.robot import RobotConfig
 from roomba.headless.odometry_kernels import reckon_rows
-from roomba.headless.tick_rows import GYRO, ODOMETRY, TIME, TRUE
+from roomba.headless.tick_rows import BIAS, GYRO, ODOMETRY, TIME, TRUE
 from roomba.perception.calibration.calibration import Calibration
 from roomba.perception.localization.dead_reckoning import DeadReckoning
 
@@ -23,15 +23,15 @@ def odometry_error(
     calibration: Calibration | None,
     *,
     has_gyro: bool = True,
-    biases: Floats | None = None,
+    knows_bias: bool = False,
 ) -> float | None:
     """Return by how much dead reckoning is off after each :data:`PIECE` of way, m per m.
 
     ``rows`` is float64 [n, PASSED], as of :mod:`roomba.headless.tick_rows`. It is the mean of the
     distances between where the robot was and where wheels and gyro had it, from where both began a
     piece, by the way of a piece; None of a shorter way. ``calibration`` None: without any;
-    ``has_gyro`` False: by the wheels alone. ``biases``, float64 [k, 2], are times, s, and what was
-    known then of the gyro's bias, rad/s.
+    ``has_gyro`` False: by the wheels alone. ``knows_bias``: without what was known at each tick of
+    the gyro's bias.
     """
     true = rows[:, TRUE]
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(true[:, :2], axis=0).T))))
@@ -42,8 +42,8 @@ def odometry_error(
     told = rows.copy()
     if not has_gyro:
         told[:, GYRO] = np.nan
-    elif biases is not None:
-        told[:, GYRO] -= np.interp(rows[:, TIME], biases[:, 0], biases[:, 1])
+    elif knows_bias:
+        told[:, GYRO] -= rows[:, BIAS]
     poses = reckoned(told, robot, calibration)
     off = _moved(poses[ends]) - _moved(true[ends])
     return float(np.hypot(off[:, 0], off[:, 1]).mean() / PIECE)

@@ -14,7 +14,9 @@ ODOMETRY: Final = slice(7, 10)
 """The same by the wheels, in their own frame."""
 GYRO: Final = 10
 """The gyro's turning speed, rad/s."""
-PASSED: Final = 11
+BIAS: Final = 11
+"""What the robot knows of the gyro's bias, rad/s."""
+PASSED: Final = 12
 """How many columns there are."""
 POSES: Final = slice(0, 4)
 """The time and the true pose."""

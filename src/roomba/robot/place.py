@@ -134,6 +134,12 @@ class PlaceKeeper:
         self._lidars.correction = lidar_correction(self.place.belief)
         return self._lidars.of(told)
 
+    @property
+    def gyro_bias(self) -> float:
+        """What is known of the gyro's bias, rad/s."""
+        belief = self.place.belief[0]
+        return float(belief["bias"] + belief["calibration"]["gyro_bias"])
+
     def recalibrated(self, scan: ScanReading) -> ScanReading:
         """Go by the lidar's pose if it is known better by now; return a scan as the lidar is."""
         self.place.go_by_lidar()

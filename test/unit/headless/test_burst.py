@@ -20,7 +20,7 @@ from roomba.errors import HomeError
 from roomba.geometry import Pose, Twist
 from roomba.headless.burst import Burst
 from roomba.headless.mission import HeadlessMission
-from roomba.headless.tick_rows import BELIEVED, GYRO, ODOMETRY, PASSED, TIME, TRUE
+from roomba.headless.tick_rows import BELIEVED, BIAS, GYRO, ODOMETRY, PASSED, TIME, TRUE
 from roomba.mission.phases.machine import Event
 from roomba.perception.localization.estimate import Knowledge
 from roomba.robot.readings import CliffReading
@@ -98,6 +98,7 @@ def test_what_passed_is_told_tick_by_tick(is_mapped: bool) -> None:
     for columns, pose in ((TRUE, seen.pose), (BELIEVED, believed), (ODOMETRY, seen.odometry)):
         assert rows[-1, columns].tolist() == [pose.x, pose.y, pose.theta]
     assert rows[-1, GYRO] == seen.angular_velocity
+    assert rows[-1, BIAS] == robot.brain.keeper.gyro_bias
 
 
 @BOTH

@@ -114,8 +114,7 @@ class TrialSetup:
     def run(self, observers: Iterable[RunObserver] = ()) -> Run:
         """Clean; raises CleanRefusedError and CommandRefusedError."""
         robot = self.robot
-        biases: list[tuple[float, float]] = []
-        robot.observers = (lambda _: biases.append(gyro_bias_of(robot)), *observers)
+        robot.observers = tuple(observers)
         seen = robot.seen
         first = np.array([[seen.time, seen.pose.x, seen.pose.y, seen.pose.theta]])
         began = time.perf_counter()
@@ -153,9 +152,7 @@ class TrialSetup:
             wheels_error=odometry_error(rows, self.config, None, has_gyro=False),
             calibrated_wheels_error=odometry_error(rows, self.config, measured, has_gyro=False),
             odometry_error=odometry_error(rows, self.config, None),
-            calibrated_error=odometry_error(
-                rows, self.config, measured, biases=np.array(biases) if biases else None
-            ),
+            calibrated_error=odometry_error(rows, self.config, measured, knows_bias=True),
         )
         return Run(
             self.trial,
@@ -173,12 +170,6 @@ class TrialSetup:
 def run_trial(trial: Trial, observers: Iterable[RunObserver] = ()) -> Run:
     """Return the run of a trial; raises RoombaError for what cannot be."""
     return TrialSetup(trial).run(observers)
-
-
-def gyro_bias_of(robot: HeadlessMission) -> tuple[float, float]:
-    """Return the time, s, and what is known then of the gyro's bias, rad/s."""
-    belief = robot.brain.keeper.place.belief[0]
-    return robot.seen.time, float(belief["bias"] + belief["calibration"]["gyro_bias"])
 
 
 def trajectory_of(record: CleanRecord, first: Floats) -> Floats:

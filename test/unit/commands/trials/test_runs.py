@@ -129,6 +129,7 @@ def test_a_look_after_every_other_tick_changes_nothing_but_little(run: Run) -> N
     assert np.diff(watched).max() < 0.101
     assert often.figures.outcome == run.figures.outcome
     assert often.figures.distance_m == pytest.approx(run.figures.distance_m, rel=0.1)
+    assert often.figures.calibrated_error == run.figures.calibrated_error is not None
 
 
 def test_what_is_solid_in_truth_is_not_coverable(room: Path) -> None:
