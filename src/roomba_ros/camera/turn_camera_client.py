@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from roomba.ui.pictures import PictureViewer
 from roomba_ros.client.ros_client import RosCamera
-from roomba_ros.runtime.alone import is_taken
-from roomba_ros.runtime.joining import join_graph
+from roomba_ros.runtime.graph.alone import is_taken
+from roomba_ros.runtime.graph.joining import join_graph
 from roomba_ros.runtime.node import leave, require_master
 
 

@@ -10,8 +10,8 @@ from roomba.ui.cleaning import CLEANING_HEADING
 from roomba.ui.exploring import TASKS
 from roomba.ui.menu import Menu
 from roomba_ros.client.ros_client import RosRobot
-from roomba_ros.runtime.alone import is_taken
-from roomba_ros.runtime.joining import join_graph
+from roomba_ros.runtime.graph.alone import is_taken
+from roomba_ros.runtime.graph.joining import join_graph
 from roomba_ros.runtime.node import leave, require_master, wait_for_clock
 from roomba_ros.runtime.subscriptions import tell_refusals
 

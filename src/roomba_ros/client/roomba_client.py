@@ -20,7 +20,7 @@ from roomba.client.protocol import (
 )
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.client.ros_client import RosRobot
-from roomba_ros.runtime.joining import join_graph
+from roomba_ros.runtime.graph.joining import join_graph
 from roomba_ros.runtime.node import wait_for_clock
 
 _LOOK = 1.0

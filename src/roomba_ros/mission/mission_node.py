@@ -29,9 +29,9 @@ from roomba_ros.mission.memory import MissionMemory
 from roomba_ros.mission.orders import MissionOrders
 from roomba_ros.mission.round import MissionRound
 from roomba_ros.mission.topics import MissionTopics
-from roomba_ros.runtime.alone import refuse_second
 from roomba_ros.runtime.background import Background
 from roomba_ros.runtime.calls import call_service
+from roomba_ros.runtime.graph.alone import refuse_second
 from roomba_ros.runtime.heap import give_back
 from roomba_ros.runtime.node import require_master, run_node
 from roomba_ros.runtime.parameters import (

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from roomba.errors import RoombaError
 from roomba_ros.client.ros_client import RosRobot
 from roomba_ros.model.screen import VirtualScreen
-from roomba_ros.runtime.joining import join_graph
+from roomba_ros.runtime.graph.joining import join_graph
 
 SIZE: Final = (1400, 900)
 """Pixels of the window."""

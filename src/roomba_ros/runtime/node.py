@@ -17,7 +17,7 @@ import rospy
 
 from roomba.errors import RoombaError
 from roomba_ros.runtime.connections import guard_connections
-from roomba_ros.runtime.joining import join_graph
+from roomba_ros.runtime.graph.joining import join_graph
 from roomba_ros.runtime.sending import send_at_once
 from roomba_ros.runtime.subscriptions import tell_refusals
 from roomba_ros.runtime.timing.heart import HEART

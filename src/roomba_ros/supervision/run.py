@@ -23,7 +23,7 @@ from roomba.errors import RoombaError
 from roomba.files.home_layer import files_of_home
 from roomba.files.shipped import CONFIGURATION, HOMES
 from roomba_ros.maps.map_wish import FOLDER, require_map
-from roomba_ros.runtime.alone import living
+from roomba_ros.runtime.graph.alone import living
 from roomba_ros.runtime.parameters import folder_for
 from roomba_ros.runtime.senders import SUPERVISOR
 from roomba_ros.supervision.kept_master import be_master, wait_for_master

@@ -17,7 +17,7 @@ from roomba.mission.walking.walk import Walk
 from roomba.vocabulary import OVERTAKEN
 from roomba_ros.convert.common import header
 from roomba_ros.runtime.action_goal import GoalIdentity, server_of
-from roomba_ros.runtime.alone import refuse_second
+from roomba_ros.runtime.graph.alone import refuse_second
 from roomba_ros.runtime.held_drive import HeldDrive
 from roomba_ros.runtime.node import require_master, run_node
 from roomba_ros.runtime.parameters import (

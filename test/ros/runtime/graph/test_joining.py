@@ -9,10 +9,10 @@ from fixtures.graph import RosGraph
 from fixtures.processes.programs import listening
 from fixtures.waiting import wait_until
 
-from roomba_ros.runtime.joining import is_loopback
+from roomba_ros.runtime.graph.joining import is_loopback
 
 NODE = """
-from roomba_ros.runtime.joining import join_graph
+from roomba_ros.runtime.graph.joining import join_graph
 from std_msgs.msg import Empty
 import rospy
 import time
