@@ -24,6 +24,7 @@ from roomba.files.home_layer import files_of_home
 from roomba.files.shipped import CONFIGURATION, HOMES
 from roomba_ros.maps.map_wish import FOLDER, require_map
 from roomba_ros.runtime.graph.alone import living
+from roomba_ros.runtime.graph.joining import require_own_address
 from roomba_ros.runtime.parameters import folder_for
 from roomba_ros.runtime.senders import SUPERVISOR
 from roomba_ros.supervision.kept_master import be_master, wait_for_master
@@ -60,6 +61,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _require_home(launch)
         _require_map(launch)
         _require_host_of_master()
+        require_own_address()
         _refuse_second(launch)
     except RoombaError as error:
         print(f"./roomba run: {error}", file=sys.stderr)

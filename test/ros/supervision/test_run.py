@@ -45,6 +45,14 @@ def test_what_is_refused_is_refused_before_a_launch_is_told(
     assert reason in told.err
 
 
+def test_an_address_that_is_not_of_this_machine_is_refused(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROS_HOSTNAME", "nosuch.invalid")
+    assert main(["map:=given"]) == USAGE
+    assert "expected ROS_HOSTNAME to lead to this machine" in capsys.readouterr().err
+
+
 def test_a_map_that_is_not_saved_is_refused_with_those_that_are(tmp_path: Path) -> None:
     for name in ("attic", "cellar"):
         (tmp_path / name).mkdir()

@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import os
+import socket
 from ipaddress import ip_address
+from typing import Final
 from urllib.parse import urlsplit
 
 import rosgraph
 import rosgraph.network
 import rospy
+
+from roomba.errors import RoombaError
+
+_CHOOSING: Final = (rosgraph.ROS_HOSTNAME, rosgraph.ROS_IP)
+"""The environment variables that choose an address; the first counts more."""
+REACHED_WITHIN: Final = 3.0
+"""s of wall time in which this machine reaches an address of its own."""
 
 
 def join_graph(name: str, *, is_anonymous: bool = False) -> None:
@@ -23,8 +32,37 @@ def listen_where_the_master_does() -> None:
     Without an address rospy listens on all interfaces, and any machine of the network can end the
     node. Addresses are chosen by ROS_IP, ROS_HOSTNAME, or on the command line.
     """
-    if rosgraph.network.get_address_override() is None and is_loopback(rosgraph.get_master_uri()):
+    if _goes_by_loopback():
         os.environ[rosgraph.ROS_IP] = "127.0.0.1"
+
+
+def require_own_address() -> None:
+    """Raise RoombaError when this machine does not reach a node of its own.
+
+    Nodes tell each other the address that is chosen, or the name of the machine. One of elsewhere
+    is often left in a file of the shell: then each node waits for the others.
+    """
+    if _goes_by_loopback():
+        return
+    host = str(rosgraph.network.get_host_name())
+    family = socket.AF_INET6 if rosgraph.network.use_ipv6() else socket.AF_INET
+    place = (rosgraph.network.get_bind_address(), 0)
+    try:
+        with socket.create_server(place, family=family) as node:
+            socket.create_connection((host, node.getsockname()[1]), REACHED_WITHIN).close()
+    except (OSError, UnicodeError) as error:  # the latter of names that cannot be any
+        chosen = next((name for name in _CHOOSING if name in os.environ), None)
+        raise RoombaError(
+            f"expected {chosen or 'the name of this machine'} to lead to this machine, got "
+            f"{host!r}: {error}; set {chosen or rosgraph.ROS_IP} to an address of this machine, "
+            "such as 127.0.0.1 when no other is to reach the robot"
+        ) from error
+
+
+def _goes_by_loopback() -> bool:
+    """Whether no address was chosen, and the master is reached from this machine alone."""
+    is_chosen = rosgraph.network.get_address_override() is not None
+    return not is_chosen and is_loopback(rosgraph.get_master_uri())
 
 
 def is_loopback(uri: str) -> bool:
