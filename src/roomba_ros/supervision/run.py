@@ -27,6 +27,7 @@ from roomba_ros.runtime.graph.alone import living
 from roomba_ros.runtime.graph.joining import require_own_address
 from roomba_ros.runtime.parameters import folder_for
 from roomba_ros.runtime.senders import SUPERVISOR
+from roomba_ros.supervision.claim import claim_robot
 from roomba_ros.supervision.kept_master import be_master, wait_for_master
 from roomba_ros.supervision.launch_file import Launch, ProcessEntry, described, read_launch
 from roomba_ros.supervision.launch_parameters import set_parameters
@@ -63,12 +64,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _require_host_of_master()
         require_own_address()
         _refuse_second(launch)
+        claim = claim_robot(rosgraph.get_master_uri(), rosgraph.names.get_ros_namespace())
     except RoombaError as error:
         print(f"./roomba run: {error}", file=sys.stderr)
         return USAGE
     if words := os.environ.pop(_WORDS, ""):
         print(words, file=sys.stderr, flush=True)
-    return _run(launch, package_folder() / "scripts")
+    with claim:
+        return _run(launch, package_folder() / "scripts")
 
 
 def _run(launch: Launch, scripts: Path) -> int:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fixtures.graph import free_port
 
 from roomba.storage.map_store import MapStoreError
 from roomba_ros.maps.map_wish import require_map
+from roomba_ros.supervision.claim import claim_robot
 from roomba_ros.supervision.run import USAGE, main
 
 
@@ -51,6 +53,17 @@ def test_an_address_that_is_not_of_this_machine_is_refused(
     monkeypatch.setenv("ROS_HOSTNAME", "nosuch.invalid")
     assert main(["map:=given"]) == USAGE
     assert "expected ROS_HOSTNAME to lead to this machine" in capsys.readouterr().err
+
+
+def test_a_run_that_begins_beside_another_one_is_refused(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    master = f"http://127.0.0.1:{free_port()}"
+    monkeypatch.setenv("ROS_MASTER_URI", master)
+    monkeypatch.setenv("ROS_NAMESPACE", "first")
+    with claim_robot(master, "/first/"):
+        assert main([]) == USAGE
+    assert "got another run that has just begun" in capsys.readouterr().err
 
 
 def test_a_map_that_is_not_saved_is_refused_with_those_that_are(tmp_path: Path) -> None:

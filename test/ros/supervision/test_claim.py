@@ -1,0 +1,19 @@
+"""A robot is of one run at a time."""
+
+from __future__ import annotations
+
+import pytest
+
+from roomba.errors import RoombaError
+from roomba_ros.supervision.claim import claim_robot
+
+HERE, ELSEWHERE = "http://127.0.0.1:19311", "http://127.0.0.1:19312"
+
+
+def test_a_robot_is_of_one_run_until_that_ends() -> None:
+    with claim_robot(HERE, "/"):
+        with pytest.raises(RoombaError, match=f"^expected no such robot on {HERE}, got another"):
+            claim_robot(HERE, "/")
+        claim_robot(HERE, "/second/").close()
+        claim_robot(ELSEWHERE, "/").close()
+    claim_robot(HERE, "/").close()
