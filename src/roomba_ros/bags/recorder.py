@@ -13,6 +13,7 @@ import rospy
 from roomba.recordings.bag_format.records import MessageSource
 from roomba.recordings.bags.ring import Message
 from roomba_ros.convert.errors import MessageError
+from roomba_ros.runtime.graph.master import master
 from roomba_ros.runtime.subscriptions import subscribe
 
 _CAMERA: Final = "/camera/"
@@ -39,7 +40,7 @@ class GraphEar:
         """Hear nothing yet; ``only`` these topics, or without any all but those of cameras."""
         self._take, self._only, self._has_camera = take, set(only), has_camera
         self._heard: dict[str, rospy.Subscriber] = {}
-        self._master = rosgraph.Master(rospy.get_name())
+        self._master = master(rospy.get_name())
 
     @property
     def topics(self) -> list[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol, TypeVar
 
-import rosgraph
 import rospy
 
 from roomba.client.protocol import (
@@ -14,13 +13,13 @@ from roomba.client.protocol import (
     DockReport,
     ExploreReport,
     RobotClient,
-    RobotUnavailableError,
     VacuumSnapshot,
     WalkReport,
 )
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.client.ros_client import RosRobot
 from roomba_ros.runtime.graph.joining import join_graph
+from roomba_ros.runtime.graph.master import find_master
 from roomba_ros.runtime.node import wait_for_clock
 
 _LOOK = 1.0
@@ -48,11 +47,7 @@ class RoombaClient:
 
         Raises RobotUnavailableError without a ROS master, RoombaError for wrong parameters.
         """
-        if not rosgraph.is_master_online():
-            raise RobotUnavailableError(
-                f"no ROS master answers at {rosgraph.get_master_uri()}; start the robot with "
-                "`./roomba run`, or set ROS_MASTER_URI to where it runs"
-            )
+        find_master()
         if not rospy.core.is_initialized():
             join_graph(node_name, is_anonymous=True)
         wait_for_clock()

@@ -13,6 +13,7 @@ import rospy
 
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.errors import RoombaError
+from roomba_ros.runtime.graph.master import master
 from roomba_ros.runtime.node import told_to_end
 
 SERVER_DEADLINE = 4.0
@@ -66,7 +67,7 @@ def _wait_for(name: str) -> None:
 def is_offered(name: str) -> bool:
     """Whether a node offers a service, as the master knows; False when it does not answer."""
     try:
-        rosgraph.Master(rospy.get_name()).lookupService(rospy.resolve_name(name))
+        master(rospy.get_name()).lookupService(rospy.resolve_name(name))
     except (OSError, rosgraph.MasterException):
         return False
     return True

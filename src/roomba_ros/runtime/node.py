@@ -12,12 +12,13 @@ import time
 from collections.abc import Callable
 from typing import NoReturn, Protocol
 
-import rosgraph
 import rospy
 
+from roomba.client.protocol import RobotUnavailableError
 from roomba.errors import RoombaError
 from roomba_ros.runtime.connections import guard_connections
 from roomba_ros.runtime.graph.joining import join_graph
+from roomba_ros.runtime.graph.master import find_master
 from roomba_ros.runtime.sending import send_at_once
 from roomba_ros.runtime.subscriptions import tell_refusals
 from roomba_ros.runtime.timing.heart import HEART
@@ -138,11 +139,10 @@ def told_to_end() -> bool:
 
 def require_master() -> None:
     """End the process with one clear line when no ROS master answers."""
-    if not rosgraph.is_master_online():
-        give_up(
-            f"no ROS master answers at {rosgraph.get_master_uri()}; start the robot with "
-            "`./roomba run` (or a `roscore`), or set ROS_MASTER_URI to where it runs"
-        )
+    try:
+        find_master()
+    except RobotUnavailableError as error:
+        give_up(str(error))
 
 
 def wait_for_clock() -> None:

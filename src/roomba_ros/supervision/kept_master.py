@@ -24,7 +24,9 @@ import rosgraph.roslogging
 from rosgraph.xmlrpc import XmlRpcNode
 from rosmaster.master_api import ROSMasterHandler
 
+from roomba.client.protocol import RobotUnavailableError
 from roomba.files.kept import KeptFileError, read_kept, write_kept
+from roomba_ros.runtime.graph.master import is_master_online
 from roomba_ros.runtime.timing.heart import HEART
 
 WORKERS: Final = 8
@@ -151,7 +153,9 @@ def wait_for_master(seconds: float, ended: Callable[[], bool]) -> bool:
     """Return whether the master answers within so many seconds, or the waiting has ended."""
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
-        if ended() or rosgraph.is_master_online():
-            return True
+        # A busy one may take long for its first answer.
+        with contextlib.suppress(RobotUnavailableError):
+            if ended() or is_master_online():
+                return True
         time.sleep(0.02)
     return False

@@ -25,6 +25,7 @@ from roomba.files.shipped import CONFIGURATION, HOMES
 from roomba_ros.maps.map_wish import FOLDER, require_map
 from roomba_ros.runtime.graph.alone import living
 from roomba_ros.runtime.graph.joining import require_own_address
+from roomba_ros.runtime.graph.master import is_master_online
 from roomba_ros.runtime.parameters import folder_for
 from roomba_ros.runtime.senders import SUPERVISOR
 from roomba_ros.supervision.claim import claim_robot
@@ -82,7 +83,7 @@ def _run(launch: Launch, scripts: Path) -> int:
     supervisor = Supervisor(load_config(NodesConfig, CONFIGURATION / "nodes.yaml").supervision)
     with tempfile.TemporaryDirectory(prefix="roomba_run_") as folder:
         try:
-            if not rosgraph.is_master_online():
+            if not is_master_online():
                 port = urlparse(rosgraph.get_master_uri()).port or 11311
                 memory = Path(folder) / "master.xml"
                 supervisor.add("master", partial(be_master, port, memory), is_master=True)
@@ -138,7 +139,7 @@ def _require_host_of_master() -> None:
 
 def _refuse_second(launch: Launch) -> None:
     """Raise RoombaError when this robot runs already: two of its nodes would end one another."""
-    if not rosgraph.is_master_online():
+    if not is_master_online():
         return
     there = living(tuple(entry.path for entry in launch.processes))
     if there:

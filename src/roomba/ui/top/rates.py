@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from typing import Any, Final
 from urllib.parse import urlparse
 
+from roomba.client.xml_rpc import ImpatientTransport
+
 _PATIENCE: Final = 1.0
 """s of wall time that a node may take to answer."""
 _CALLER: Final = "/roomba_top"
@@ -81,18 +83,8 @@ class TopicRates:
         address = urlparse(uri)
         if address.scheme != "http" or not address.hostname:
             raise ValueError(f"expected http://HOST:PORT, got {uri}")
-        with xmlrpc.client.ServerProxy(uri, transport=_Impatient()) as server:
+        with xmlrpc.client.ServerProxy(uri, transport=ImpatientTransport(_PATIENCE)) as server:
             code, message, value = getattr(server, method)(_CALLER, *arguments)
         if code != 1:
             raise ValueError(message)
         return value
-
-
-class _Impatient(xmlrpc.client.Transport):
-    """A transport with a deadline."""
-
-    def make_connection(self, host: Any) -> http.client.HTTPConnection:
-        """Return a connection that gives up."""
-        connection = super().make_connection(host)
-        connection.timeout = _PATIENCE
-        return connection

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import socket
 import sys
 from collections.abc import Iterable
 from http.client import HTTPException
 from xmlrpc.client import Error as XmlRpcError
-from xmlrpc.client import ServerProxy
 
 import rosgraph
 import rospy
 from rosgraph.names import ns_join
 
-_PING_TIMEOUT = 5.0
-"""s of wall time without an answer, after which a node is dead; a busy one takes over a second."""
+from roomba_ros.runtime.graph.master import master, node_at
 
 
 def refuse_second(node_name: str, topic: str) -> None:
@@ -25,8 +22,7 @@ def refuse_second(node_name: str, topic: str) -> None:
     """
     namespace = rosgraph.names.get_ros_namespace()
     own = _full_name(node_name)
-    master = rosgraph.Master("/roomba_robot_start")
-    publishers = master.getSystemState()[0]
+    publishers = master().getSystemState()[0]
     watched = rosgraph.names.resolve_name(topic, ns_join(namespace, "node"))
     rivals = {own, *(node for name, nodes in publishers if name == watched for node in nodes)}
     for rival in living(sorted(rivals)):
@@ -46,8 +42,8 @@ def is_taken(node_name: str) -> bool:
 
 def living(nodes: Iterable[str]) -> list[str]:
     """Return those of these nodes, by full name, that answer."""
-    master = rosgraph.Master("/roomba_robot_start")
-    return [node for node in nodes if _is_alive(master, node)]
+    asked = master()
+    return [node for node in nodes if _is_alive(asked, node)]
 
 
 def _full_name(node_name: str) -> str:
@@ -55,14 +51,10 @@ def _full_name(node_name: str) -> str:
     return str(ns_join(rosgraph.names.get_ros_namespace(), name))
 
 
-def _is_alive(master: rosgraph.Master, node: str) -> bool:
-    before = socket.getdefaulttimeout()
-    socket.setdefaulttimeout(_PING_TIMEOUT)
+def _is_alive(asked: rosgraph.Master, node: str) -> bool:
     try:
-        ServerProxy(master.lookupNode(node)).getPid("/roomba_robot_start")
+        node_at(asked.lookupNode(node)).getPid(asked.caller_id)
     except (OSError, HTTPException, XmlRpcError, rosgraph.MasterError):
         # Nothing listens there, or another program on a port that was used again.
         return False
-    finally:
-        socket.setdefaulttimeout(before)
     return True
