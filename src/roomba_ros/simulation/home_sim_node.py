@@ -37,6 +37,7 @@ from roomba_ros.convert.common import (
 from roomba_ros.convert.readings import StampedPose, stamped_pose_of
 from roomba_ros.convert.values import duty_of, time_of
 from roomba_ros.localization import kept_pose
+from roomba_ros.runtime.graph.alone import other_publishers
 from roomba_ros.runtime.node import (
     frame_id,
     give_up,
@@ -105,7 +106,7 @@ class HomeSimNode:
         self.period = self._timing.tick
         self._nanoseconds = round(self._timing.tick * 1e9)
         self._speed = _speed_parameter()
-        self._owns_clock = bool_parameter("~clock", True)
+        self._owns_clock = _owns_clock_parameter()
         self._lock = threading.Lock()
         self._drive = DriveLink(self._config.body.command_timeout, self._lock)
         self._simulator = self._make_simulator()
@@ -288,6 +289,18 @@ def _tells_map_parameter() -> bool:
     if not isinstance(value, str) or not value:
         raise ConfigError(f"parameter ~map: expected given, none, own or a name, got {value!r}")
     return value == "given"
+
+
+def _owns_clock_parameter() -> bool:
+    """Return whether this robot's clock is that of all; raises ConfigError when there is one."""
+    is_wanted = bool_parameter("~clock", True)
+    others = other_publishers("/clock") if is_wanted else []
+    if others:
+        raise ConfigError(
+            f"expected no other clock, but {', '.join(others)} publishes /clock; say clock:=false "
+            "for a further robot, which goes by that one, or end that one first"
+        )
+    return is_wanted
 
 
 def _speed_parameter() -> float:

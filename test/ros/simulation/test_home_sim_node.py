@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import rosgraph
 import rospy
 from fixtures.graph import RosGraph
 from fixtures.nodes.refusal import refusal
@@ -66,6 +67,17 @@ def test_a_wrong_parameter_ends_it_with_one_clear_line(
         assert said in refusal(main, master, capfd)
     finally:
         master.delete_param(parameter)
+
+
+def test_a_second_clock_is_refused(master: RosGraph, capfd: pytest.CaptureFixture[str]) -> None:
+    other = rosgraph.Master("/first/home_sim_node", master.uri)
+    # The master itself stands for a node that answers.
+    other.registerPublisher("/clock", "rosgraph_msgs/Clock", master.uri)
+    try:
+        line = refusal(main, master, capfd)
+    finally:
+        other.unregisterPublisher("/clock", master.uri)
+    assert "but /first/home_sim_node publishes /clock; say clock:=false" in line
 
 
 def test_its_script_ends_by_a_wrong_parameter_too(master: RosGraph) -> None:

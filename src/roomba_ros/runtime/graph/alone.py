@@ -22,10 +22,8 @@ def refuse_second(node_name: str, topic: str) -> None:
     """
     namespace = rosgraph.names.get_ros_namespace()
     own = _full_name(node_name)
-    publishers = master().getSystemState()[0]
     watched = rosgraph.names.resolve_name(topic, ns_join(namespace, "node"))
-    rivals = {own, *(node for name, nodes in publishers if name == watched for node in nodes)}
-    for rival in living(sorted(rivals)):
+    for rival in living(sorted({own, *_publishers_of(watched)})):
         print(
             f"refused: {rival} already serves {watched} on {rosgraph.get_master_uri()}; two of "
             f"them would drive one robot. End that one first (`rosnode kill {rival}`), or "
@@ -33,6 +31,11 @@ def refuse_second(node_name: str, topic: str) -> None:
             file=sys.stderr,
         )
         sys.exit(1)
+
+
+def other_publishers(topic: str) -> list[str]:
+    """Return the living nodes besides this one that publish a topic, all by full name."""
+    return living(sorted(_publishers_of(topic) - {rospy.get_name()}))
 
 
 def is_taken(node_name: str) -> bool:
@@ -44,6 +47,11 @@ def living(nodes: Iterable[str]) -> list[str]:
     """Return those of these nodes, by full name, that answer."""
     asked = master()
     return [node for node in nodes if _is_alive(asked, node)]
+
+
+def _publishers_of(topic: str) -> set[str]:
+    publishers = master().getSystemState()[0]
+    return {node for name, nodes in publishers if name == topic for node in nodes}
 
 
 def _full_name(node_name: str) -> str:
