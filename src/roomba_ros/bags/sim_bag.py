@@ -24,9 +24,9 @@ from roomba.commands.trials.runs import TrialSetup
 from roomba.control.path_tracker import PathTracker
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from roomba.headless.mission import HeadlessMission
+from roomba_ros.body.frames import BodyFrames
 from roomba_ros.convert.common import (
     map_message,
-    mount_message,
     odometry_message,
     path_message,
     pose_message,
@@ -61,10 +61,11 @@ class SimBag:
 
     def __enter__(self) -> SimBag:
         """Write what never changes."""
-        robot, lidar = self._scene.robot, self._scene.config.lidar
-        mount = mount_message(_BASE, _LASER, (0.0, 0.0, lidar.mount_height))
+        robot = self._scene.robot
         now = robot.seen.time
-        self._put("/tf_static", TFMessage([mount]), now)
+        # A bag of no namespace, also where the shell has one.
+        mounted = BodyFrames(self._scene.config, named=str).mounted()
+        self._put("/tf_static", TFMessage(mounted), now)
         self._put("/map", map_message(now, self._scene.home.map, _MAP), now)
         self(robot)
         return self

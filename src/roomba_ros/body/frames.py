@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Final
 
 from geometry_msgs.msg import TransformStamped
@@ -23,32 +24,30 @@ _OPTICAL: Final = (-0.5 * math.pi, 0.0, -0.5 * math.pi)
 class BodyFrames:
     """The frames of the model (``data/model``) below ``base_link``, as transforms."""
 
-    def __init__(self, config: RobotConfig) -> None:
-        """Take the numbers of a body."""
+    def __init__(self, config: RobotConfig, named: Callable[[str], str] = frame_id) -> None:
+        """Take the numbers of a body; ``named`` gives each frame its name, by default a node's."""
         self._config = config
-        self._base = frame_id("base_link")
-        self._wheels = tuple(frame_id(joint.removesuffix("_joint")) for joint in WHEEL_JOINTS)
+        self._named = named
+        self._base = named("base_link")
+        self._wheels = tuple(named(joint.removesuffix("_joint")) for joint in WHEEL_JOINTS)
 
     def mounted(self) -> list[TransformStamped]:
         """Return where the sensors are, which never changes."""
         camera, lidar, cliff = self._config.camera, self._config.lidar, self._config.cliff
+        named = self._named
         lens = (camera.mount_forward, 0.0, camera.mount_height)
         transforms = [
-            mount_message(
-                self._base, frame_id("laser"), (lidar.mount_ahead, 0.0, lidar.mount_height)
-            ),
-            mount_message(self._base, frame_id("imu_link"), (0.0, 0.0, 0.0)),
-            mount_message(self._base, frame_id("camera"), lens),
-            mount_message(
-                frame_id("camera"), frame_id("camera_optical"), (0.0, 0.0, 0.0), _OPTICAL
-            ),
+            mount_message(self._base, named("laser"), (lidar.mount_ahead, 0.0, lidar.mount_height)),
+            mount_message(self._base, named("imu_link"), (0.0, 0.0, 0.0)),
+            mount_message(self._base, named("camera"), lens),
+            mount_message(named("camera"), named("camera_optical"), (0.0, 0.0, 0.0), _OPTICAL),
         ]
         for name, degrees in zip(CLIFF_SENSORS, cliff.angles, strict=True):
             bearing = math.radians(degrees)
             x, y = cliff.radius * math.cos(bearing), cliff.radius * math.sin(bearing)
             down = (0.0, 0.5 * math.pi, bearing)
             transforms.append(
-                mount_message(self._base, frame_id(f"cliff_{name}"), (x, y, _CLIFF_HEIGHT), down)
+                mount_message(self._base, named(f"cliff_{name}"), (x, y, _CLIFF_HEIGHT), down)
             )
         return transforms
 

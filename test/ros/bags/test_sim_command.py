@@ -27,6 +27,9 @@ RATES = {
     "/coverage_map": 0.1,
 }
 
+AHEAD = 0.05
+"""m; where its lidar is before the middle between its wheels."""
+
 
 @pytest.fixture(scope="module")
 def bag(tmp_path_factory: pytest.TempPathFactory) -> Iterator[rosbag.Bag]:
@@ -35,7 +38,9 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Iterator[rosbag.Bag]:
     values = np.full((36, 52), OCCUPIED, np.int8)
     values[2:-2, 2:-2] = FREE
     save_map(OccupancyMap(GridFrame(0.05, 0.0, 0.0, 36, 52), values), folder / "room.yaml")
+    (folder / "robot.yaml").write_text(f"lidar: {{mount_ahead: {AHEAD}}}", "utf-8")
     words = ["--map", str(folder / "room.yaml"), "--station", "0.3", "0.8", "3.1416", "--quiet"]
+    words += ["--config", str(folder / "robot.yaml")]
     assert main([*words, "--bag", str(folder / "run.bag")]) == 0
     with rosbag.Bag(str(folder / "run.bag")) as opened:
         yield opened
@@ -54,6 +59,14 @@ def test_topics_have_their_rates_over_the_whole_run(bag: rosbag.Bag) -> None:
     for topic, rate in RATES.items():
         # where something comes up every tick is looked at
         assert 0.95 * rate <= counts[topic] / seconds <= 2.1 * rate + 2.0 / seconds, topic
+
+
+def test_its_sensors_are_where_the_configuration_says(bag: rosbag.Bag) -> None:
+    (mounts,) = messages(bag, "/tf_static")
+    frames = {each.child_frame_id: each for each in mounts.transforms}
+    assert {"laser", "imu_link", "camera"} <= frames.keys()
+    assert frames["laser"].header.frame_id == "base_link"
+    assert frames["laser"].transform.translation.x == AHEAD
 
 
 def test_the_robot_took_itself_to_be_where_it_was(bag: rosbag.Bag) -> None:
