@@ -20,6 +20,7 @@ from roomba.recordings.bags.ring import Message, Ring, keep_newest, save
 from roomba.recordings.bags.writer import BagWriter
 from roomba_ros.bags.recorder import GraphEar
 from roomba_ros.bags.wrongs import Wrongs
+from roomba_ros.runtime.graph.staying import stay_in_graph
 from roomba_ros.runtime.node import (
     leave,
     register,
@@ -152,6 +153,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     wanted = _wanted(arguments)
     require_master()
     register(f"record_{os.getpid()}")
+    stay_in_graph()
     try:
         # Latched messages come at once, and have no time before the clock is known.
         wait_for_clock()

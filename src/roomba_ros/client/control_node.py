@@ -12,6 +12,7 @@ from roomba.ui.menu import Menu
 from roomba_ros.client.ros_client import RosRobot
 from roomba_ros.runtime.graph.alone import is_taken
 from roomba_ros.runtime.graph.joining import join_graph
+from roomba_ros.runtime.graph.staying import stay_in_graph
 from roomba_ros.runtime.node import leave, require_master, wait_for_clock
 from roomba_ros.runtime.subscriptions import tell_refusals
 
@@ -21,6 +22,7 @@ def main() -> None:
     require_master()
     # Ctrl-C belongs to the menu: it cancels a walk, and leaves a clean to itself.
     join_graph("control_node", is_anonymous=is_taken("control_node"))
+    stay_in_graph()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     try:
         wait_for_clock()

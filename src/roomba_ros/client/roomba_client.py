@@ -20,6 +20,7 @@ from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.client.ros_client import RosRobot
 from roomba_ros.runtime.graph.joining import join_graph
 from roomba_ros.runtime.graph.master import find_master
+from roomba_ros.runtime.graph.staying import stay_in_graph
 from roomba_ros.runtime.node import wait_for_clock
 
 _LOOK = 1.0
@@ -50,6 +51,7 @@ class RoombaClient:
         find_master()
         if not rospy.core.is_initialized():
             join_graph(node_name, is_anonymous=True)
+            stay_in_graph()
         wait_for_clock()
         robot = RosRobot()
         robot.start()
