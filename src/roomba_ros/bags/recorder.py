@@ -18,6 +18,8 @@ from roomba_ros.runtime.subscriptions import subscribe
 
 _CAMERA: Final = "/camera/"
 """Part of the names of topics that are only drawn while they are heard, and are large."""
+_AGAIN: Final = "/rosout_agg"
+"""The topic that repeats what all nodes tell on another one."""
 _QUEUE: Final = 1000
 """Messages of a topic that wait while others are written."""
 _EARLIEST: Final = 1_000_000
@@ -37,7 +39,10 @@ class GraphEar:
         only: Collection[str] = (),
         has_camera: bool = False,
     ) -> None:
-        """Hear nothing yet; ``only`` these topics, or without any all but those of cameras."""
+        """Hear nothing yet; ``only`` these topics.
+
+        Without any it is all but those of cameras, and the one that repeats the log.
+        """
         self._take, self._only, self._has_camera = take, set(only), has_camera
         self._heard: dict[str, rospy.Subscriber] = {}
         self._master = master(rospy.get_name())
@@ -66,7 +71,7 @@ class GraphEar:
     def _wants(self, topic: str) -> bool:
         if self._only:
             return topic in self._only
-        return self._has_camera or _CAMERA not in topic
+        return topic != _AGAIN and (self._has_camera or _CAMERA not in topic)
 
 
 def _came(topic: str, message: Any) -> Message:
