@@ -111,17 +111,20 @@ compile_packages() {
   touch "$VENV/.bytecode"
 }
 
-# Bytecode on all cores, then loops, one process at a time. numba touches the folders that it looks into: the old ones are of
+# Bytecode on all cores, then loops, two processes at a time. numba touches the folders that it looks into: the old ones are of
 # sources that are no more.
 compile_other_loops() {
-  local module stamp
+  local stamp mapping
   stamp=$(compiled_stamp)
   enter_what_there_is
   compile_packages
-  for module in trials.warm map.warm "warm_up others"; do
-    # shellcheck disable=SC2086 # a word of its own
-    python3 -m roomba.commands.$module && count_loops_left "$stamp" || return 1
-  done
+  python3 -m roomba.commands.map.warm &
+  mapping=$!
+  if ! { python3 -m roomba.commands.trials.warm && count_loops_left "$stamp" && python3 -m roomba.commands.warm_up others; }; then
+    wait "$mapping" || true
+    return 1
+  fi
+  wait "$mapping" && count_loops_left "$stamp" || return 1
   mv -f "$stamp.left" "$stamp"
   mkdir -p "$CACHE/numba" # another one may be named by NUMBA_CACHE_DIR
   find "$CACHE/numba" "$CACHE/compiled" -mindepth 1 -maxdepth 1 -mtime +30 -exec rm -r {} +

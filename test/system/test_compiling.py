@@ -189,3 +189,13 @@ def test_what_pip_left_without_bytecode_gets_it_beside(checkout: Checkout) -> No
     checkout.wait(checkout.is_complete)
     made = [call for call in checkout.calls if call.startswith("-m compileall")]
     assert len(made) == 1
+
+
+def test_the_set_up_of_these_tests_left_no_loop_to_be_compiled() -> None:
+    """It counts them at its end. What it left would be compiled where a robot first needs it."""
+    script = '. ./set_up.sh; compiled_is_complete && cat "$(compiled_stamp)"'
+    told = subprocess.run(
+        ["bash", "-c", script], cwd=REPOSITORY, capture_output=True, text=True, check=False
+    )
+    assert told.returncode == 0, f"the set-up is not complete; ./roomba test does it {told.stderr}"
+    assert told.stdout.strip() == "0"

@@ -90,7 +90,11 @@ def left_to_compile() -> list[str]:
         f"{module}.{name}"
         for module in modules
         for name, value in vars(importlib.import_module(module)).items()
-        if is_jitted(value) and value.__module__ == module and not is_kept(value)
+        if is_jitted(value)
+        and value.__module__ == module
+        and not is_kept(value)
+        # One whose body stands in its callers is compiled with them.
+        and value.targetoptions.get("inline") != "always"
     ]
 
 

@@ -9,6 +9,7 @@ the robot is used already: bursts, the camera, :mod:`roomba.commands.map.warm`.
 
 from __future__ import annotations
 
+import math
 import sys
 
 import numpy as np
@@ -22,11 +23,15 @@ from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.headless.mission import HeadlessMission
 from roomba.perception.floors.map_changes import MapChanges
 from roomba.perception.localization.localizer import Localizer
-from roomba.perception.matching.scan_view import LidarModel
+from roomba.perception.localization.search.particle_search import ParticleSearch
+from roomba.perception.matching.scan_view import LidarModel, ScanView
+from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.rooms.rooms import segment
 from roomba.planning.path.search.grid_path import shortest_grid_path
 from roomba.world.camera.camera import Camera, Scene
 from roomba.world.home.home import DirtSource, Home
+from roomba.world.home.turned import turned_home
+from roomba.world.lidar import Lidar
 from roomba.world.simulator import Simulator
 
 
@@ -51,6 +56,8 @@ def others() -> None:
         simulator.step(Twist(0.5, 0.1), config.timing.world_step)
     _find_place(home, config, simulator)
     _look_for_changes(home, config, simulator)
+    _cut_into_rooms()
+    _plan_beside_slanted_walls(home)
 
 
 def _plan(home: Home, robot: HeadlessMission) -> None:
@@ -63,11 +70,12 @@ def _plan(home: Home, robot: HeadlessMission) -> None:
 
 
 def _take_pictures(home: Home, config: SimulatedRobotConfig, simulator: Simulator) -> None:
-    """Take one of each quality."""
+    """Take one of each quality, and one of the lidar."""
     scene = Scene.of(home)
     for supersampling in (1, 2):
         camera = Camera(scene, config.camera, supersampling)
         camera.render(home.station, 0.0, simulator.dirt.micrograms, simulator.dirt.frame)
+    Lidar.of(home, config.lidar).scan(np.array([home.station.as_array()]))
 
 
 def _find_place(home: Home, config: RobotConfig, simulator: Simulator) -> None:
@@ -81,13 +89,39 @@ def _find_place(home: Home, config: RobotConfig, simulator: Simulator) -> None:
     for step in range(40):
         localizer.move(0.1 * step, Pose(), 0.0)
         localizer.see(0.1 * step, simulator.ranges, model)
+    _find_place_while_driving(home, config, model.view(simulator.ranges))
+
+
+def _find_place_while_driving(home: Home, config: RobotConfig, view: ScanView) -> None:
+    """Look for a robot whose place one scan does not tell."""
+    search = ParticleSearch(SurfaceField.of(home.map), config.body.radius)
+    search.see(view, Pose())
+    search.see(view, Pose(0.5, 0.0, 0.0))
+
+
+def _cut_into_rooms() -> None:
+    """Cut a home with a deep doorway: the small room has none."""
+    values = np.full((60, 140), OCCUPIED, np.int8)
+    values[2:-2, 2:-2] = FREE
+    values[:, 60:80] = OCCUPIED
+    values[20:36, 60:80] = FREE
+    segment(OccupancyMap(GridFrame(0.05, 0.0, 0.0, *values.shape), values))
+
+
+def _plan_beside_slanted_walls(home: Home) -> None:
+    """Plan a clean where walls lie aslant on the map's grid."""
+    turned = turned_home(home, math.radians(20.0))
+    context = HeadlessMission(turned).mission.context
+    begin = turned.axes.compose(Pose(0.8, 1.5))
+    todo = np.ones(context.frame.shape, np.bool_)
+    context.plan_coverage((begin.x, begin.y), todo, (), edges_only=False)
 
 
 def _look_for_changes(home: Home, config: RobotConfig, simulator: Simulator) -> None:
     """Look from a few places for what stands otherwise than the map shows it."""
     lidar = config.lidar
     model = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
-    changes = MapChanges(home.map, MapChangesConfig())
+    changes = MapChanges(home.map, MapChangesConfig(look_way=0.1, look_time=1.0))
     for _ in range(60):
         seen = simulator.step(Twist(0.1, 1.0), 0.1)
         changes.see(seen.time, simulator.ranges, model.arrays(), seen.pose)

@@ -122,7 +122,8 @@ def _told_ranges(message: Any) -> tuple[float, float]:
 
 
 def _scan(message: Any, lidars: LidarBook) -> Value | Refused:
-    ranges = np.asarray(message.ranges, np.float32)
+    # A copy: those of a file can only be read, and loops would be compiled for such once more.
+    ranges = np.array(message.ranges, np.float32)
     first, step = message.angle_min, message.angle_increment
     fault = scan_fault(ranges, first, step, *_told_ranges(message))
     if fault:

@@ -12,12 +12,16 @@ import functools
 import numpy as np
 
 from roomba.commands.compiling import compiled_functions_told
+from roomba.commands.trials.unreached import unreached_in
 from roomba.configuration.coverage import CoverageConfig
 from roomba.configuration.loops import TrackingConfig
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, GridFrame, OccupancyMap
 from roomba.headless.burst import LONGEST_BURST
 from roomba.headless.mission import HeadlessMission
+from roomba.headless.odometry import reckoned
+from roomba.perception.swept.coverage_kernels import missed_of
+from roomba.perception.swept.visits import Visits
 from roomba.planning.coverage.stages import OUR_STAGES
 from roomba.world.home.home import DirtSource, Home
 
@@ -28,6 +32,17 @@ def warm_up() -> None:
     robot = HeadlessMission(closet())
     robot.simulator.place_obstacle(1.9, 0.45, 0.05)
     robot.clean()
+    _look_back(robot)
+
+
+def _look_back(robot: HeadlessMission) -> None:
+    """Do what pages and reports want to know of a clean."""
+    rows = robot.passed
+    reckoned(rows, robot.robot_config, None)
+    visits = Visits(robot.context.frame, robot.context.tool_width)
+    visits.sweep_all(np.ascontiguousarray(rows[:, :3]))
+    missed_of(visits.counts, visits.counts > 0)
+    unreached_in(robot.context)
 
 
 def closet() -> Home:

@@ -59,7 +59,7 @@ class DeadReckoning:
             self.belief,
             self.numbers,
             self.path,
-            stamp,
+            float(stamp),  # of a whole number all of it would be compiled once more
             odometry.x,
             odometry.y,
             odometry.theta,

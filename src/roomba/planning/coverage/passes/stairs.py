@@ -164,7 +164,8 @@ def _met(way: Polyline, beside: Beside, near: float) -> Polyline:
             to_x, to_y, away = nearest_solid(beside, at_x, at_y, near)
             if away < least:
                 least, is_met = away, True
-                found[size] = at_x, at_y, to_x, to_y
+                found[size, 0], found[size, 1] = at_x, at_y
+                found[size, 2], found[size, 3] = to_x, to_y
         size += is_met
     return found[:size]
 
