@@ -119,8 +119,15 @@ class HistoryKeeper:
         self._recorder.wish = wish
 
     def look(self, view: RobotView, home: HomeView, layer: Layers) -> None:
-        """Take a look, and keep a run that it was the end of."""
-        self._look(view, home, layer)
+        """Take a look, and keep a run that it was the end of.
+
+        What goes wrong is told, and the next look is the end then.
+        """
+        try:
+            self._look(view, home, layer)
+        # What a robot of another program answers, asked for a layer, is not known here.
+        except Exception as fault:
+            self._tell(f"a look for the history failed: {type(fault).__name__}: {fault}")
         if self.history.set_aside is not self._set_aside:
             self._set_aside = self.history.set_aside
             self._tell(f"the history was damaged; it is set aside as {self._set_aside}")

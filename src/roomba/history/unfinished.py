@@ -139,7 +139,14 @@ class UnfinishedFile:
         now, written = time.monotonic(), self._written
         if now - written.at < _EVERY or len(run.rows) == written.rows:
             return
-        written.at = now
+        try:
+            self._write(run, home, layers, now)
+        finally:
+            # On a slow disk what was seen during this write comes with the next one.
+            written.at = time.monotonic()
+
+    def _write(self, run: RunSoFar, home: Mapping[str, Any], layers: Layers, now: float) -> None:
+        written = self._written
         path = self._path or self._begin(run)
         seen: dict[str, Any] = {"rows": run.rows[written.rows :]}
         seen["words"] = [asdict(word) for word in run.words[written.words :]]

@@ -377,6 +377,24 @@ def test_a_robot_that_is_paused_does_not_fill_the_disk(tmp_path: Path, clock: li
     assert set(read_lines(path)[-1]["layers"]) == {"coverage"}
 
 
+def test_on_a_slow_disk_what_was_seen_meanwhile_is_written_at_once(
+    tmp_path: Path, clock: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[int] = []
+
+    def write_slowly(_: Path, line: dict[str, Any]) -> None:
+        written.append(len(line.get("rows", ())))
+        clock[0] += 2.0
+
+    monkeypatch.setattr("roomba.history.unfinished.append_line", write_slowly)
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
+    for second in range(5):  # which waited for the first write
+        keeper.look(view(float(second), "cleaning"), HOME, layer)
+    clock[0] += 1.0
+    keeper.look(view(5.0, "cleaning"), HOME, layer)
+    assert written == [0, 1, 5]
+
+
 def swept_again(name: LayerName) -> GridLayer | None:
     if name is not LayerName.COVERAGE:
         return layer(name)

@@ -26,6 +26,8 @@ PERIOD: Final = 0.1
 """s between two looks."""
 _LAYERS_EVERY: Final = 3
 """Looks at the robot for one look at its layers."""
+_KEPT_AHEAD: Final = 600
+"""Looks that wait for the disk of the history: a minute of them. Those beyond it are not kept."""
 
 
 class Feed:
@@ -37,8 +39,9 @@ class Feed:
         keeper: HistoryKeeper | None = None,
         household: Household | None = None,
     ) -> None:
-        """Begin with nothing; the keeper, if there is one, is shown each look."""
+        """Begin with nothing; :meth:`run` shows the keeper, if there is one, each look."""
         self._robot, self._keeper, self._household = robot, keeper, household
+        self._to_keep: asyncio.Queue[tuple[RobotView, HomeView]] = asyncio.Queue(_KEPT_AHEAD)
         self._recorded = robot if isinstance(robot, Timeline) else None
         self._looked = asyncio.Event()
         self._looks = 0
@@ -55,9 +58,19 @@ class Feed:
 
     async def run(self) -> None:
         """Look at the robot for ever."""
-        while True:
-            await self.look()
-            await asyncio.sleep(PERIOD)
+        keeping = asyncio.create_task(self._keep())
+        try:
+            while True:
+                await self.look()
+                await asyncio.sleep(PERIOD)
+        finally:
+            keeping.cancel()
+
+    async def _keep(self) -> None:
+        """Show the keeper each look, in a thread of its own: no viewer waits for its disk."""
+        while self._keeper is not None:
+            view, home = await self._to_keep.get()
+            await asyncio.to_thread(self._keeper.look, view, home, self._robot.layer)
 
     async def look(self) -> None:
         """Look at the robot once, and let waiting viewers know."""
@@ -65,6 +78,8 @@ class Feed:
         try:
             view, home, layers = await asyncio.to_thread(self._look_at_robot)
             self._show(view, home)
+            if self._keeper is not None and not self._to_keep.full():
+                self._to_keep.put_nowait((view, home))
             # Not in the thread that looks: viewers take tiles and their version meanwhile.
             for name, layer in layers.items():
                 self.layers[name].update(layer)
@@ -109,8 +124,6 @@ class Feed:
         """Return what there is to see; of the layers, those that are looked at this time."""
         view, home = self._robot.robot(), self._robot.home()
         layers = self._look_at_layers() if self._looks % _LAYERS_EVERY == 1 else {}
-        if self._keeper is not None:
-            self._keeper.look(view, home, self._robot.layer)
         return view, home, layers
 
     def _look_at_layers(self) -> dict[LayerName, GridLayer]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import itertools
 import threading
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import cast
 
@@ -16,17 +17,18 @@ from roomba.client.observed import ObservedRobot, TimelineView
 from roomba.client.protocol import RobotUnavailableError
 from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
 from roomba.geometry import Point
+from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.feed import Feed
 from roomba.ui.web.streams.trail import Place
 
-Looks = Sequence[tuple[float, tuple[float, float] | None]]
+Look = tuple[float, tuple[float, float] | None]
 """s and m."""
 
 
 class Seen:
     """A robot at times and places, s and m; it is not there at a time without a place."""
 
-    def __init__(self, looks: Looks) -> None:
+    def __init__(self, looks: Iterable[Look]) -> None:
         self._looks = iter(looks)
 
     def robot(self) -> RobotView:
@@ -73,7 +75,7 @@ def looked(feed: Feed, times: int) -> list[Place]:
     return list(feed.trail.places)
 
 
-def way_of(looks: Looks) -> list[Place]:
+def way_of(looks: Sequence[Look]) -> list[Place]:
     return looked(Feed(cast(ObservedRobot, Seen(looks))), len(looks))
 
 
@@ -137,3 +139,41 @@ def test_layers_change_between_two_turns_of_the_viewers_and_not_meanwhile() -> N
         assert all(layer.since(0) for layer in feed.layers.values())
 
     asyncio.run(look())
+
+
+class OnSlowDisk:
+    """A keeper whose first look lasts until it is let go."""
+
+    interrupted = None
+
+    def __init__(self) -> None:
+        self.goes_on = threading.Event()
+        self.seen: list[float] = []
+
+    def look(self, view: RobotView, *_: object) -> None:
+        self.seen.append(view.time)
+        assert self.goes_on.wait(10.0)
+
+
+def test_viewers_do_not_wait_for_the_disk_of_the_history_and_it_gets_each_look(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("roomba.ui.web.feed.PERIOD", 0.01)
+    keeper = OnSlowDisk()
+    robot = Seen((float(time), (0.0, 0.0)) for time in itertools.count())
+    feed = Feed(cast(ObservedRobot, robot), cast(HistoryKeeper, keeper))
+
+    async def run() -> None:
+        running = asyncio.create_task(feed.run())
+        try:
+            while feed.number < 5:
+                await asyncio.wait_for(feed.newer(feed.number), 5.0)
+            assert keeper.seen == [0.0]
+        finally:
+            keeper.goes_on.set()
+        while len(keeper.seen) < 5:
+            await asyncio.wait_for(feed.newer(feed.number), 5.0)
+        running.cancel()
+
+    asyncio.run(run())
+    assert keeper.seen[:5] == [0.0, 1.0, 2.0, 3.0, 4.0]
