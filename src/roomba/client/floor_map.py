@@ -57,15 +57,14 @@ def _mask(room: RoomView, layer: GridLayer) -> NDArray[np.bool_]:
     rows, columns = layer.cells.shape
     inside = np.zeros((rows, columns), np.bool_)
     for ring in room.rings:
-        drawn = Image.new("1", (columns, rows))
-        corners = [
-            (
-                (x - layer.origin_x) / layer.resolution - 0.5,
-                (y - layer.origin_y) / layer.resolution - 0.5,
-            )
-            for x, y in ring
-        ]
-        if len(corners) > 2:
-            ImageDraw.Draw(drawn).polygon(corners, fill=1)
-            inside ^= np.asarray(drawn)
+        if len(ring) < 3:
+            continue
+        corners = (np.array(ring) - (layer.origin_x, layer.origin_y)) / layer.resolution - 0.5
+        left, bottom = np.clip(np.floor(corners.min(axis=0)), 0, None).astype(int).tolist()
+        right, top = np.minimum(np.ceil(corners.max(axis=0)) + 1, (columns, rows)).astype(int)
+        if left < right and bottom < top:
+            # Of its bounds alone: a large map has many rooms.
+            drawn = Image.new("1", (right - left, top - bottom))
+            ImageDraw.Draw(drawn).polygon((corners - (left, bottom)).ravel().tolist(), fill=1)
+            inside[bottom:top, left:right] ^= np.asarray(drawn)
     return inside

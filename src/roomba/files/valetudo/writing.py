@@ -30,14 +30,14 @@ def compose(home: ValetudoHome) -> dict[str, Any]:
             f"expected a map with cells of whole cm, got {frame.resolution} m; map it again with "
             "cells of 0.05 m"
         )
-    free, in_rooms = values == FREE, np.zeros(values.shape, np.bool_)
+    left = values == FREE
     layers = []
     for number, (name, mask) in enumerate(home.rooms, start=1):
-        mask = mask & free & ~in_rooms
-        in_rooms |= mask
+        mask = mask & left
+        left &= ~mask
         meta = {"segmentId": str(number), "name": name, "active": False}
         layers.append(_layer("segment", mask, pixel, meta))
-    layers.insert(0, _layer("floor", free & ~in_rooms, pixel, {}))
+    layers.insert(0, _layer("floor", left, pixel, {}))
     layers.append(_layer("wall", values == OCCUPIED, pixel, {}))
     told = [layer for layer in layers if layer["dimensions"]["pixelCount"]]
     entities = _entities(home)
@@ -57,11 +57,15 @@ def compose(home: ValetudoHome) -> dict[str, Any]:
 
 
 def _layer(kind: str, mask: Mask, pixel: int, meta: dict[str, Any]) -> dict[str, Any]:
-    above = mask[::-1]
+    # Of its bounds alone: a large map has many rooms.
+    top, bottom = _bounds(mask.any(axis=1)[::-1])
+    left, right = _bounds(mask.any(axis=0))
+    above = mask[::-1][top:bottom, left:right]
     edges = np.diff(np.pad(above, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     y, x = np.nonzero(edges == 1)
     count = np.nonzero(edges == -1)[1] - x
     rows, columns = np.nonzero(above)
+    x, y, rows, columns = x + left, y + top, rows + top, columns + left
     return {
         "__class": "MapLayer",
         "metaData": {**meta, "area": len(rows) * pixel * pixel},
@@ -74,6 +78,12 @@ def _layer(kind: str, mask: Mask, pixel: int, meta: dict[str, Any]) -> dict[str,
             "pixelCount": len(rows),
         },
     }
+
+
+def _bounds(told: NDArray[np.bool_]) -> tuple[int, int]:
+    """Return where the first is that is told, and where the last one has ended; 0 without any."""
+    found = np.flatnonzero(told)
+    return (int(found[0]), int(found[-1]) + 1) if found.size else (0, 0)
 
 
 def _dimension(cells: NDArray[np.int64]) -> dict[str, int]:

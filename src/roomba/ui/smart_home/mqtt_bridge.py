@@ -1,6 +1,7 @@
 """What the broker is told of one robot, and what comes of the commands that it hands on.
 
-It has no thread of its own: :class:`~roomba.ui.smart_home.smart_home.SmartHome` calls it.
+:class:`~roomba.ui.smart_home.smart_home.SmartHome` calls it. It draws the map in a thread of its
+own: no command waits for that.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import time
 import zlib
 from collections import deque
 from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Final
 
 from roomba.client.floor_map import FloorMap, valetudo_of
@@ -56,6 +58,8 @@ class MqttBridge:
         self._way: deque[Point] = deque(maxlen=_MOST_WAY)
         self._state_told = self._map_told = self._announced = -math.inf
         self._drawn: tuple[object, ...] = ()
+        self._painter = ThreadPoolExecutor(1, "smart home map")
+        self._drawing: Future[None] | None = None
         for topic, entity in announcements(self.topics, config.robot, config.name).items():
             self.broker.hold(topic, json.dumps(entity))
 
@@ -98,9 +102,14 @@ class MqttBridge:
         if now - self._state_told >= self._config.state_period:
             self._state_told = now
             self.broker.hold(self.topics.state, json.dumps(state))
-        if now - self._map_told >= self._config.map_period:
+        before = self._drawing
+        is_free = before is None or before.done()
+        if is_free and now - self._map_told >= self._config.map_period:
             self._map_told = now
-            self._show_map(view, home)
+            way = tuple(self._way)
+            self._drawing = self._painter.submit(self._show_map, view, home, way)
+            if before is not None:
+                before.result()  # what went wrong with it is told as of any look
 
     def _announce_again(self, payload: str) -> None:
         """Home Assistant has started: it knows nothing any more."""
@@ -109,7 +118,7 @@ class MqttBridge:
             self._announced = now
             self.broker.hold_again()
 
-    def _show_map(self, view: RobotView, home: HomeView) -> None:
+    def _show_map(self, view: RobotView, home: HomeView, way: tuple[Point, ...]) -> None:
         """Draw the map, if it is not the one that was drawn last."""
         cells = self._robot.layer(LayerName.MAP)
         if cells is None or not cells.cells.any():
@@ -120,7 +129,7 @@ class MqttBridge:
         if drawn == self._drawn:
             return
         self._drawn = drawn
-        floor = FloorMap(cells, coverage, home, view.pose, tuple(self._way))
+        floor = FloorMap(cells, coverage, home, view.pose, way)
         valetudo = _valetudo_text(floor)
         if valetudo:
             self.broker.hold(self.topics.map_data, zlib.compress(valetudo.encode()))

@@ -8,6 +8,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from fixtures.households.written_robot import HOME
 from PIL import Image
 
@@ -55,6 +56,19 @@ def test_valetudos_map_has_rooms_zones_robot_and_way() -> None:
     assert placed["robot_position"]["metaData"]["angle"] == 0
     assert placed["charger_location"]["points"] == [100, round(top)]
     assert len(placed["path"]["points"]) == 6
+
+
+def test_of_rooms_that_reach_beyond_the_map_what_lies_on_it_is_told() -> None:
+    def room(left: float, bottom: float, right: float, top: float) -> RoomView:
+        ring = ((left, bottom), (right, bottom), (right, top), (left, top))
+        return RoomView(f"from {left:g}", 1.0, (left, bottom), (ring,))
+
+    rooms = (room(-9.0, -9.0, 0.5, 9.0), room(0.5, 0.0, 9.0, 0.5), room(5.0, 5.0, 6.0, 6.0))
+    values = valetudo_of(replace(FLOOR, home=replace(LIVED, rooms=rooms)))
+    (left, first), (right, second) = parse(json.dumps(values)).rooms
+    assert (left, right) == ("from -9", "from 0.5")
+    assert first.sum() == pytest.approx(28 * 24, abs=40)
+    assert second.sum() == pytest.approx(10 * 24, abs=40)
 
 
 def test_the_picture_shows_the_floor_with_the_highest_y_on_top() -> None:

@@ -13,6 +13,7 @@ from fixtures.households.written_robot import HOME, VIEW, WrittenRobot
 from fixtures.mosquitto import HomeSide, Mosquitto
 from fixtures.waiting import unchanged, wait_until
 
+from roomba.client.view import GridLayer, LayerName
 from roomba.ui.smart_home.mqtt_bridge import MqttBridge
 from roomba.ui.smart_home.settings import MqttConfig
 
@@ -72,9 +73,16 @@ def test_state_and_map_are_told_no_more_often_than_is_wanted(
     assert home.count == {}
 
 
-def test_a_command_is_answered_and_told_at_once(
-    bridge: MqttBridge, home: HomeSide, robot: WrittenRobot
+def test_a_command_is_answered_and_told_at_once_and_not_after_the_map(
+    bridge: MqttBridge, home: HomeSide, robot: WrittenRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    goes_on, look = threading.Event(), robot.layer
+
+    def draw_slowly(name: LayerName) -> GridLayer | None:
+        assert goes_on.wait(10.0)
+        return look(name)
+
+    monkeypatch.setattr(robot, "layer", draw_slowly)
     bridge.show(VIEW, HOME, is_new_run=False)
     wait_until(lambda: home.text(f"{BASE}/state"), 10.0)
     assert not bridge.obey()
@@ -85,3 +93,6 @@ def test_a_command_is_answered_and_told_at_once(
     bridge.show(replace(VIEW, dirt=7.0), HOME, is_new_run=False)
     wait_until(lambda: home.text(f"{BASE}/state") and home.text(f"{BASE}/answer"), 10.0)
     assert json.loads(home.text(f"{BASE}/state"))["bin"] == 7.0
+    assert not home.text(f"{BASE}/map")
+    goes_on.set()
+    wait_until(lambda: home.text(f"{BASE}/map"), 10.0)
