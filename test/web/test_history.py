@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 from fixtures.pages.windows import Windows
 from fixtures.waiting import wait_until
+from playwright.sync_api import Route
 from unit.history.made import made_figures, made_recording
 from web.conftest import EACH_SIZE, SIZES, Opened, page_at, serving
 from web.test_page import DEADLINE, check_it_can_be_read
@@ -150,6 +152,8 @@ def test_reports_open_and_two_are_compared(opened: Opened) -> None:
     assert compare.is_disabled()
     page.get_by_role("checkbox", name="Compare run 1").check()
     page.get_by_role("checkbox", name="Compare run 2").check()
+    page.locator("#history-home").select_option("box")  # another home of the chart
+    assert page.locator("#history-runs input:checked").count() == 2
     with page.context.expect_page() as shown:
         compare.click()
     assert shown.value.inner_text("h1") == "Runs 1 and 2 compared"
@@ -157,6 +161,25 @@ def test_reports_open_and_two_are_compared(opened: Opened) -> None:
     page.get_by_role("button", name="Back to the map").press("Enter")
     assert not page.locator("#history").is_visible()
     assert page.evaluate("() => document.activeElement.id") == "history-open"
+
+
+def test_older_runs_are_shown_as_they_are_asked_for(opened: Opened) -> None:
+    page = opened.page
+
+    def one_at_a_time(route: Route) -> None:
+        url = route.request.url
+        route.continue_(url=f"{url}{'&' if '?' in url else '?'}limit=1")
+
+    page.route(re.compile(r"/api/v1/history(\?|$)"), one_at_a_time)
+    opened.show("more")
+    page.get_by_role("button", name="History").click()
+    page.get_by_role("checkbox", name="Compare run 2").check()
+    page.get_by_role("button", name="Older runs").click()
+    page.get_by_role("checkbox", name="Compare run 1").wait_for()
+    assert page.evaluate("document.activeElement.ariaLabel") == "Compare run 1"
+    assert page.get_by_role("checkbox", name="Compare run 2").is_checked()
+    assert page.get_by_role("button", name="Older runs").is_hidden()
+    assert page.locator("#history-dirt .mark").count() == 2
 
 
 def test_keys_do_nothing_behind_it(opened: Opened) -> None:

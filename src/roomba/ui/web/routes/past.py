@@ -57,10 +57,11 @@ def history_api(history: History) -> APIRouter:
         before: int | None = Query(default=None, description=_BEFORE, ge=1, le=2**53),
     ) -> dict[str, Any]:
         choice = Choice(home, program, campaigns=program is not None)
-        found = asked(lambda: history.chosen(choice, limit, before))
+        found = asked(lambda: history.chosen(choice, limit + 1, before))
         weeks = asked(lambda: history.weeks(choice))
         return {
-            "runs": [_run_values(run) for run in found],
+            "runs": [_run_values(run) for run in found[:limit]],
+            "has_older": len(found) > limit,
             "weeks": [{name: getattr(week, name) for name in week.__slots__} for week in weeks],
         }
 

@@ -61,7 +61,11 @@ def test_the_runs_are_told(client: TestClient) -> None:
     assert told["runs"][0]["energy"] is None
     assert told["runs"][0]["fraction"] == pytest.approx(11.0 / 12.0)
     assert told["weeks"][0]["runs"] == 2
-    assert [run["number"] for run in client.get("/api/v1/history?limit=1").json()["runs"]] == [2]
+    newest, oldest = (
+        client.get(f"/api/v1/history?{query}").json() for query in ("limit=1", "limit=1&before=2")
+    )
+    assert [run["number"] for run in newest["runs"]] == [2]
+    assert (newest["has_older"], oldest["has_older"]) == (True, False)
 
 
 def test_a_campaign_does_not_hide_the_runs_of_the_household(

@@ -1,6 +1,6 @@
 /** The history: every run with its report, two compared, each replayed, totals by week, the home's dirt. */
 import { chart } from "../chart.js";
-import { $ } from "../dom.js";
+import { $, offer } from "../dom.js";
 import { BASE, ask } from "../link.js";
 import { get, on } from "../store.js";
 import { duration, title } from "../words.js";
@@ -12,7 +12,8 @@ let runs = [], compared = [];
 export function begin() {
   $("history-open").onclick = open;
   $("history-close").onclick = close;
-  $("history-home").onchange = show;
+  $("history-home").onchange = showDirt;
+  $("history-older").onclick = showOlder;
   $("history-compare").onclick = () => {
     const [one, other] = [...compared].sort((a, b) => a - b);
     window.open(`${BASE}api/v1/history/compare.html?one=${one}&other=${other}`, "_blank", "noopener");
@@ -29,17 +30,38 @@ export function begin() {
 async function open() {
   const told = await ask("history");
   if (!told) return;
-  ({ runs } = told);
+  runs = [];
   compared = [];
-  const homes = [...new Set(runs.map((run) => run.home))], here = runs[0]?.home;
-  $("history-home").replaceChildren(...homes.map((home) => new Option(home, home, home === here, home === here)));
+  $("history-runs").replaceChildren();
   $("history-weeks").replaceChildren(...told.weeks.map(week));
   $("history").hidden = false;
   for (const part of document.querySelectorAll("main > :not(#history)")) part.inert = true;
   opened("history", close);
   remember("history", true);
   $("history-title").focus();
-  show();
+  take(told, told.runs[0]?.home);
+}
+
+/** Show runs that are older than those that are shown; the first of them gets the focus. */
+async function showOlder() {
+  const oldest = runs.at(-1).number;
+  $("history-older").disabled = true;
+  const told = await ask(`history?before=${oldest}`);
+  $("history-older").disabled = false;
+  if (!told || runs.at(-1)?.number !== oldest) return; // it was opened anew meanwhile
+  take(told, $("history-home").value);
+  document.querySelector(`#history-runs [aria-label="${labelOf(told.runs[0])}"]`)?.focus();
+}
+
+/** Show runs after those that are shown, and the dirt of a home. */
+function take(told, home) {
+  runs = [...runs, ...told.runs];
+  $("history-runs").append(...told.runs.map(row));
+  $("history-older").parentElement.hidden = !told.has_older;
+  $("history").toggleAttribute("data-empty", runs.length === 0);
+  offer($("history-home"), [...new Set(runs.map((run) => run.home))].map((name) => [name, name]), home);
+  showDirt();
+  showCompared();
 }
 
 function close() {
@@ -50,15 +72,12 @@ function close() {
   $("history-open").focus();
 }
 
-function show() {
+function showDirt() {
   const home = $("history-home").value, cleans = runs.filter((run) => run.home === home && run.kind === "clean" && run.dirt !== null);
-  $("history").toggleAttribute("data-empty", runs.length === 0);
-  $("history-runs").replaceChildren(...runs.map(row));
   $("history-few").hidden = cleans.length > 1;
   $("history-dirt").toggleAttribute("hidden", cleans.length < 2);
   const points = cleans.map((run) => [run.began, run.dirt]).reverse(), days = [points[0], points.at(-1)].map((point) => (point ? day(point[0]) : ""));
   chart($("history-dirt"), points, `Dirt of ${home}: g that each of ${cleans.length} cleans picked up`, days);
-  showCompared();
 }
 
 function showCompared() {
@@ -70,7 +89,7 @@ function showCompared() {
 function row(run) {
   const line = document.createElement("tr"), box = document.createElement("input");
   box.type = "checkbox";
-  box.setAttribute("aria-label", `Compare run ${run.number}`);
+  box.setAttribute("aria-label", labelOf(run));
   box.onchange = () => {
     compared = box.checked ? [...compared, run.number] : compared.filter((one) => one !== run.number);
     showCompared();
@@ -85,6 +104,8 @@ function row(run) {
     known(run.kind === "clean" ? run.rate : null, (rate) => rate.toFixed(2)), known(run.dirt, (dirt) => `${dirt.toFixed(1)} g`), links];
   return filled(line, cells);
 }
+
+function labelOf(run) { return `Compare run ${run.number}`; }
 
 function week(totals) {
   const line = document.createElement("tr");
