@@ -224,8 +224,11 @@ def test_a_choice_outlives_another_name_and_what_is_gone_is_told(opened: Opened)
     page.keyboard.press("1")
     page.keyboard.press("2")
     before = robot.home().rooms[0].name, robot.home().rooms[1].name
+    opened.show("rooms")
+    page.get_by_label(f"Passes of {before[0]}").select_option("3")
     robot.rename_room(before[0], "den")
     page.locator("#rooms [data-room=den][aria-pressed=true]").wait_for(state="attached")
+    assert page.get_by_label("Passes of den").input_value() == "3"
     assert page.inner_text("#clean") == "Clean 2 rooms"
     robot.join_rooms(("den", before[1]))
     page.get_by_text("no longer a room, and not chosen any more").wait_for()

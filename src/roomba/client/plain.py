@@ -43,6 +43,9 @@ def state_of(view: RobotView) -> Json:
             "battery_seconds": known(view.battery_seconds),
             "charges": view.charges,
             "queue": vacuum.queue,
+            "queue_ways": [
+                {"passes": way.passes, "fan": way.fan.value} for way in vacuum.queue_ways
+            ],
             "is_on_carpet": vacuum.is_on_carpet,
         },
         "bag": known(view.bag),

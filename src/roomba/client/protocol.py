@@ -243,8 +243,9 @@ class VacuumSnapshot:
     ``phase`` is ``state`` in more detail; ``message`` says why it does not do what was asked, and
     what helps, empty when all is well. ``hindrance`` is the same for programs, and
     ``looks_within`` as in :class:`roomba.vocabulary.Reason`. ``queue`` are the rooms that a clean
-    of rooms has still to do, the present one first. The rest is as in :class:`CleanProgress`;
-    areas, share and time are 0 without a clean, a battery not heard of is not a number.
+    of rooms has still to do, the present one first, and ``queue_ways`` how each of them is cleaned.
+    The rest is as in :class:`CleanProgress`; areas, share and time are 0 without a clean, a battery
+    not heard of is not a number.
     """
 
     state: str
@@ -260,6 +261,7 @@ class VacuumSnapshot:
     is_on_carpet: bool = False
     hindrance: Hindrance = Hindrance.NONE
     looks_within: float = 0.0
+    queue_ways: tuple[RoomWay, ...] = ()
 
 
 class CleaningClient(Protocol):

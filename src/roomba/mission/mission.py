@@ -230,6 +230,11 @@ class Mission:
         return () if self.cleaning is None else self.cleaning.ledger.queue
 
     @property
+    def queue_ways(self) -> tuple[RoomWay, ...]:
+        """How each of them is cleaned."""
+        return () if self.cleaning is None else self.cleaning.ledger.queue_ways
+
+    @property
     def exploration(self) -> Exploration | None:
         """The exploration that it is on."""
         return self._job.exploration

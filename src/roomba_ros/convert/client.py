@@ -31,8 +31,16 @@ from roomba.client.protocol import (
     VacuumSnapshot,
 )
 from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
-from roomba.vocabulary import Hindrance, OpenEdge, Reason, RoomDirt, word_of
-from roomba_ros.convert.clean_action import EDGE_REASONS, HINDRANCES, OUTCOMES, REASONS
+from roomba.vocabulary import (
+    FanLevel,
+    Hindrance,
+    OpenEdge,
+    Reason,
+    RoomDirt,
+    RoomWay,
+    word_of,
+)
+from roomba_ros.convert.clean_action import EDGE_REASONS, FANS, HINDRANCES, OUTCOMES, REASONS
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.localization import knowledge_of
 
@@ -67,6 +75,10 @@ def vacuum_of(message: VacuumState) -> VacuumSnapshot:
         is_on_carpet=message.on_carpet,
         hindrance=_hindrance_of(message.hindrance),
         looks_within=message.looks_within,
+        queue_ways=tuple(
+            RoomWay(often, FANS.get(fan, FanLevel.STANDARD))
+            for often, fan in zip(message.queue_passes, message.queue_fans, strict=False)
+        ),
     )
 
 

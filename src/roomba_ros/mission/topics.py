@@ -25,7 +25,7 @@ from roomba.mission.phases.machine import VACUUM_STATES
 from roomba.perception.swept.dirt_map import dirty_from
 from roomba.shares import share_of
 from roomba.vocabulary import Reason
-from roomba_ros.convert.clean_action import put_reason
+from roomba_ros.convert.clean_action import put_reason, way_codes
 from roomba_ros.convert.client import BATTERY_NOT_HEARD
 from roomba_ros.convert.common import header, path_message
 from roomba_ros.convert.mapping import coverage_message, dirt_message
@@ -92,7 +92,15 @@ class MissionTopics:
         text = "; ".join(filter(None, (reason.text, self._background.trouble)))
         own = replace(reason, text=text)
         if not self._is_due(
-            now, (mission.state, mission.queue, mission.is_on_carpet, self._trouble, own)
+            now,
+            (
+                mission.state,
+                mission.queue,
+                mission.queue_ways,
+                mission.is_on_carpet,
+                self._trouble,
+                own,
+            ),
         ):
             return None
         self._newest = (state_of(now, mission, senses), own)
@@ -161,12 +169,15 @@ def with_trouble(trouble: str, own: Reason) -> Reason:
 
 def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
     """Return the mission's state, in the words of smart homes."""
+    passes, fans = way_codes(mission.queue_ways)
     state = VacuumState(
         header=header(now, ""),
         state=VACUUM_STATES[mission.state.phase],
         phase=mission.state.phase.value,
         battery=senses.battery.level,
         queue=mission.queue,
+        queue_passes=passes,
+        queue_fans=fans,
         on_carpet=mission.is_on_carpet,
     )
     put_reason(state, mission.reason)

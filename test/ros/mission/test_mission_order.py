@@ -28,7 +28,8 @@ from roomba.mission.phases.machine import Event
 from roomba.perception.matching.surface_field import SurfaceField
 from roomba.perception.swept.dirt_map import DirtMap
 from roomba.perception.things.layer import ThingLayer
-from roomba.vocabulary import Phase, RoomWay
+from roomba.vocabulary import FanLevel, Phase, RoomWay
+from roomba_ros.convert.client import vacuum_of
 from roomba_ros.mission.asked import Cancel, CommandOrder, GoalOrder, RoomsOrder
 from roomba_ros.mission.goals import CleaningGoal, DockingGoal, MissionGoal
 from roomba_ros.mission.orders import MissionOrders
@@ -182,9 +183,12 @@ def test_other_rooms_are_told_in_the_state_before_the_answer(
     changed = MagicMock()
     monkeypatch.setattr(Mission, "change_rooms", changed)
     monkeypatch.setattr(Mission, "queue", property(lambda _: ("hall",)))
+    ways = (RoomWay(2, FanLevel.QUIET),)
+    monkeypatch.setattr(Mission, "queue_ways", property(lambda _: ways))
     rig.orders.ask(RoomsOrder(("hall",), (RoomWay(2),), rig.world.answer))
     assert rig.tick() == ["idle", "answer"]
-    assert rig.world.state.publish.call_args.args[0].queue == ("hall",)
+    told = vacuum_of(rig.world.state.publish.call_args.args[0])
+    assert (told.queue, told.queue_ways) == (("hall",), ways)
     assert changed.call_args.args == (("hall",), (RoomWay(2),))
     assert rig.world.answer.put.call_args.args == ((True, "it goes on with hall"),)
 

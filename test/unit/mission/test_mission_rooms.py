@@ -89,7 +89,7 @@ def test_passes_of_a_room_that_is_added_are_its_own() -> None:
     cleaning = robot.mission.cleaning
     assert cleaning is not None
     assert [stage.name for stage in cleaning.ledger.stages] == [HALL, DEN, DEN]
-    assert cleaning.ledger.request.way_of(DEN).passes == 2
+    assert robot.mission.queue_ways == (RoomWay(1), RoomWay(2))
 
 
 def test_a_killed_robot_goes_on_with_the_rooms_as_they_were_changed() -> None:

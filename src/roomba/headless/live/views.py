@@ -106,6 +106,7 @@ def vacuum_snapshot(robot: Embodied) -> VacuumSnapshot:
         mission.is_on_carpet,
         reason.hindrance,
         reason.looks_within,
+        mission.queue_ways,
     )
 
 

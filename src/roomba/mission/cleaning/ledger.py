@@ -118,6 +118,11 @@ class CoverageLedger:
         """The rooms that are still to be cleaned, the present one first; none without rooms."""
         return queue_of(self.request, self.stages[self.stage_number :])
 
+    @property
+    def queue_ways(self) -> tuple[RoomWay, ...]:
+        """How each of them is cleaned."""
+        return tuple(map(self.request.way_of, self.queue))
+
     def change_rooms(self, names: Sequence[str], each: Sequence[RoomWay]) -> bool:
         """Clean these rooms from now on; return whether the present one is another one then.
 

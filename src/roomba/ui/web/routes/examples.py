@@ -67,6 +67,7 @@ ANSWERS: Final[dict[str, dict[str, Any]]] = {
             "seconds_to_go": 1260.0,
             "battery": 0.93,
             "queue": ["Kitchen", "Hall"],
+            "queue_ways": [{"passes": 2, "fan": "strong"}, {"passes": 1, "fan": "standard"}],
         },
         "scan": [125, 210, 126, 211],
         "path": [125, 50, 160, 50],

@@ -3,6 +3,7 @@ import { $, button, span } from "../dom.js";
 import { note, wish } from "../link.js";
 import { get, on, set } from "../store.js";
 import { title } from "../words.js";
+import { how } from "./actions.js";
 import { movers } from "./order.js";
 
 let shown = "";
@@ -20,10 +21,16 @@ export function more() { return get("chosen").filter((name) => !rooms().includes
 
 /** Let the robot go on with these; what was so before can be had back. */
 async function change(names, text) {
-  const before = rooms();
-  if (!await wish("queue", { rooms: names }, "PUT")) return false;
-  note(text, () => wish("queue", { rooms: before }, "PUT"));
+  const before = wishFor(rooms());
+  if (!await wish("queue", wishFor(names), "PUT")) return false;
+  note(text, () => wish("queue", before, "PUT"));
   return true;
+}
+
+/** Return what is wished of rooms: each is cleaned as it was to be, and one that comes in as its choices say. */
+function wishFor(names) {
+  const { queue, queue_ways: ways } = get("state").vacuum, { passes, fan } = how(), hows = get("hows");
+  return { rooms: names, each: names.map((name) => ways[queue.indexOf(name)] ?? { passes, fan, ...hows[name] }) };
 }
 
 /** Let the robot clean the chosen ones as well. */

@@ -17,13 +17,14 @@ export function begin() {
   on("home chosen limits", show);
 }
 
-/** Keep the choice when rooms become others: one of the same outline has another name, else say that it is gone. */
+/** Keep the choice, and how each is cleaned, when rooms become others: one of the same outline has another name, else say that it is gone. */
 function follow() {
   const rooms = get("home")?.rooms ?? [], before = new Map(known.map((room) => [room.name, JSON.stringify(room.rings)]));
   known = rooms;
   const nowOf = (name) => rooms.find((room) => room.name === name) ?? rooms.find((room) => JSON.stringify(room.rings) === before.get(name));
   const chosen = get("chosen"), gone = chosen.filter((name) => !nowOf(name));
   if (chosen.length) set("chosen", chosen.map((name) => nowOf(name)?.name).filter(Boolean));
+  set("hows", Object.fromEntries(Object.entries(get("hows")).map(([name, own]) => [nowOf(name)?.name ?? name, own])));
   if (gone.length) note(`${gone.map(title).join(", ")}: no longer a room, and not chosen any more.`);
 }
 
