@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 
 import numpy as np
 import pytest
@@ -252,17 +253,27 @@ def test_of_a_server_that_was_started_anew_the_other_home_is_drawn(opened: Opene
 
 
 @pytest.mark.parametrize("size", [SIZES["desktop"]])
-def test_a_path_that_dies_without_a_word_is_given_up(opened: Opened) -> None:
+def test_the_page_tells_what_has_come_and_gives_up_a_path_that_dies(opened: Opened) -> None:
     page, paths, dead = opened.page, list[WebSocketRoute](), list[WebSocketRoute]()
+    said = list[str | bytes]()
 
     def lead(path: WebSocketRoute) -> None:
         paths.append(path)
         server = path.connect_to_server()
         server.on_message(lambda told: None if path in dead else path.send(told))
 
+        def pass_on(words: str | bytes) -> None:
+            said.append(words)
+            server.send(words)
+
+        path.on_message(pass_on)
+
     page.route_web_socket("**/live", lead)
     page.reload()
     opened.wait_for_phase("docked")
+    seen = [json.loads(words) for words in said if "hello" not in str(words)]
+    assert {each["type"] for each in seen} == {"seen"}
+    assert seen[0]["looked"] == 0.0 < seen[-1]["looked"]
     dead.extend(paths)
     page.wait_for_selector("body[data-link='stale']")
     page.wait_for_selector("body[data-link='live']")

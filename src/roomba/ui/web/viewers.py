@@ -14,7 +14,7 @@ from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.ui.web.bounded.limits import MOST_GARBAGE
 from roomba.ui.web.feed import Feed
 from roomba.ui.web.guard import Guard
-from roomba.ui.web.routes.wishes import DriveWish
+from roomba.ui.web.routes.wishes import DriveWish, SeenWish
 from roomba.ui.web.streams.told import text_of
 
 SENSELESS: Final = 1008
@@ -34,11 +34,12 @@ class Viewers:
     async def serve(self, socket: WebSocket) -> None:
         """Show a viewer all that changes, until it goes."""
         await socket.accept()
-        hearing = asyncio.create_task(self._hear(socket))
-        showing = asyncio.create_task(self._show(socket))
+        seen = _Seen()
+        hearing = asyncio.create_task(self._hear(socket, seen))
+        showing = asyncio.create_task(self._show(socket, seen))
         await until_one_ends(hearing, showing)
 
-    async def _show(self, socket: WebSocket) -> None:
+    async def _show(self, socket: WebSocket, seen: _Seen) -> None:
         """Send the newest whenever the last was taken: a slow viewer skips what is out of date."""
         feed = self._feed
         number, home, trail = 0, 0, 0
@@ -57,9 +58,11 @@ class Viewers:
             if walked is not None:
                 trail = walked.value["end"]
                 await socket.send_text(walked.text)
-            await socket.send_text(feed.state.text)
+            state = feed.state
+            await socket.send_text(state.text)
+            await seen.has_come(state.value.get("looked", 0.0))
 
-    async def _hear(self, socket: WebSocket) -> None:
+    async def _hear(self, socket: WebSocket, seen: _Seen) -> None:
         """Take a viewer's stream of drives by hand, which begins with the token."""
         may_drive, garbage = False, 0
         while garbage < MOST_GARBAGE:
@@ -75,6 +78,8 @@ class Viewers:
                     wish = DriveWish(linear=told.get("linear"), angular=told.get("angular"))
                     if may_drive:
                         await asyncio.to_thread(self._robot.drive, wish.linear, wish.angular)
+                elif kind == "seen":
+                    seen.note(SeenWish(looked=told.get("looked")).looked)
                 else:
                     raise ValueError(f"unknown type {kind!r}")
                 garbage = 0
@@ -87,6 +92,29 @@ class Viewers:
             # Messages that are there already come without waiting: others have their turn, too.
             await asyncio.sleep(0)
         await socket.close(SENSELESS, "expected JSON with a type that is known")
+
+
+class _Seen:
+    """Which look a viewer has, as it says itself: the next one is sent when it has the last.
+
+    One that never says so only listens. It is sent what its connection takes, of which much may be
+    on its way.
+    """
+
+    def __init__(self) -> None:
+        self._newest: float | None = None
+        self._is_told = asyncio.Event()
+
+    def note(self, looked: float) -> None:
+        """It has the look of a time, s since 1970."""
+        self._newest = max(looked, self._newest or 0.0)
+        self._is_told.set()
+
+    async def has_come(self, looked: float) -> None:
+        """Wait until a viewer that says so has that look; that it lives, its pings tell."""
+        while self._newest is not None and self._newest < looked:
+            self._is_told.clear()
+            await self._is_told.wait()
 
 
 async def until_one_ends(*tasks: asyncio.Task[None]) -> None:

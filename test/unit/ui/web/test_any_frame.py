@@ -33,9 +33,11 @@ FUZZ: Final = settings(
     suppress_health_check=list(HealthCheck),
 )
 DRIVE: Final = {"type": "drive", "linear": 0.25, "angular": -0.5}
+SEEN: Final = {"type": "seen", "looked": 1.0}
 ANY_NUMBER: Final = st.one_of(st.sampled_from(NUMBERS), st.floats(), st.integers())
 SAID: Final[st.SearchStrategy[str | bytes]] = st.one_of(
     spoiled_values(DRIVE).map(json.dumps),
+    spoiled_values(SEEN).map(json.dumps),
     spoiled(json.dumps(DRIVE).encode()).map(lambda said: said.decode("utf-8", errors="replace")),
     st.tuples(ANY_NUMBER, ANY_NUMBER).map(
         lambda pair: json.dumps({**DRIVE, "linear": pair[0], "angular": pair[1]})

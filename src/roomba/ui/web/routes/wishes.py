@@ -102,6 +102,12 @@ class DriveWish(Wish):
     angular: float = Field(ge=-math.tau, le=math.tau, allow_inf_nan=False)
 
 
+class SeenWish(Wish):
+    """When the newest look at the robot was taken that a viewer has, s since 1970."""
+
+    looked: float = Field(ge=0.0, allow_inf_nan=False)
+
+
 class StopWish(Wish):
     """Why the drive is held."""
 

@@ -61,6 +61,7 @@ export function connect() {
     isHomeTold = false;
     set("connection", get("connection") + 1);
     hello();
+    haveSeen(0);
   };
   socket.onmessage = (event) => {
     heard = performance.now();
@@ -86,6 +87,9 @@ function giveUp() {
 
 function hello() { socket.send(JSON.stringify({ type: "hello", token })); }
 
+/** Tell which look has come; only then comes the next one, and on a slow link no old ones wait. */
+function haveSeen(looked) { socket.send(JSON.stringify({ type: "seen", looked })); }
+
 /** An address that is typed into an open tab does not load the page anew. */
 addEventListener("hashchange", () => { if (takeToken() && socket?.readyState === WebSocket.OPEN) hello(); });
 
@@ -104,6 +108,7 @@ function take(message) {
       if (message.link === "live") set("seenAt", heardAt);
       if (message.link === "live" && !isConnected()) askLimits(); // before, the robot may not have told them
       set("link", message.link);
+      haveSeen(message.looked ?? 0);
       break;
     case "home": takeHome(message); break;
     case "trail": {

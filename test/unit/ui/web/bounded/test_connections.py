@@ -150,6 +150,26 @@ def test_a_slow_viewer_skips_what_is_out_of_date(
     assert len(set(times)) < 100
 
 
+def test_a_viewer_that_tells_what_it_has_gets_the_next_look_only_then(server: PageServer) -> None:
+    with view(server) as viewer:
+
+        def looked(within: float) -> float:
+            while True:
+                message = viewer.recv(within)
+                if isinstance(message, str) and '"looked"' in message:
+                    return float(json.loads(message)["looked"])
+
+        newest = 0.0
+        for _ in range(3):
+            viewer.send(json.dumps({"type": "seen", "looked": newest}))
+            newest = looked(DEADLINE)
+            # Those that were on their way already.
+            with contextlib.suppress(TimeoutError):
+                for _ in range(20):
+                    newest = looked(0.3)
+                pytest.fail("looks come that nothing was told of")
+
+
 @pytest.mark.parametrize("sign_of_life", [0.3])
 def test_who_never_reads_is_closed(
     server: PageServer, robot: WrittenRobot, monkeypatch: pytest.MonkeyPatch
