@@ -66,6 +66,18 @@ def write_whole(path: Path, content: bytes) -> None:
         os.close(folder)
 
 
+def write_output(path: Path, content: bytes) -> None:
+    """Write what a user wants at a path, as :func:`write_whole` does.
+
+    A device, a pipe, and what a link such as ``/dev/stdout`` leads to, are written into: another
+    program reads there, and a file in their place would be of no use to it. Raises OSError.
+    """
+    if path.is_symlink() or (path.exists() and not path.is_file()):
+        path.write_bytes(content)
+    else:
+        write_whole(path, content)
+
+
 def unfinished_name(name: str) -> str:
     """Return a new name for a version of a file that is not finished, in the same folder.
 

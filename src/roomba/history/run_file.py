@@ -15,7 +15,7 @@ from pydantic import TypeAdapter
 
 from roomba.errors import RoombaError
 from roomba.files.arrays import read_arrays
-from roomba.files.atomic import UNREADABLE, write_whole
+from roomba.files.atomic import UNREADABLE, write_output
 from roomba.files.bounded import read_bytes
 from roomba.files.plain_json import load_json
 from roomba.history.run import CELL_LAYERS, TRACE, CellLayer, RunFigures, RunRecording, Word
@@ -34,7 +34,7 @@ class RunFileError(RoombaError):
 def write_run(figures: RunFigures, recording: RunRecording, path: Path) -> None:
     """Write a run into a file; raises RunFileError, also for what :func:`packed` refuses."""
     try:
-        write_whole(path, packed(figures, recording))
+        write_output(path, packed(figures, recording))
     except OSError as error:
         raise RunFileError(f"{path}: cannot be written: {error.strerror}") from error
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from roomba.files.atomic import write_whole
+from roomba.files.atomic import write_output, write_whole
 
 
 def names(folder: Path) -> list[str]:
@@ -93,6 +93,30 @@ def test_a_link_in_the_place_is_replaced_and_not_followed(tmp_path: Path) -> Non
     assert (folder / "map.json").read_bytes() == b"new"
 
 
+@pytest.mark.parametrize("is_link", [False, True])
+def test_a_pipe_that_a_user_names_is_written_into_and_stays(tmp_path: Path, is_link: bool) -> None:
+    pipe = named = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    if is_link:  # as /dev/stdout and a shell's >(...) are
+        named = tmp_path / "named"
+        named.symlink_to(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        write_output(named, b"new")
+        assert os.read(reader, 10) == b"new"
+    finally:
+        os.close(reader)
+    assert pipe.is_fifo()
+    assert named.is_symlink() == is_link
+
+
+def test_a_file_that_a_user_names_is_written_whole(tmp_path: Path) -> None:
+    for content in (b"longer", b"new"):
+        write_output(tmp_path / "map.json", content)
+    assert (tmp_path / "map.json").read_bytes() == b"new"
+    assert names(tmp_path) == ["map.json"]
+
+
 @pytest.mark.parametrize("dangles", [True, False])
 def test_a_link_at_the_unfinished_file_s_name_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dangles: bool
@@ -134,7 +158,7 @@ def test_names_of_unfinished_files_cannot_be_foreseen(
 KILLED_WHILE_WRITING = """
 import os, signal, sys
 from pathlib import Path
-from roomba.files.atomic import write_whole
+from roomba.files.atomic import write_output, write_whole
 
 os.replace = lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL)
 write_whole(Path(sys.argv[1]), b"new")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import math
 from pathlib import Path
 from typing import Any, Final, Protocol
@@ -126,6 +127,8 @@ class RowBag:
         self._rows = 0
         self._said: tuple[Knowledge, str] | None = None
         self._said_at = -math.inf
+        if path.exists() and not path.is_file():
+            raise OSError(errno.EINVAL, "expected a file, got a pipe or a device", str(path))
         path.unlink(missing_ok=True)
         self._writer = Writer(path)
         self._writer.open()

@@ -15,7 +15,7 @@ from roomba.commands.output import tell_tables, told_width, write_json
 from roomba.commands.program_name import spelled
 from roomba.commands.report.table import csv_of, json_of, run_table, runs_table, weeks_table
 from roomba.errors import RoombaError
-from roomba.files.atomic import write_whole
+from roomba.files.atomic import write_output
 from roomba.history.database import LAST, History
 from roomba.history.folder import history_folder
 from roomba.history.report.document import comparison_of, report_of
@@ -135,7 +135,7 @@ def _write(path: Path, text: str) -> None:
     elif path.is_dir():
         raise IsADirectoryError(f"{path}: expected a file, got a folder; choose another name")
     else:
-        write_whole(path, text.encode())
+        write_output(path, text.encode())
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -11,7 +11,7 @@ from roomba.commands.program_name import spelled
 from roomba.commands.valetudo.homes import read_home
 from roomba.commands.valetudo.options import parser_of, reason_of
 from roomba.errors import RoombaError
-from roomba.files.atomic import write_whole
+from roomba.files.atomic import write_output
 from roomba.files.valetudo.writing import compose
 
 PROGRAM: Final = spelled("export")
@@ -26,7 +26,7 @@ def main(arguments: list[str] | None = None) -> int:
     file = given.out or Path(f"{Path(given.home).stem}.json")
     try:
         values = compose(read_home(given.home))
-        write_whole(file, json.dumps(values, ensure_ascii=False).encode())
+        write_output(file, json.dumps(values, ensure_ascii=False).encode())
     except (RoombaError, OSError) as error:
         print(f"{PROGRAM}: {given.home}: {reason_of(error)}", file=sys.stderr)
         return 2

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+import os
 import shlex
 from dataclasses import replace
 from pathlib import Path
@@ -159,6 +160,16 @@ def test_csv_has_every_run(history: History, capsys: pytest.CaptureFixture[str])
     assert [row["covered_m2"] for row in rows] == ["", "10.0000"]
     assert rows[0]["home"] == "attic, north"
     assert rows[0]["began"] == "2001-09-09T01:46:40Z"
+
+
+def test_csv_to_a_pipe_is_read_at_its_other_end(history: History, tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    history.add(figures("attic", 10.0))
+    assert main(["--csv", str(pipe)]) == 0
+    assert b"attic" in os.read(reader, 10_000)
+    os.close(reader)
 
 
 def test_two_are_compared(history: History, tmp_path: Path) -> None:

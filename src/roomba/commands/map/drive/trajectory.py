@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roomba.arrays import Floats
-from roomba.files.atomic import write_whole
+from roomba.files.atomic import write_output
 from roomba.geometry import Pose
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Trajectory:
 def write_trajectory(path: Path, rows: Floats) -> None:
     """Write rows of t (s), x, y (m), theta (rad) as lines of text; raises OSError."""
     lines = [trajectory_line(t, Pose(*pose)) for t, *pose in rows.tolist()]
-    write_whole(path, "".join(lines).encode())
+    write_output(path, "".join(lines).encode())
 
 
 def trajectory_line(stamp: float, pose: Pose) -> str:
