@@ -74,6 +74,8 @@ def _opener(path: Path) -> _Opener | None:
     """Return what opens a packed file; None for others. Raises LogError."""
     if path.is_dir():
         return None
+    if path.exists() and not path.is_file():
+        raise LogError(f"{path}: expected a file, got a pipe or a device; copy it into a file")
     try:
         with path.open("rb") as file:
             head = file.read(max(map(len, _OPENERS)))

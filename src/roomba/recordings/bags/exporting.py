@@ -99,6 +99,8 @@ def _require_recording(source: Path) -> None:
                 f"{source}: expected a .bag, or the folder of a bag of ROS 2, got {_OTHER}"
             )
         return
+    if not source.is_file():
+        raise LogError(f"{source}: expected a file, got a pipe or a device; copy it into a file")
     with source.open("rb") as file:
         begin = file.read(len(MAGIC))
     if not begin:

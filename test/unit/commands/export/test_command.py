@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -157,6 +158,14 @@ def test_what_cannot_be_exported_is_refused(
     assert main([str(tmp_path), "--to", "mcap", "--out", str(tmp_path / "a.mcap")]) == 2
     assert "the folder of a bag of ROS 2" in capsys.readouterr().err
     assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_pipe_is_refused_and_not_waited_for(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    os.mkfifo(tmp_path / "pipe.bag")
+    assert main([str(tmp_path / "pipe.bag"), "--to", "mcap"]) == 2
+    assert "expected a file, got a pipe or a device" in capsys.readouterr().err
 
 
 def test_a_damaged_bag_is_exported_or_refused_in_one_line(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bz2
 import gzip
 import lzma
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -97,6 +98,12 @@ def test_what_is_no_log_is_refused_with_the_reason(
     with pytest.raises(LogError, match=said) as refusal:
         open_log(path)
     assert str(path) in str(refusal.value)
+
+
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "made.log")
+    with pytest.raises(LogError, match="expected a file, got a pipe or a device"):
+        open_log(tmp_path / "made.log")
 
 
 def test_a_folder_without_metadata_is_no_bag(tmp_path: Path) -> None:
