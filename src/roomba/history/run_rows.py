@@ -84,9 +84,9 @@ def row_of(figures: RunFigures) -> dict[str, Any]:
     source = figures.source
     return {
         "program": source.program,
-        "home": source.home,
+        "home": _legible(source.home),
         "seed": source.seed,
-        "repeat": source.repeat,
+        "repeat": _legible(source.repeat),
         "configuration": _text(dict(source.configuration)),
         "kind": figures.kind,
         "began": figures.began,
@@ -115,6 +115,11 @@ def insert_row(database: sqlite3.Connection, row: dict[str, Any], number: int | 
     missed = [(given, *astuple(MissedFloor(*miss))) for miss in row["missed"]]
     database.executemany("INSERT INTO missed VALUES (?, ?, ?, ?, ?, ?, ?)", missed)
     return given
+
+
+def _legible(name: str) -> str:
+    """Return a text with ? for what is no character, as in names of files that are no UTF-8."""
+    return name.encode(errors="replace").decode()
 
 
 def _text(value: Any) -> str:

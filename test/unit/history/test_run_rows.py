@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import sqlite3
 from dataclasses import replace
 
@@ -32,6 +33,14 @@ def test_what_is_put_in_comes_out_again(database: sqlite3.Connection) -> None:
     assert known == replace(figures, energy=0.0, mapped=0.0)
     assert (second.figures.kind, second.figures.mapped) == ("explore", 20.5)
     assert [run.number for run in select(database, "kind = ?", ("explore",))] == [2]
+
+
+def test_a_home_whose_name_is_no_utf_8_is_kept(database: sqlite3.Connection) -> None:
+    made = made_figures()
+    source = replace(made.source, home=os.fsdecode(b"K\xfcche"), repeat=os.fsdecode(b"sim \xfc"))
+    insert(database, replace(made, source=source))
+    [run] = select(database, "TRUE", ())
+    assert (run.figures.source.home, run.figures.source.repeat) == ("K?che", "sim ?")
 
 
 def test_a_reason_of_a_newer_program_is_left_out(database: sqlite3.Connection) -> None:
