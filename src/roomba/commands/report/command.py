@@ -29,7 +29,10 @@ _LISTED: Final = 20
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Tell of the runs; returns 0, 1 when a file cannot be written, 2 for what there is not."""
+    """Tell of the runs; returns 0, 1 when a file cannot be written, 2 for what there is not.
+
+    Raises BrokenPipeError, when the reader of the output has closed it.
+    """
     wanted = _parser().parse_args(arguments)
     if wanted.run is None and wanted.json is not None and _is_run(wanted.json):
         print(
@@ -41,6 +44,8 @@ def main(arguments: list[str] | None = None) -> int:
     history = History(wanted.history or history_folder())
     try:
         _tell(wanted, history)
+    except BrokenPipeError:  # the reader has had enough
+        raise
     except (RoombaError, OSError) as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return 2 if isinstance(error, RoombaError) else 1

@@ -162,6 +162,18 @@ def test_csv_has_every_run(history: History, capsys: pytest.CaptureFixture[str])
     assert rows[0]["began"] == "2001-09-09T01:46:40Z"
 
 
+def test_a_reader_that_has_had_enough_is_no_error(
+    history: History, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Closed(io.StringIO):
+        def write(self, _: str) -> int:
+            raise BrokenPipeError
+
+    monkeypatch.setattr("sys.stdout", Closed())
+    with pytest.raises(BrokenPipeError):
+        main(["--csv", "-"])
+
+
 def test_csv_to_a_pipe_is_read_at_its_other_end(history: History, tmp_path: Path) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
