@@ -29,7 +29,7 @@ _RATES: Final = {
 class PseudoTerminal:
     """The robot's end of a line; ``name`` is the device that a program opens at the other end.
 
-    Raises RoombaError where ``link``, a name to find it by, is taken by a file that is no link.
+    Raises RoombaError where ``link``, a name to find it by, is taken by what is no link to a line.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class PseudoTerminal:
         self.name, self._baud, self._link = os.ttyname(self._slave), baud, link
         self._speed = speed
         if link is not None:
-            if link.exists() and not link.is_symlink():
+            if link.exists() and not self._is_line(link):
                 raise RoombaError(f"expected a new name for the line, got {link}: a file is there")
             try:
                 link.unlink(missing_ok=True)
@@ -94,5 +94,13 @@ class PseudoTerminal:
         for end in ends:
             with contextlib.suppress(OSError):
                 os.close(end)
-        if self._link is not None:
-            self._link.unlink(missing_ok=True)
+        if self._link is not None and self._leads_here(self._link):
+            self._link.unlink()
+
+    def _is_line(self, link: Path) -> bool:
+        """Whether it leads to a pseudo terminal: the line of an emulator that was killed."""
+        return link.is_symlink() and Path(os.readlink(link)).parent == Path(self.name).parent
+
+    def _leads_here(self, link: Path) -> bool:
+        """Whether it is still the link to this line: a later emulator may have taken the name."""
+        return link.is_symlink() and os.readlink(link) == self.name

@@ -38,8 +38,9 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _live(given: argparse.Namespace) -> int:
     is_over = threading.Event()
-    for ending in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(ending, lambda *_: is_over.set())
+    for ending in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if ending is not signal.SIGHUP or signal.getsignal(ending) is not signal.SIG_IGN:  # nohup
+            signal.signal(ending, lambda *_: is_over.set())
     with MADE_UP[given.robot](given) as told:
         print(f"{told} Ctrl-C ends it.")
         sys.stdout.flush()

@@ -57,7 +57,7 @@ def test_a_create2_and_its_lidar_are_on_lines_of_their_own(tmp_path: Path) -> No
         other = SerialLine(os.fspath(link), 115_200)
         other.write(bytes([142, 35]))
         assert other.read(0.5) == b""
-        emulator.send_signal(signal.SIGTERM)
+        emulator.send_signal(signal.SIGHUP)  # its terminal is closed
         told, _ = emulator.communicate(timeout=10.0)
     finally:
         emulator.kill()
