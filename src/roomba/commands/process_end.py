@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from typing import Final
 
 NOT_READ: Final = 1
-"""Exit status when what reads the output has closed it, as ``head`` does, or a disk is full."""
+"""Exit status when what reads the output has closed it, as ``head`` does, or disk or memory is full."""
 INTERRUPTED: Final = 130
 """Exit status after Ctrl-C."""
 _STANDARD_ERROR: Final = 2
@@ -39,6 +39,9 @@ def quiet_end() -> Iterator[None]:
             raise
         _give_output_up()
         print(f"expected room for what is written: {error}; make some", file=sys.stderr)
+        sys.exit(NOT_READ)
+    except MemoryError:
+        print("expected more memory than there is; end other programs", file=sys.stderr)
         sys.exit(NOT_READ)
     except KeyboardInterrupt:
         print(STOPPED, file=sys.stderr)

@@ -72,6 +72,12 @@ def test_a_full_disk_is_told_in_a_line() -> None:
     assert len(done.stderr.splitlines()) == 1
 
 
+def test_a_lack_of_memory_is_told_in_a_line() -> None:
+    status, said = ended("-c", PRINTING.format("b'x' * 2**62"), is_read=True)
+    assert (status, said.count("\n")) == (1, 1)
+    assert "expected more memory than there is" in said
+
+
 def test_an_output_that_was_closed_before_is_none() -> None:
     closed = f'exec {sys.executable} -c "{PRINTING.format("print(1)")}" >&-'
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
