@@ -124,7 +124,6 @@ TESTED_BY: dict[str, tuple[str, str]] = {
     "roomba/emulators/living": ("realtime/test_create2_body.py", "as the line"),
     "roomba/commands/emulate/making": ("unit/commands/emulate/test_command.py", COMMAND),
     "roomba/drivers/neato/conversation": ("unit/drivers/neato/test_body.py", PART),
-    "roomba/emulators/pseudo_terminal": ("unit/drivers/neato/test_body.py", "as the line"),
     "roomba/emulators/neato/dialects": ("unit/emulators/neato/test_robot.py", PART),
     "roomba/emulators/neato/server": ("unit/drivers/neato/test_body.py", "as the line"),
     "roomba/files/": ("unit/world/layers/test_layer.py", "read and written with what they hold"),

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from typing import Final
 
 NOT_READ: Final = 1
-"""Exit status when what reads the output has closed it, as ``head`` does, or disk or memory is full."""
+"""Exit status when the reader of the output has closed it, or disk or memory is full."""
 INTERRUPTED: Final = 130
 """Exit status after Ctrl-C."""
 _STANDARD_ERROR: Final = 2
