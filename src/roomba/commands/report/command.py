@@ -92,7 +92,7 @@ def _wants_figures_alone(wanted: argparse.Namespace) -> bool:
 
 def _report(wanted: argparse.Namespace, history: History, run: KeptRun) -> None:
     recording = _recording(history, run)
-    tell_tables([run_table(run)], wanted.json, quiet=False)
+    tell_tables([run_table(run)], _on_standard_output(wanted), quiet=False)
     if wanted.recording is not None:
         write_run(run.figures, recording or history.recording(run.number), wanted.recording)
         print(f"Recording: {wanted.recording}", file=_told_to(wanted))
@@ -131,11 +131,17 @@ def _write_document(wanted: argparse.Namespace, usual: Path, text: str) -> None:
 
 def _told_to(wanted: argparse.Namespace) -> TextIO:
     """Return where words for people go: not where figures are told."""
-    return sys.stderr if wanted.json == STANDARD_OUTPUT else sys.stdout
+    return sys.stderr if _on_standard_output(wanted) else sys.stdout
+
+
+def _on_standard_output(wanted: argparse.Namespace) -> str | None:
+    """Return its name if figures, or the report, are written there."""
+    files = (wanted.json, str(wanted.csv), str(wanted.out))
+    return STANDARD_OUTPUT if STANDARD_OUTPUT in files else None
 
 
 def _write(path: Path, text: str) -> None:
-    if str(path) == "-":
+    if str(path) == STANDARD_OUTPUT:
         sys.stdout.write(text)
     elif path.is_dir():
         raise IsADirectoryError(f"{path}: expected a file, got a folder; choose another name")
@@ -155,7 +161,7 @@ def _parser() -> argparse.ArgumentParser:
         "run", nargs="?", metavar="RUN", help=f"its number in the list, or {LAST} for the newest"
     )
     parser.add_argument(
-        "--out", type=Path, metavar="FILE.html", help="the report (default: run-RUN.html)"
+        "--out", type=Path, metavar="FILE.html|-", help="the report (default: run-RUN.html)"
     )
     parser.add_argument("--compare", nargs=2, metavar=("A", "B"), help="two runs in one report")
     parser.add_argument("--csv", type=Path, metavar="FILE|-", help="all runs, for programs")

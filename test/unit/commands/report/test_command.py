@@ -162,6 +162,20 @@ def test_csv_has_every_run(history: History, capsys: pytest.CaptureFixture[str])
     assert rows[0]["began"] == "2001-09-09T01:46:40Z"
 
 
+@pytest.mark.parametrize(
+    ("words", "begins"), [("--out -", "<!doctype html>"), ("--csv -", "run,began")]
+)
+def test_standard_output_has_what_is_asked_for_there_alone(
+    history: History, words: str, begins: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    history.add(figures("attic", 10.0))
+    assert main(["last", *words.split()]) == 0
+    told = capsys.readouterr()
+    assert told.out.lower().startswith(begins)
+    assert "Report: " in told.err
+    assert "Report: " not in told.out
+
+
 def test_a_reader_that_has_had_enough_is_no_error(
     history: History, monkeypatch: pytest.MonkeyPatch
 ) -> None:
