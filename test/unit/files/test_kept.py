@@ -316,14 +316,10 @@ def test_a_file_is_forgotten_with_the_one_before(tmp_path: Path) -> None:
 
 WITHOUT_SEAL: dict[str, str] = {
     "roomba/commands/campaign/parquet.py": "made for the user, by a command",
-    "roomba/commands/map/drive/trajectory.py": "made for the user, by a command",
-    "roomba/commands/report/command.py": "made for the user, by a command",
     "roomba/commands/service.py": "a unit of systemd",
-    "roomba/commands/valetudo/export_command.py": "made for the user, by a command",
     "roomba/commands/valetudo/homes.py": "made for the user, by a command",
     "roomba/files/journal.py": "each line has a checksum",
     "roomba/files/kept.py": "seals",
-    "roomba/history/run_file.py": "an archive, of which each part has a checksum, and a version",
     "roomba/storage/pictures_folder.py": "a picture that is damaged is taken again",
     "roomba/ui/pictures.py": "made for the user, by the menu",
     "roomba/ui/web/kept_token.py": "one of another form is replaced",
