@@ -37,15 +37,16 @@ def check(file: Path) -> str:
     home = load_home("empty", HOMES)
     x, y = home.frame.centre_of(home.frame.rows // 2, home.frame.columns // 2)
     worst = 0.0
-    for name, corners in _PATHS:
-        path = [(x + right, y + up) for right, up in corners]
-        line, length = shapely.LineString(path), shapely.LineString(path).length
+    # Each is one list all along, and none has the identity of one before it.
+    paths = {name: [(x + right, y + up) for right, up in corners] for name, corners in _PATHS}
+    for name, path in paths.items():
+        end, line = path[-1], shapely.LineString(path)
         first = math.atan2(path[1][1] - path[0][1], path[1][0] - path[0][0])
         robot = Simulator(home, seed=1, start=Pose(*path[0], first))
-        most = 10.0 + 3.0 * length / _SPEED
+        most = 10.0 + 3.0 * line.length / _SPEED
         while robot.time < most:
             pose = robot.pose
-            speed, turning = drive((pose.x, pose.y, pose.theta), list(path), _SPEED)
+            speed, turning = drive((pose.x, pose.y, pose.theta), path, _SPEED)
             expect(
                 math.isfinite(speed) and math.isfinite(turning),
                 f"{name}: expected a finite speed and turning, got {speed}, {turning}",
@@ -63,7 +64,7 @@ def check(file: Path) -> str:
             )
         else:
             expect(False, f"{name}: it has not told the robot to stand after {most:.0f} s")
-        off = robot.pose.distance_to(*path[-1])
+        off = robot.pose.distance_to(*end)
         expect(off <= _NEAR, f"{name}: it stands {off:.2f} m from the end; {_NEAR} m are allowed")
     return f"{len(_PATHS)} paths, at most {100.0 * worst:.1f} cm off them"
 

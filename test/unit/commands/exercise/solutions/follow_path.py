@@ -7,8 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-_come: dict[int, float] = {}
-"""By path: how far along it the robot has come, m."""
+
+class Progress:
+    """The path that is followed, and how far along it the robot has come, m."""
+
+    path: list[tuple[float, float]] | None = None
+    along = 0.0
 
 
 def drive(
@@ -17,18 +21,18 @@ def drive(
     points = np.array(path)
     lengths = np.hypot(*np.diff(points, axis=0).T)
     ends = np.concatenate([[0.0], np.cumsum(lengths)])
-    key = hash(tuple(path))
+    if path is not Progress.path:
+        Progress.path, Progress.along = path, 0.0
     x, y, theta = pose
 
     def at(along: float) -> NDArray[np.float64]:
         return np.array([np.interp(along, ends, column) for column in points.T])
 
-    before = _come.get(key, 0.0)
-    near = np.arange(before, before + 0.15, 0.005)
+    near = np.arange(Progress.along, Progress.along + 0.15, 0.005)
     near = near[near <= ends[-1]] if (near <= ends[-1]).any() else np.array([ends[-1]])
     away = [float(np.hypot(*(at(along) - (x, y)))) for along in near]
     along = float(near[int(np.argmin(away))])
-    _come[key] = along
+    Progress.along = along
     left = math.hypot(points[-1, 0] - x, points[-1, 1] - y)
     if along > ends[-1] - 0.03 and left < 0.03:
         return 0.0, 0.0
