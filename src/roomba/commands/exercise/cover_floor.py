@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.arrays import Mask
-from roomba.commands.exercise.verdict import expect, function_of, judged
-from roomba.raster.regions import dilated
+from roomba.commands.exercise.verdict import NotYetError, expect, function_of, judged
+from roomba.raster.regions import dilated, numbered_regions
 
 _WIDTH: Final = 5
 """Cells of 5 cm that the tool sweeps: the one the middle is in, and two to each side."""
@@ -52,11 +52,14 @@ def check(file: Path) -> str:
                 inside and bool(free[row, column]),
                 f"{name}: the middle may not be at cell ({row}, {column}), which the way crosses",
             )
-        share, length = _swept(free, passed), float(np.hypot(*np.diff(way, axis=0).T).sum())
-        expect(
-            share >= _SHARE, f"{name}: {share:.1%} of the floor are swept, expected {_SHARE:.0%}"
-        )
-        ratio = length * _WIDTH / int(dilated(free, _tool()).sum())
+        floor, swept = dilated(free, _tool()), _swept(free, passed)
+        share, length = swept.sum() / floor.sum(), float(np.hypot(*np.diff(way, axis=0).T).sum())
+        if share < _SHARE:
+            raise NotYetError(
+                f"{name}: {share:.1%} of the floor are swept, expected {_SHARE:.0%}; the largest "
+                f"part that is left is in {_largest(floor & ~swept)}"
+            )
+        ratio = length * _WIDTH / int(floor.sum())
         expect(ratio <= _MOST, f"{name}: {ratio:.2f} times the least way, {_MOST} are allowed")
         told.append(f"{name}: {share:.1%} by {ratio:.2f} times the least way")
     return "; ".join(told)
@@ -78,11 +81,18 @@ def _cells_of(way: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.unique(cells, axis=0)
 
 
-def _swept(free: Mask, passed: NDArray[np.int64]) -> float:
-    """Return the share of what the tool can reach that it passed over."""
+def _swept(free: Mask, passed: NDArray[np.int64]) -> Mask:
+    """Return what the tool passed over."""
     at = np.zeros_like(free)
     at[passed[:, 0], passed[:, 1]] = True
-    return float(dilated(at, _tool()).sum() / dilated(free, _tool()).sum())
+    return dilated(at, _tool())
+
+
+def _largest(left: Mask) -> str:
+    """Return in words where the largest connected part of some cells is; there is one at least."""
+    parts = numbered_regions(left)
+    rows, columns = np.nonzero(parts == np.bincount(parts[left]).argmax())
+    return f"rows {rows.min()} to {rows.max()}, columns {columns.min()} to {columns.max()}"
 
 
 if __name__ == "__main__":

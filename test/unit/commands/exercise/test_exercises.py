@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from fixtures.thoroughness import core_first
 from fixtures.waiting import promised
 
+from roomba.commands.exercise import cover_floor
 from roomba.commands.exercise.command import main
 from roomba.commands.exercise.course import COURSE
+from roomba.commands.exercise.verdict import NotYetError
 
 SOLUTIONS = Path(__file__).with_name("solutions")
 NUMBERS = {each.name: number for number, each in enumerate(COURSE, 1)}
@@ -53,6 +56,28 @@ def test_what_is_wrong_is_told(
     file.write_text(answer, "utf-8")
     assert main([str(NUMBERS["shortest_path"]), "--check", "--file", str(file)]) == 1
     assert told in capfd.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("check", "answer", "told"),
+    [
+        (
+            cover_floor.check,
+            "def coverage_path(free, start):\n"
+            "    return [start, (2, 2), (47, 2), (47, 57), (2, 57)]\n",
+            "floor are swept, expected 98%; the largest part that is left is in "
+            "rows 0 to 44, columns 4 to 55",
+        ),
+    ],
+)
+def test_what_is_not_right_yet_is_told(
+    check: Callable[[Path], str], answer: str, told: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "answer.py"
+    file.write_text(answer, "utf-8")
+    with pytest.raises(NotYetError) as raised:
+        check(file)
+    assert told in str(raised.value)
 
 
 @pytest.mark.parametrize(
