@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from pathlib import Path
 
@@ -43,3 +44,16 @@ def test_each_is_typed_by_a_suite() -> None:
     suites = "".join(path.read_text("utf-8") for path in SUITES)
     typed = {page.stem for page in TUTORIALS if f'"{page.stem}"' in suites}
     assert typed == {page.stem for page in TUTORIALS} - {"README"}
+
+
+def test_one_leads_to_the_next_in_the_order_of_the_list_and_of_the_site() -> None:
+    folder = ROOT / "docs" / "tutorials"
+    table, site = (
+        (folder / "README.md").read_text("utf-8"),
+        (ROOT / "mkdocs.yml").read_text("utf-8"),
+    )
+    listed = re.findall(r"^\| \[[^]]+\]\((\w+)\.md\)", table, re.M)
+    assert re.findall(r"tutorials/([a-z]\w+)\.md", site) == listed
+    for one, other in itertools.pairwise(listed):
+        _, _, led = (folder / f"{one}.md").read_text("utf-8").rpartition("Next:")
+        assert re.findall(r"\((\w+)\.md\)", led)[:1] == [other], one
