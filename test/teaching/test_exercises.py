@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from roomba.commands.exercise.command import main
 from roomba.commands.exercise.course import COURSE
+from roomba_ros.exercises import camera_service
 
 SOLUTIONS = Path(__file__).with_name("solutions")
 NUMBERS = {each.name: number for number, each in enumerate(COURSE, 1)}
@@ -35,3 +38,24 @@ def test_what_a_learner_begins_with_does_not_pass_yet(
     start = COURSE[NUMBERS[name] - 1].start
     assert main([str(NUMBERS[name]), "--check", "--file", str(start)]) == 1
     assert NOT_YET[name] in capfd.readouterr().out
+
+
+def test_pictures_of_two_angles_or_with_two_colours_exchanged_are_told_apart() -> None:
+    exchanged = [colour[::-1] for colour in camera_service.COLOURS.values()]
+    assert len({*camera_service.COLOURS.values(), *exchanged}) == 2 * len(camera_service.COLOURS)
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        lambda angle: max(-30, min(30, 15 * int(angle / 15 + 0.5))),
+        lambda angle: max(-30, min(30, 15 * int(angle / 15))),
+        lambda angle: max(-30, min(30, 15 * math.floor(angle / 15))),
+        lambda angle: 15 * round(angle / 15),
+        lambda angle: abs(max(-30, min(30, 15 * round(angle / 15)))),
+    ],
+)
+def test_an_angle_is_asked_for_which_a_wrong_rule_rounds_to_another_picture(
+    answer: Callable[[float], int],
+) -> None:
+    assert any(answer(degrees) != angle for degrees, angle in camera_service.asked())

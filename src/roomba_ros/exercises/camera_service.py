@@ -18,18 +18,27 @@ from roomba_ros.exercises.graph import OwnGraph
 
 _SIZE: Final = (48, 64)
 """Pixels of a picture: height, width."""
-_COLOURS: Final = {
-    -30: (200, 20, 20), -15: (20, 200, 20), 0: (20, 20, 200), 15: (200, 200, 20), 30: (20, 200, 200)
+COLOURS: Final = {
+    -30: (200, 20, 80), -15: (20, 200, 100), 0: (20, 80, 220), 15: (200, 140, 20), 30: (60, 200, 99)
 }  # fmt: skip
-"""By angle, degrees: blue, green, red."""
-_ASKED: Final = ((0.0, 0), (8.0, 15), (7.0, 0), (-90.0, -30), (22.4, 15), (400.0, 30))
-"""Angles that are asked for, and those of the pictures that are nearest."""
+"""By angle, degrees: blue, green, red; none is one of them with red and blue exchanged."""
+_CHOSEN: Final = (0.0, 8.0, 7.0, -8.0, -22.4, -23.0, 22.4, -90.0, 400.0)
+_DRAWN: Final = 6
+_WIDE: Final = 45.0
+"""degrees to each side, among which angles are drawn."""
+
+
+def asked() -> list[tuple[float, int]]:
+    """Return the angles that are asked for, degrees, and those of the pictures that are nearest."""
+    drawn = np.random.default_rng(2).uniform(-_WIDE, _WIDE, _DRAWN).round(1)
+    angles = [*_CHOSEN, *(float(angle) for angle in drawn)]
+    return [(one, min(COLOURS, key=lambda other: abs(other - one))) for one in angles]
 
 
 def check(file: Path) -> str:
     """Return what is right; raises NotYetError."""
     with OwnGraph() as graph, tempfile.TemporaryDirectory() as folder:
-        for angle, colour in _COLOURS.items():
+        for angle, colour in COLOURS.items():
             picture = np.full((*_SIZE, 3), colour, np.uint8)
             cv2.imwrite(str(Path(folder) / f"{angle}.png"), picture)
         graph.run_answer(file, "turn_camera_service_node", folder)
@@ -38,26 +47,27 @@ def check(file: Path) -> str:
         except rospy.ROSException as error:
             raise NotYetError("expected a service turn_camera, there is none") from error
         turn = rospy.ServiceProxy("turn_camera", TurnCamera)
-        for asked, angle in _ASKED:
+        questions = asked()
+        for wish, angle in questions:
             try:
-                image = turn(asked).image
+                image = turn(wish).image
             except rospy.ServiceException as error:
-                raise NotYetError(f"asked for {asked:g} degrees it failed: {error}") from error
+                raise NotYetError(f"asked for {wish:g} degrees it failed: {error}") from error
             expect(
                 (image.height, image.width) == _SIZE,
-                f"asked for {asked:g} degrees: expected a picture of {_SIZE[1]} x {_SIZE[0]} "
+                f"asked for {wish:g} degrees: expected a picture of {_SIZE[1]} x {_SIZE[0]} "
                 f"pixels, got {image.width} x {image.height}",
             )
             came = tuple(int(value) for value in CvBridge().imgmsg_to_cv2(image, "bgr8")[0, 0])
             expect(
-                came == _COLOURS[angle],
-                f"asked for {asked:g} degrees: expected the picture of {angle}, got {_which(came)}",
+                came == COLOURS[angle],
+                f"asked for {wish:g} degrees: expected the picture of {angle}, got {_which(came)}",
             )
-    return f"{len(_ASKED)} angles, each the nearest picture in its colours"
+    return f"{len(questions)} angles, each the nearest picture in its colours"
 
 
 def _which(colour: tuple[int, ...]) -> str:
-    for angle, own in _COLOURS.items():
+    for angle, own in COLOURS.items():
         if colour == own:
             return f"that of {angle}"
         if colour == own[::-1]:
