@@ -10,7 +10,8 @@ import pytest
 
 from roomba.commands.exercise.command import main
 from roomba.commands.exercise.course import COURSE
-from roomba_ros.exercises import camera_service
+from roomba.commands.exercise.verdict import NotYetError
+from roomba_ros.exercises import camera_service, walk_action
 
 SOLUTIONS = Path(__file__).with_name("solutions")
 NUMBERS = {each.name: number for number, each in enumerate(COURSE, 1)}
@@ -59,3 +60,21 @@ def test_an_angle_is_asked_for_which_a_wrong_rule_rounds_to_another_picture(
     answer: Callable[[float], int],
 ) -> None:
     assert any(answer(degrees) != angle for degrees, angle in camera_service.asked())
+
+
+@pytest.mark.parametrize(
+    ("distances", "told"),
+    [
+        ([1.0, 0.5], "expected feedback twice a second, got 2"),
+        ([1.0, 1.0, 1.0], "0.10 m were left, distance told 1.00"),
+        ([1.0, 0.0, 0.0], "0.60 m were left, distance told 0.00"),
+    ],
+)
+def test_a_distance_that_is_not_what_was_left_is_told(distances: list[float], told: str) -> None:
+    with pytest.raises(NotYetError, match=told):
+        walk_action.expect_distances(list(zip(distances, (1.0, 0.6, 0.1), strict=False)))
+
+
+def test_a_time_that_a_walk_did_not_take_is_told() -> None:
+    with pytest.raises(NotYetError, match=r"a walk took 0.8 s, time_spent is 2.00"):
+        walk_action.expect_time("a walk", 0.8, 2.0)
