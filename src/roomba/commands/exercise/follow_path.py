@@ -19,6 +19,8 @@ _DT: Final = 0.05
 """s between two commands."""
 _SPEED: Final = 0.3
 """m/s."""
+_FASTEST_TURN: Final = 20.0
+"""rad/s; more is no robot's turning but degrees. This one reaches a fifth of it."""
 _ASIDE: Final = 0.10
 """m; farther off its path the robot is not to be."""
 _NEAR: Final = 0.05
@@ -52,6 +54,10 @@ def check(file: Path) -> str:
                 f"{name}: expected a finite speed and turning, got {speed}, {turning}",
             )
             expect(speed <= 1.01 * _SPEED, f"{name}: {speed:.2f} m/s is above {_SPEED} m/s")
+            expect(
+                abs(turning) <= _FASTEST_TURN,
+                f"{name}: {turning:.0f} rad/s is more than any robot turns; are these degrees?",
+            )
             if speed == 0.0 and turning == 0.0:
                 break
             robot.step(Twist(float(speed), float(turning)), _DT)
@@ -62,9 +68,12 @@ def check(file: Path) -> str:
                 f"{name}: after {robot.time:.1f} s it is {aside:.2f} m off its path, at "
                 f"({robot.pose.x - x:.2f}, {robot.pose.y - y:.2f}); {_ASIDE} m are allowed",
             )
-        else:
-            expect(False, f"{name}: it has not told the robot to stand after {most:.0f} s")
         off = robot.pose.distance_to(*end)
+        expect(
+            robot.time < most,
+            f"{name}: it has not told the robot to stand after {most:.0f} s, at "
+            f"({robot.pose.x - x:.2f}, {robot.pose.y - y:.2f}), {off:.2f} m from the end",
+        )
         expect(off <= _NEAR, f"{name}: it stands {off:.2f} m from the end; {_NEAR} m are allowed")
     return f"{len(_PATHS)} paths, at most {100.0 * worst:.1f} cm off them"
 

@@ -9,7 +9,7 @@ import pytest
 from fixtures.thoroughness import core_first
 from fixtures.waiting import promised
 
-from roomba.commands.exercise import cover_floor
+from roomba.commands.exercise import cover_floor, follow_path
 from roomba.commands.exercise.command import main
 from roomba.commands.exercise.course import COURSE
 from roomba.commands.exercise.verdict import NotYetError
@@ -67,6 +67,16 @@ def test_what_is_wrong_is_told(
             "    return [start, (2, 2), (47, 2), (47, 57), (2, 57)]\n",
             "floor are swept, expected 98%; the largest part that is left is in "
             "rows 0 to 44, columns 4 to 55",
+        ),
+        (
+            follow_path.check,
+            "def drive(pose, path, speed):\n    return 0.0, 90.0\n",
+            "straight on: 90 rad/s is more than any robot turns; are these degrees?",
+        ),
+        (
+            follow_path.check,
+            "def drive(pose, path, speed):\n    return 0.0, 0.1\n",
+            "has not told the robot to stand after 45 s, at (-2.00, -1.00), 3.50 m from the end",
         ),
     ],
 )
