@@ -9,7 +9,7 @@ import pytest
 from fixtures.thoroughness import core_first
 from fixtures.waiting import promised
 
-from roomba.commands.exercise import cover_floor, follow_path
+from roomba.commands.exercise import cover_floor, follow_path, match_scan
 from roomba.commands.exercise.command import main
 from roomba.commands.exercise.course import COURSE
 from roomba.commands.exercise.verdict import NotYetError
@@ -77,6 +77,13 @@ def test_what_is_wrong_is_told(
             follow_path.check,
             "def drive(pose, path, speed):\n    return 0.0, 0.1\n",
             "has not told the robot to stand after 45 s, at (-2.00, -1.00), 3.50 m from the end",
+        ),
+        (
+            match_scan.check,
+            (SOLUTIONS / "match_scan.py")
+            .read_text("utf-8")
+            .replace('loss="soft_l1", f_scale=0.02', 'loss="linear"'),
+            "m off in the median, expected 0.02 m or less",
         ),
     ],
 )
