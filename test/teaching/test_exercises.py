@@ -11,7 +11,7 @@ import pytest
 from roomba.commands.exercise.command import main
 from roomba.commands.exercise.course import COURSE
 from roomba.commands.exercise.verdict import NotYetError
-from roomba_ros.exercises import camera_service, walk_action
+from roomba_ros.exercises import camera_service, dirt_node, walk_action
 
 SOLUTIONS = Path(__file__).with_name("solutions")
 NUMBERS = {each.name: number for number, each in enumerate(COURSE, 1)}
@@ -78,3 +78,10 @@ def test_a_distance_that_is_not_what_was_left_is_told(distances: list[float], to
 def test_a_time_that_a_walk_did_not_take_is_told() -> None:
     with pytest.raises(NotYetError, match=r"a walk took 0.8 s, time_spent is 2.00"):
         walk_action.expect_time("a walk", 0.8, 2.0)
+
+
+@pytest.mark.parametrize("between", [0.14, 0.33])
+def test_another_rate_than_five_a_second_is_told(between: float) -> None:
+    dirt_node.expect_rate([0.0, 0.2, 0.4, 0.65])
+    with pytest.raises(NotYetError, match=f"one came each {between} s"):
+        dirt_node.expect_rate([0.0, between, 2.0 * between])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import statistics
 import sys
 import time
 from pathlib import Path
@@ -17,15 +19,20 @@ _QUIET: Final = 0.5
 """s in which nothing is to be told, before the sensor felt anything."""
 _LOOK: Final = 2.0
 """s in which messages are counted."""
-_RATE: Final = (3.0, 7.0)
-"""1/s; five are asked for."""
+_BETWEEN: Final = (0.17, 0.25)
+"""s from a message to the next in the median; a fifth is asked for."""
 
 
 def check(file: Path) -> str:
     """Return what is right; raises NotYetError."""
     with OwnGraph() as graph:
-        heard: list[float] = []
-        rospy.Subscriber("dirt", Float32, lambda message: heard.append(message.data))
+        heard, times = list[float](), list[float]()
+
+        def hear(message: Float32) -> None:
+            heard.append(message.data)
+            times.append(time.monotonic())
+
+        rospy.Subscriber("dirt", Float32, hear)
         sensor = rospy.Publisher("dirt_raw", Float32, queue_size=10)
         graph.run_answer(file, "dirt_pub_node")
         wait_for(lambda: sensor.get_num_connections() > 0, 5.0, "your node to hear dirt_raw")
@@ -41,10 +48,19 @@ def check(file: Path) -> str:
         wait_for(lambda: heard[-1] == 0.5, 5.0, "dirt to tell the newest value of dirt_raw, 0.5")
         first = len(heard)
         time.sleep(_LOOK)
-        rate = (len(heard) - first) / _LOOK
-        expect(_RATE[0] <= rate <= _RATE[1], f"expected 5 messages a second, got {rate:.1f}")
+        expect_rate(times[first:])
         expect(set(heard[first:]) == {0.5}, f"dirt_raw was 0.5, dirt told {heard[-1]}")
-    return f"the newest value, {rate:.1f} times a second"
+    return "the newest value, five times a second"
+
+
+def expect_rate(times: list[float]) -> None:
+    """Raise NotYetError unless messages came five times a second at these times, s."""
+    expect(len(times) > 1, f"expected 5 messages a second, got {len(times)} in {_LOOK:g} s")
+    between = statistics.median(other - one for one, other in itertools.pairwise(times))
+    expect(
+        _BETWEEN[0] <= between <= _BETWEEN[1],
+        f"expected a message each 0.2 s, one came each {between:.2f} s",
+    )
 
 
 if __name__ == "__main__":
