@@ -57,6 +57,9 @@ def judged(check: Callable[[Path], str]) -> int:
     except NotYetError as error:
         print(f"not yet: {error}")
         return NOT_YET
+    except SystemExit as error:
+        print(f"not yet: your program ended the check, with status {error.code or 0}")
+        return NOT_YET
     except Exception as error:
         print(f"not yet: {type(error).__name__}: {error}{_line_in(file, error)}")
         return NOT_YET

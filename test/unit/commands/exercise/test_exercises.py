@@ -43,7 +43,7 @@ def test_what_a_learner_begins_with_does_not_pass_yet(
         ("def shortest_path(free, start, goal):\n    return nothing\n", "line 2: return nothing"),
         ("def shortest_path(:\n", "line 1"),
         ("way = 1\n", "expected a function shortest_path()"),
-        ("import sys\nsys.exit(0)\n", "ended the check, with status 0"),
+        ("import sys\nsys.exit(10)\n", "ended the check, with status 10"),
         ("def shortest_path(free, start, goal):\n    return 5\n", "does it fit the text?"),
         ("import os\nos._exit(9)\n", "ended the check, with status 9"),
         ("def shortest_path(free, start, goal):\n    return [start, goal]\n", "no neighbours"),
