@@ -16,7 +16,8 @@ from roomba_ros.exercises import camera_service, dirt_node, walk_action
 SOLUTIONS = Path(__file__).with_name("solutions")
 NUMBERS = {each.name: number for number, each in enumerate(COURSE, 1)}
 NOT_YET = {
-    "dirt_node": "your node to hear dirt_raw",
+    "dirt_node": "your node to hear dirt_raw within 5 s; your program is the node /dirt_pub_node, "
+    "which publishes /dirt (std_msgs/Float32), hears nothing, serves nothing",
     "camera_service": "expected a picture of 64 x 48 pixels",
     "walk_action": "the robot is 1.00 m from (0.8, 0.6)",
 }
@@ -39,6 +40,22 @@ def test_what_a_learner_begins_with_does_not_pass_yet(
     start = COURSE[NUMBERS[name] - 1].start
     assert main([str(NUMBERS[name]), "--check", "--file", str(start)]) == 1
     assert NOT_YET[name] in capfd.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ("rospy.init_node('dirt')\nrospy.spin()\n", "to be the node dirt_pub_node, it is /dirt\n"),
+        ("rospy.init_node('dirt_pub_node')\n", "ended with status 0: does it loop, or spin?"),
+    ],
+)
+def test_a_node_of_another_name_or_that_ends_is_told_at_once(
+    lines: str, told: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "dirt_node.py"
+    file.write_text(f"import rospy\n{lines}", "utf-8")
+    assert main([str(NUMBERS["dirt_node"]), "--check", "--file", str(file)]) == 1
+    assert told in capfd.readouterr().out
 
 
 def test_pictures_of_two_angles_or_with_two_colours_exchanged_are_told_apart() -> None:

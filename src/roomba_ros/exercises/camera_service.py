@@ -42,16 +42,14 @@ def check(file: Path) -> str:
             picture = np.full((*_SIZE, 3), colour, np.uint8)
             cv2.imwrite(str(Path(folder) / f"{angle}.png"), picture)
         graph.run_answer(file, "turn_camera_service_node", folder)
-        try:
-            rospy.wait_for_service("turn_camera", 10.0)
-        except rospy.ROSException as error:
-            raise NotYetError("expected a service turn_camera, there is none") from error
+        graph.wait_for(lambda: graph.has_service("turn_camera"), 10.0, "a service turn_camera")
         turn = rospy.ServiceProxy("turn_camera", TurnCamera)
         questions = asked()
         for wish, angle in questions:
             try:
                 image = turn(wish).image
             except rospy.ServiceException as error:
+                graph.expect_running()
                 raise NotYetError(f"asked for {wish:g} degrees it failed: {error}") from error
             expect(
                 (image.height, image.width) == _SIZE,

@@ -13,7 +13,7 @@ import rospy
 from std_msgs.msg import Float32
 
 from roomba.commands.exercise.verdict import expect, judged
-from roomba_ros.exercises.graph import OwnGraph, wait_for
+from roomba_ros.exercises.graph import OwnGraph
 
 _QUIET: Final = 0.5
 """s in which nothing is to be told, before the sensor felt anything."""
@@ -35,17 +35,19 @@ def check(file: Path) -> str:
         rospy.Subscriber("dirt", Float32, hear)
         sensor = rospy.Publisher("dirt_raw", Float32, queue_size=10)
         graph.run_answer(file, "dirt_pub_node")
-        wait_for(lambda: sensor.get_num_connections() > 0, 5.0, "your node to hear dirt_raw")
+        graph.wait_for(lambda: sensor.get_num_connections() > 0, 5.0, "your node to hear dirt_raw")
         time.sleep(_QUIET)
         expect(
             not heard, f"expected nothing on dirt before dirt_raw told anything, got {heard[:1]}"
         )
         sensor.publish(0.25)
-        wait_for(lambda: heard, 5.0, "a message on dirt after one on dirt_raw")
+        graph.wait_for(lambda: heard, 5.0, "a message on dirt after one on dirt_raw")
         expect(heard[-1] == 0.25, f"dirt_raw was 0.25, dirt told {heard[-1]}")
         sensor.publish(0.4)
         sensor.publish(0.5)
-        wait_for(lambda: heard[-1] == 0.5, 5.0, "dirt to tell the newest value of dirt_raw, 0.5")
+        graph.wait_for(
+            lambda: heard[-1] == 0.5, 5.0, "dirt to tell the newest value of dirt_raw, 0.5"
+        )
         first = len(heard)
         time.sleep(_LOOK)
         expect_rate(times[first:])

@@ -16,7 +16,8 @@ from typing import Any, Final
 import rosgraph
 import rospy
 
-from roomba.commands.exercise.verdict import NotYetError
+from roomba.commands.exercise.verdict import NotYetError, expect
+from roomba_ros.runtime.graph.master import node_at
 
 _UP: Final = 30.0
 """s of wall time in which a master, or a learner's node, is to be there."""
@@ -32,6 +33,7 @@ class OwnGraph:
     def __init__(self) -> None:
         """Start nothing yet."""
         self._programs: list[subprocess.Popen[bytes]] = []
+        self._answer: subprocess.Popen[bytes] | None = None
         self._folder = tempfile.TemporaryDirectory()
 
     def __enter__(self) -> OwnGraph:
@@ -46,7 +48,7 @@ class OwnGraph:
             "ROS_LOG_DIR": self._folder.name,
         }
         self._run("rosmaster", "--core", "-p", str(port), "-w", "4", "-t", "1")
-        wait_for(rosgraph.is_master_online, _UP, "a ROS master of its own for the check")
+        self.wait_for(rosgraph.is_master_online, _UP, "a ROS master of its own for the check")
         rospy.init_node("check", disable_signals=True)
         return self
 
@@ -64,14 +66,50 @@ class OwnGraph:
 
     def run_answer(self, file: Path, node: str, *arguments: str) -> None:
         """Run the learner's file, and wait until it is the node that it should be."""
-        program = self._run(sys.executable, str(file), *arguments)
+        self._answer = self._run(sys.executable, str(file), *arguments)
 
         def is_there() -> bool:
-            if program.poll() is not None:
-                raise NotYetError(f"your program ended with status {program.returncode}")
-            return any(f"/{node}" in nodes for part in _state() for _, nodes in part)
+            nodes = _others(_master().getSystemState())
+            expect(
+                not nodes or f"/{node}" in nodes,
+                f"expected your program to be the node {node}, it is {', '.join(nodes)}",
+            )
+            return bool(nodes)
 
-        wait_for(is_there, _UP, f"your program to be the node {node}")
+        self.wait_for(is_there, _UP, f"your program to be the node {node}")
+
+    def wait_for(self, is_so: Callable[[], object], seconds: float, expected: str) -> None:
+        """Wait until something is so.
+
+        Raises NotYetError after so many s of wall time, with what is in the graph instead; at once
+        when the learner's program has ended.
+        """
+        end = time.monotonic() + seconds
+        while not is_so():
+            self.expect_running()
+            if time.monotonic() > end:
+                raise NotYetError(f"expected {expected} within {seconds:g} s{self._instead()}")
+            time.sleep(_LOOK)
+
+    def has_service(self, name: str) -> bool:
+        """Return whether a node serves it."""
+        return any(served == f"/{name}" for served, _ in _master().getSystemState()[2])
+
+    def expect_running(self) -> None:
+        """Raise NotYetError when the learner's program has ended."""
+        status = None if self._answer is None else self._answer.poll()
+        why = ": does it loop, or spin?" if status == 0 else ""
+        expect(status is None, f"your program ended with status {status}{why}")
+
+    def _instead(self) -> str:
+        """Return in words what the learner's program is in the graph, if it is there."""
+        try:
+            state = _master().getSystemState()
+            told = [f"{node}, which {_connections_of(node, state)}" for node in _others(state)]
+        except (OSError, rosgraph.MasterException):
+            # There is no master, or the node ends meanwhile.
+            return ""
+        return f"; your program is the node {' and '.join(told)}" if told else ""
 
     def _run(self, *command: str) -> subprocess.Popen[bytes]:
         program = subprocess.Popen(command, stdout=sys.stderr)
@@ -79,14 +117,28 @@ class OwnGraph:
         return program
 
 
-def _state() -> Any:
-    return rosgraph.Master("/check").getSystemState()
+def _master() -> rosgraph.Master:
+    return rosgraph.Master("/check")
 
 
-def wait_for(is_so: Callable[[], object], seconds: float, expected: str) -> None:
-    """Wait until something is so; raises NotYetError after so many s of wall time."""
-    end = time.monotonic() + seconds
-    while not is_so():
-        if time.monotonic() > end:
-            raise NotYetError(f"expected {expected} within {seconds:g} s")
-        time.sleep(_LOOK)
+def _others(state: Any) -> list[str]:
+    """Return the names of all nodes but the check."""
+    return sorted({node for part in state for _, nodes in part for node in nodes} - {"/check"})
+
+
+def _connections_of(node: str, state: Any) -> str:
+    """Return in words what a node publishes, hears and serves, by names and types of its own.
+
+    Of what all nodes have only the log is left out.
+    """
+    asked = node_at(_master().lookupNode(node))
+    parts = {
+        "publishes": _typed(asked.getPublications("/check")),
+        "hears": _typed(asked.getSubscriptions("/check")),
+        "serves": [name for name, nodes in state[2] if node in nodes and "_logger" not in name],
+    }
+    return ", ".join(f"{verb} {' '.join(what) or 'nothing'}" for verb, what in parts.items())
+
+
+def _typed(answer: Any) -> list[str]:
+    return [f"{name} ({kind})" for name, kind in answer[2] if name != "/rosout"]

@@ -22,7 +22,7 @@ from roomba_robot.msg import (
 )
 
 from roomba.commands.exercise.verdict import NotYetError, expect, judged
-from roomba_ros.exercises.graph import OwnGraph, wait_for
+from roomba_ros.exercises.graph import OwnGraph
 
 _SPEED: Final = 0.5
 """m/s of the robot."""
@@ -88,13 +88,11 @@ class ToyRobot:
 class Walks:
     """The client: sends goals, and keeps what is told of the newest one."""
 
-    def __init__(self, robot: ToyRobot) -> None:
+    def __init__(self, graph: OwnGraph, robot: ToyRobot) -> None:
         """Connect; ``robot`` tells what is left in truth."""
-        self._robot = robot
+        self._graph, self._robot = graph, robot
         self._client = actionlib.SimpleActionClient("walk_to_point", WalkToPointAction)
-        expect(
-            self._client.wait_for_server(rospy.Duration(10.0)), "expected an action walk_to_point"
-        )
+        graph.wait_for(self._has_server, 10.0, "an action walk_to_point")
 
     def send(self, x: float, y: float) -> None:
         """Begin a walk to (x, y)."""
@@ -125,10 +123,13 @@ class Walks:
 
     def ends(self, status: int, seconds: float, what: str) -> None:
         """Raise NotYetError unless the walk ends in time with this status."""
-        wait_for(self._is_over, seconds, f"{what} to end")
+        self._graph.wait_for(self._is_over, seconds, f"{what} to end")
         came = self._client.get_state()
         why = self._client.get_goal_status_text() or "without a reason"
         expect(came == status, f"{what}: expected {_NAMES[status]}, got {_NAMES[came]}: {why}")
+
+    def _has_server(self) -> bool:
+        return bool(self._client.wait_for_server(rospy.Duration(0.01)))
 
     def _is_over(self) -> bool:
         return self._client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE)
@@ -139,16 +140,16 @@ def check(file: Path) -> str:
     with OwnGraph() as graph:
         robot = ToyRobot()
         graph.run_answer(file, "walk_to_point_action_server_node")
-        walk = Walks(robot)
+        walk = Walks(graph, robot)
         # A goal comes when the robot was heard. A server may also listen from its goal on.
         with contextlib.suppress(NotYetError):
-            wait_for(robot.is_heard, _HEARD, "your node to hear position")
+            graph.wait_for(robot.is_heard, _HEARD, "your node to hear position")
         time.sleep(_SILENCE)
         walk.send(0.8, 0.6)
         took = walk.arrives("a walk of 1 m")
         expect_distances(walk.told)
         walk.send(5.0, 0.6)
-        wait_for(lambda: robot.place[0] > 1.1, 5.0, "the robot on its way to (5, 0.6)")
+        graph.wait_for(lambda: robot.place[0] > 1.1, 5.0, "the robot on its way to (5, 0.6)")
         walk.cancel()
         walk.ends(GoalStatus.PREEMPTED, _CANCELLED, "a walk that was cancelled")
         time.sleep(2.0 * _SILENCE)
