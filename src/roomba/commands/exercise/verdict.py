@@ -68,10 +68,11 @@ def judged(check: Callable[[Path], str]) -> int:
 
 def _line_in(file: Path, error: Exception) -> str:
     """Return where an error came up, in words: the last line of the learner's file, if any."""
+    if isinstance(error, SyntaxError):
+        # It tells its line itself.
+        return ""
     frames = traceback.extract_tb(error.__traceback__)
     lines = [frame for frame in frames if Path(frame.filename) == file]
-    if isinstance(error, SyntaxError):
-        return f" ({file.name}, line {error.lineno})"
     if lines:
         return f" ({file.name}, line {lines[-1].lineno}: {lines[-1].line})"
     return f" (where {file.name} is called, or what it returned is read; does it fit the text?)"
