@@ -78,12 +78,13 @@ def test_what_is_wrong_is_told(
             "def drive(pose, path, speed):\n    return 0.0, 0.1\n",
             "has not told the robot to stand after 45 s, at (-2.00, -1.00), 3.50 m from the end",
         ),
-        (
+        pytest.param(
             match_scan.check,
             (SOLUTIONS / "match_scan.py")
             .read_text("utf-8")
             .replace('loss="soft_l1", f_scale=0.02', 'loss="linear"'),
             "m off in the median, expected 0.02 m or less",
+            marks=pytest.mark.thorough,
         ),
     ],
 )
