@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from numba import config, njit
+from numba.core.caching import IndexDataCacheFile
 from numba.extending import register_jitable
 
 from roomba.compiled_sources import PACKAGE, Sources
@@ -59,6 +60,30 @@ def _read_arrays_without_blas() -> None:
 
 
 _read_arrays_without_blas()
+
+
+def _keep_code_one_at_a_time() -> None:
+    """Let processes that compile at once keep what they compiled one after the other.
+
+    numba reads the index of a function, takes a free number in it, and writes index and code: of
+    two that do so at once one entry is lost, or leads to the code of the other.
+    """
+    kept: Any = IndexDataCacheFile
+    save = kept.save
+
+    @functools.wraps(save)
+    def save_alone(self: Any, key: Any, data: Any) -> None:
+        with open(__file__, "rb") as lock:  # any file that all of them have
+            with contextlib.suppress(ImportError, OSError):  # Windows and some disks have no locks
+                import fcntl
+
+                fcntl.flock(lock, fcntl.LOCK_EX)
+            save(self, key, data)
+
+    kept.save = save_alone
+
+
+_keep_code_one_at_a_time()
 
 
 def entry(function: _Function) -> _Function:

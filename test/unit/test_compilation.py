@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import ast
+import fcntl
 import subprocess
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from numba.core.caching import IndexDataCacheFile
 from numba.core.errors import NumbaError
 from numpy.typing import NDArray
 
+from roomba import compilation
 from roomba.compilation import (
     allocating_entry,
     allocating_part,
@@ -154,3 +159,17 @@ def gives(function: ast.FunctionDef) -> bool:
     assert function.returns is not None
     names = [node for node in ast.walk(function.returns) if isinstance(node, ast.Name)]
     return not all(node.id in SCALARS | {"tuple"} for node in names)
+
+
+def test_code_is_kept_by_one_process_at_a_time(tmp_path: Path) -> None:
+    """Of two at once one could take the other's code for its own."""
+    of_numba: Any = IndexDataCacheFile
+    kept = of_numba(str(tmp_path), "loops", "of these sources")
+    saving = threading.Thread(target=kept.save, args=("signature", "code"))
+    with open(compilation.__file__, "rb") as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        saving.start()
+        saving.join(0.1)
+        assert saving.is_alive()
+    saving.join(5.0)
+    assert kept.load("signature") == "code"

@@ -60,13 +60,13 @@ class WalkConfig(Frozen):
     """m; farther off its path the robot was carried or pushed, and plans anew."""
     carried: Length = 1.0
     """m; a robot that finds itself farther from its last known place was carried: what it
-    remembers of things is of another place. Of cleans as well."""
+    remembers of things is of another place. Cleans use it, too."""
     hanging_wheel: Duration = 1.5
     """s; one wheel may hang in the air for so long, as at a sill, until an errand fails; when both
     do it fails at once."""
     tipping: Duration = 1.0
     """s; where the floor ended so shortly before both wheels hang is no edge: the robot was picked
-    up nose first. Of cleans as well."""
+    up nose first. Cleans use it, too."""
     least_progress: Length = 0.05
     """m; coming nearer to the goal by less is no progress."""
     least_turn: Angle = 0.2

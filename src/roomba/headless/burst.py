@@ -88,7 +88,8 @@ class Burst:
             has_looked = self._next_look != next_look
             is_done = bool(self._burst[0]["is_left"]) or has_looked
             self._has_ended = ticks < len(self._rows) and not is_done
-            # A scan that was kept may have moved the map below it, and what is left of one is done.
+            # The end of a burst finishes the scan under way: place and bias may differ from those
+            # of its last tick.
             rows[-1, BELIEVED] = believed.x, believed.y, believed.theta
             rows[-1, BIAS] = brain.keeper.gyro_bias
         return rows

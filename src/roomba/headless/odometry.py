@@ -30,8 +30,8 @@ def odometry_error(
     ``rows`` is float64 [n, PASSED], as of :mod:`roomba.headless.tick_rows`. It is the mean of the
     distances between where the robot was and where wheels and gyro had it, from where both began a
     piece, by the way of a piece; None of a shorter way. ``calibration`` None: without any;
-    ``has_gyro`` False: by the wheels alone. ``knows_bias``: without what was known at each tick of
-    the gyro's bias.
+    ``has_gyro`` False: by the wheels alone. ``knows_bias``: after what was known of the gyro's bias
+    at each tick is taken out.
     """
     true = rows[:, TRUE]
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(true[:, :2], axis=0).T))))

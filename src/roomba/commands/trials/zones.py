@@ -46,7 +46,8 @@ def _turned(zone: Zone, degrees: float) -> Zone:
 def zones_of_home(name_or_path: str) -> Zones:
     """Return the zones beside a home's map, none without such a file.
 
-    Beside a map of another name they are of the folder's home. Raises HomeError and ZonesError.
+    ``zones.yaml`` belongs to the folder's ``map.yaml``; a map of another name has no zones. Raises
+    HomeError and ZonesError.
     """
     map_path, _ = files_of_home(name_or_path, HOMES)
     file = map_path.with_name(ZONES_NAME)

@@ -16,6 +16,8 @@ from roomba.errors import RoombaError
 
 _ONE_AT_A_TIME: Final = threading.Lock()
 """Of a process: a worker with several threads would let runs slow each other down."""
+_OF_THE_MACHINE: Final = (MemoryError, OSError)
+"""What a run fails by where memory or disk are wanting."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,17 +38,17 @@ Work = Callable[[CampaignRun], RunEnd | str]
 
 
 def carried_out(run: CampaignRun) -> RunEnd | str:
-    """Make a run; a failure that it would have anywhere, which is an error of ours, is its end.
+    """Make a run; a failure that it would have anywhere is its end.
 
-    Any other one, as without memory, may be this machine's: that run has no end, and may be made
-    again. Raises OtherMachineError where this machine would not do the same run.
+    One without memory or disk is this machine's: that run has no end, and may be made again. Raises
+    OtherMachineError where this machine would not do the same run.
     """
     with _ONE_AT_A_TIME:
         require_same(run)
         try:
             return _end_of(run)
-        except (Exception, SystemExit) as error:  # the other runs go on
-            return f"a fault of the program, or of its machine: {error!r}"
+        except _OF_THE_MACHINE as error:
+            return f"its machine failed it: {error!r}"
 
 
 def _end_of(run: CampaignRun) -> RunEnd:
@@ -61,4 +63,8 @@ def _end_of(run: CampaignRun) -> RunEnd:
         figures = run_trial(run.trial).figures
     except RoombaError as error:
         failure = str(error)
+    except _OF_THE_MACHINE:
+        raise
+    except (Exception, SystemExit) as error:  # the other runs go on
+        failure = f"a fault of the program: {error!r}"
     return RunEnd(figures, failure, f"{socket.gethostname()}:{os.getpid()}", began)

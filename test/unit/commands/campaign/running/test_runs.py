@@ -116,9 +116,15 @@ def test_a_machine_without_the_home_refuses(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("error", "is_an_end"), [(HomeError("no floor"), True), (MemoryError("no 37 MiB"), False)]
+    ("error", "is_an_end"),
+    [
+        (HomeError("no floor"), True),
+        (IndexError("of a stage"), True),
+        (MemoryError("no 37 MiB"), False),
+        (OSError("the disk is full"), False),
+    ],
 )
-def test_only_an_error_of_ours_is_the_end_of_a_run(
+def test_only_for_want_of_memory_or_disk_a_run_has_no_end(
     monkeypatch: pytest.MonkeyPatch, error: Exception, *, is_an_end: bool
 ) -> None:
     def failing(*_: Any) -> None:
