@@ -24,12 +24,15 @@ _RATES: Final = {
     if name.startswith("B") and name[1:].isdigit()
 }
 """Baud by the system's code."""
+_LINES: Final = Path("/dev/pts")
+"""Where the system has its pseudo terminals."""
 
 
 class PseudoTerminal:
     """The robot's end of a line; ``name`` is the device that a program opens at the other end.
 
-    Raises RoombaError where ``link``, a name to find it by, is taken by what is no link to a line.
+    Raises RoombaError where ``link``, a name to find it by, is taken. A link to a line that is gone
+    is not: an emulator that was killed left it.
     """
 
     def __init__(
@@ -39,6 +42,8 @@ class PseudoTerminal:
 
         ``speed`` of the line's seconds pass in one, of one whose rate is set later.
         """
+        if link is not None:
+            _require_free(link)
         self._master, self._slave = pty.openpty()
         tty.setraw(self._slave, termios.TCSANOW)
         os.set_blocking(self._master, False)
@@ -46,8 +51,6 @@ class PseudoTerminal:
         self.name, self._baud, self._link = os.ttyname(self._slave), baud, link
         self._speed = speed
         if link is not None:
-            if link.exists() and not self._is_line(link):
-                raise RoombaError(f"expected a new name for the line, got {link}: a file is there")
             try:
                 link.unlink(missing_ok=True)
                 link.symlink_to(self.name)
@@ -97,10 +100,21 @@ class PseudoTerminal:
         if self._link is not None and self._leads_here(self._link):
             self._link.unlink()
 
-    def _is_line(self, link: Path) -> bool:
-        """Whether it leads to a pseudo terminal: the line of an emulator that was killed."""
-        return link.is_symlink() and Path(os.readlink(link)).parent == Path(self.name).parent
-
     def _leads_here(self, link: Path) -> bool:
-        """Whether it is still the link to this line: a later emulator may have taken the name."""
+        """Whether it is still the link to this line: another program may have taken the name."""
         return link.is_symlink() and os.readlink(link) == self.name
+
+
+def _require_free(link: Path) -> None:
+    if os.path.lexists(link) and not _is_left_behind(link):
+        there = f"a link to {os.readlink(link)}" if link.is_symlink() else "a file"
+        raise RoombaError(
+            f"expected a new name for the line, got {link}: {there} is there; end the program that "
+            "made it, remove it, or choose another name"
+        )
+
+
+def _is_left_behind(link: Path) -> bool:
+    """Whether it leads to a pseudo terminal that is gone, as after a kill."""
+    is_link_to_line = link.is_symlink() and Path(os.readlink(link)).parent == _LINES
+    return is_link_to_line and not link.exists()
