@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import hashlib
 import socket
+from urllib.parse import urlsplit
 
 from roomba.errors import RoombaError
 
@@ -12,10 +13,11 @@ from roomba.errors import RoombaError
 def claim_robot(master: str, namespace: str) -> socket.socket:
     """Claim the robot of a namespace on a master until what is returned is closed.
 
-    Raises RoombaError when another run of this machine has it. The claim is a name and no file: it
-    goes with the run, and a network of its own has its own names, as it has its own master.
+    Raises RoombaError when another run of this machine has it, OSError when the master's host has
+    no address. The claim is a name and no file: it goes with the run, and a network of its own has
+    its own names, as it has its own master.
     """
-    key = hashlib.sha256(f"{master} {namespace}".encode()).hexdigest()
+    key = hashlib.sha256(f"{_place_of(master)} {namespace}".encode()).hexdigest()
     claim = socket.socket(socket.AF_UNIX)
     try:
         claim.bind(f"\0roomba_robot_{key}")
@@ -24,7 +26,16 @@ def claim_robot(master: str, namespace: str) -> socket.socket:
         if error.errno != errno.EADDRINUSE:
             raise
         raise RoombaError(
-            f"expected no such robot on {master}, got another run that has just begun; end it "
+            f"expected no such robot on {master}, got another run on this machine; end it "
             "first, set ROS_NAMESPACE for another robot, or ROS_MASTER_URI for another master"
         ) from None
     return claim
+
+
+def _place_of(master: str) -> tuple[str, int]:
+    """Return the address and port of a master: its URI can be spelled in several ways."""
+    uri = urlsplit(master)
+    port = uri.port or 11311
+    found = socket.getaddrinfo(uri.hostname, port, type=socket.SOCK_STREAM)
+    # Of several the least: "localhost" may have ::1 as well, in any order.
+    return min(str(place[0]) for *_, place in found), port

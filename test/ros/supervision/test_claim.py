@@ -14,6 +14,9 @@ def test_a_robot_is_of_one_run_until_that_ends() -> None:
     with claim_robot(HERE, "/"):
         with pytest.raises(RoombaError, match=f"^expected no such robot on {HERE}, got another"):
             claim_robot(HERE, "/")
+        for spelling in (f"{HERE}/", "http://localhost:19311"):
+            with pytest.raises(RoombaError, match="got another run on this machine"):
+                claim_robot(spelling, "/")
         claim_robot(HERE, "/second/").close()
         claim_robot(ELSEWHERE, "/").close()
     claim_robot(HERE, "/").close()

@@ -63,7 +63,7 @@ def test_a_run_that_begins_beside_another_one_is_refused(
     monkeypatch.setenv("ROS_NAMESPACE", "first")
     with claim_robot(master, "/first/"):
         assert main([]) == USAGE
-    assert "got another run that has just begun" in capsys.readouterr().err
+    assert "got another run on this machine" in capsys.readouterr().err
 
 
 def test_a_map_that_is_not_saved_is_refused_with_those_that_are(tmp_path: Path) -> None:
