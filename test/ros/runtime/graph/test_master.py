@@ -11,9 +11,12 @@ from fixtures.graph import free_port
 
 from roomba.client.protocol import RobotUnavailableError
 from roomba_ros.bags import record
+from roomba_ros.camera import turn_camera_client
 from roomba_ros.client import control_node
 from roomba_ros.client.roomba_client import RoombaClient
+from roomba_ros.dirt.dirt_pub_node import DirtPubNode
 from roomba_ros.runtime.graph.master import is_master_online
+from roomba_ros.runtime.node import run_node
 from roomba_ros.supervision import run
 from roomba_ros.supervision.kept_master import wait_for_master
 
@@ -46,20 +49,22 @@ def test_one_that_hangs_is_told_of(hanging: str) -> None:
         (lambda folder: run.main([]), run.USAGE),
         (lambda folder: record.main([str(folder / "a.bag")]), 1),
         (lambda folder: control_node.main(), 1),
+        (lambda folder: turn_camera_client.main(), 1),
+        (lambda folder: run_node("dirt_pub_node", DirtPubNode), 1),
     ],
-    ids=["run", "record", "control"],
+    ids=["run", "record", "control", "camera", "a node"],
 )
 def test_each_program_says_that_it_hangs_and_ends(
     hanging: str,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
-    program: Callable[[Path], int],
+    program: Callable[[Path], object],
     status: int,
 ) -> None:
     try:
         ended = program(tmp_path)
     except SystemExit as left:
-        ended = int(str(left.code))
+        ended = left.code
     assert ended == status
     told = capsys.readouterr().err
     assert f"expected the ROS master at {hanging} to answer within" in told
