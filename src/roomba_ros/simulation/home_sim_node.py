@@ -106,7 +106,9 @@ class HomeSimNode:
         self.period = self._timing.tick
         self._nanoseconds = round(self._timing.tick * 1e9)
         self._speed = _speed_parameter()
-        self._owns_clock = _owns_clock_parameter()
+        self._owns_clock = bool_parameter("~clock", True)
+        if self._owns_clock:
+            _require_no_other_clock()
         self._lock = threading.Lock()
         self._drive = DriveLink(self._config.body.command_timeout, self._lock)
         self._simulator = self._make_simulator()
@@ -291,16 +293,13 @@ def _tells_map_parameter() -> bool:
     return value == "given"
 
 
-def _owns_clock_parameter() -> bool:
-    """Return whether this robot's clock is that of all; raises ConfigError when there is one."""
-    is_wanted = bool_parameter("~clock", True)
-    others = other_publishers("/clock") if is_wanted else []
-    if others:
-        raise ConfigError(
+def _require_no_other_clock() -> None:
+    """Raise RoombaError when another node publishes the clock: there is one for all."""
+    if others := other_publishers("/clock"):
+        raise RoombaError(
             f"expected no other clock, but {', '.join(others)} publishes /clock; say clock:=false "
             "for a further robot, which goes by that one, or end that one first"
         )
-    return is_wanted
 
 
 def _speed_parameter() -> float:
