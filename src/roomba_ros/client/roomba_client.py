@@ -19,7 +19,7 @@ from roomba.client.protocol import (
 from roomba.vocabulary import CleanMode, FanLevel
 from roomba_ros.client.ros_client import RosRobot
 from roomba_ros.runtime.graph.joining import join_graph
-from roomba_ros.runtime.graph.master import find_master
+from roomba_ros.runtime.graph.master import master_state, require_answering
 from roomba_ros.runtime.graph.staying import stay_in_graph
 from roomba_ros.runtime.node import wait_for_clock
 
@@ -48,7 +48,7 @@ class RoombaClient:
 
         Raises RobotUnavailableError without a ROS master, RoombaError for wrong parameters.
         """
-        find_master()
+        require_answering(master_state())
         if not rospy.core.is_initialized():
             join_graph(node_name, is_anonymous=True)
             stay_in_graph()

@@ -18,7 +18,7 @@ from roomba.client.protocol import RobotUnavailableError
 from roomba.errors import RoombaError
 from roomba_ros.runtime.connections import guard_connections
 from roomba_ros.runtime.graph.joining import join_graph
-from roomba_ros.runtime.graph.master import find_master
+from roomba_ros.runtime.graph.master import master_state, require_answering
 from roomba_ros.runtime.sending import send_at_once
 from roomba_ros.runtime.subscriptions import tell_refusals
 from roomba_ros.runtime.timing.heart import HEART
@@ -140,7 +140,7 @@ def told_to_end() -> bool:
 def require_master() -> None:
     """End the process with one clear line when no ROS master answers."""
     try:
-        find_master()
+        require_answering(master_state())
     except RobotUnavailableError as error:
         give_up(str(error))
 

@@ -24,9 +24,8 @@ import rosgraph.roslogging
 from rosgraph.xmlrpc import XmlRpcNode
 from rosmaster.master_api import ROSMasterHandler
 
-from roomba.client.protocol import RobotUnavailableError
 from roomba.files.kept import KeptFileError, read_kept, write_kept
-from roomba_ros.runtime.graph.master import is_master_online
+from roomba_ros.runtime.graph.master import MasterState, master_state
 from roomba_ros.runtime.timing.heart import HEART
 
 WORKERS: Final = 8
@@ -154,8 +153,7 @@ def wait_for_master(seconds: float, ended: Callable[[], bool]) -> bool:
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
         # A busy one may take long for its first answer.
-        with contextlib.suppress(RobotUnavailableError):
-            if ended() or is_master_online():
-                return True
+        if ended() or master_state() is MasterState.ANSWERS:
+            return True
         time.sleep(0.02)
     return False

@@ -25,7 +25,7 @@ from roomba.files.shipped import CONFIGURATION, HOMES
 from roomba_ros.maps.map_wish import FOLDER, require_map
 from roomba_ros.runtime.graph.alone import living
 from roomba_ros.runtime.graph.joining import require_own_address
-from roomba_ros.runtime.graph.master import is_master_online
+from roomba_ros.runtime.graph.master import MasterState, master_state, require_answering
 from roomba_ros.runtime.parameters import folder_for
 from roomba_ros.runtime.senders import SUPERVISOR
 from roomba_ros.supervision.claim import claim_robot
@@ -83,7 +83,7 @@ def _run(launch: Launch, scripts: Path) -> int:
     supervisor = Supervisor(load_config(NodesConfig, CONFIGURATION / "nodes.yaml").supervision)
     with tempfile.TemporaryDirectory(prefix="roomba_run_") as folder:
         try:
-            if not is_master_online():
+            if master_state() is MasterState.ABSENT:
                 port = urlparse(rosgraph.get_master_uri()).port or 11311
                 memory = Path(folder) / "master.xml"
                 supervisor.add("master", partial(be_master, port, memory), is_master=True)
@@ -139,8 +139,10 @@ def _require_host_of_master() -> None:
 
 def _refuse_second(launch: Launch) -> None:
     """Raise RoombaError when this robot runs already: two of its nodes would end one another."""
-    if not is_master_online():
+    state = master_state()
+    if state is MasterState.ABSENT:
         return
+    require_answering(state)
     there = living(tuple(entry.path for entry in launch.processes))
     if there:
         raise RoombaError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import Enum
 from http.client import HTTPException
 from typing import Final
 from xmlrpc.client import Error as XmlRpcError
@@ -17,6 +18,14 @@ ANSWER_WITHIN: Final = 5.0
 _CALLER: Final = "/roomba_robot_start"
 
 
+class MasterState(Enum):
+    """What came of asking the ROS master."""
+
+    ANSWERS = "it answers"
+    HANGS = "it takes connections, or its machine is off, and nothing comes"
+    ABSENT = "nothing listens there, or another program"
+
+
 def node_at(uri: str) -> ServerProxy:
     """Return a node, or the master, to be asked; raises OSError when it does not answer in time."""
     return ServerProxy(uri, transport=ImpatientTransport(ANSWER_WITHIN))
@@ -29,25 +38,26 @@ def master(caller: str = _CALLER) -> rosgraph.Master:
     return asked
 
 
-def is_master_online() -> bool:
-    """Return whether a ROS master answers; raises RobotUnavailableError when one hangs."""
+def master_state() -> MasterState:
+    """Ask the ROS master for a sign of life."""
     try:
         master().getPid()
-    except TimeoutError as error:
+    except TimeoutError:
+        return MasterState.HANGS
+    except (OSError, HTTPException, XmlRpcError, rosgraph.MasterException):
+        return MasterState.ABSENT
+    return MasterState.ANSWERS
+
+
+def require_answering(state: MasterState) -> None:
+    """Raise RobotUnavailableError, with what to do, for a ROS master that does not answer."""
+    if state is MasterState.HANGS:
         raise RobotUnavailableError(
             f"expected the ROS master at {rosgraph.get_master_uri()} to answer within "
             f"{ANSWER_WITHIN:g} s: it hangs, or its machine is off; let it go on (`fg`, if Ctrl-Z "
             "stopped it), or end it, or set ROS_MASTER_URI for another one"
-        ) from error
-    except (OSError, HTTPException, XmlRpcError, rosgraph.MasterException):
-        # Nothing listens there, or another program.
-        return False
-    return True
-
-
-def find_master() -> None:
-    """Raise RobotUnavailableError, with what to do, when no ROS master answers."""
-    if not is_master_online():
+        )
+    if state is MasterState.ABSENT:
         raise RobotUnavailableError(
             f"no ROS master answers at {rosgraph.get_master_uri()}; start the robot with "
             "`./roomba run` (or a `roscore`), or set ROS_MASTER_URI to where it runs"

@@ -15,7 +15,7 @@ from roomba_ros.camera import turn_camera_client
 from roomba_ros.client import control_node
 from roomba_ros.client.roomba_client import RoombaClient
 from roomba_ros.dirt.dirt_pub_node import DirtPubNode
-from roomba_ros.runtime.graph.master import is_master_online
+from roomba_ros.runtime.graph.master import MasterState, master_state
 from roomba_ros.runtime.node import run_node
 from roomba_ros.supervision import run
 from roomba_ros.supervision.kept_master import wait_for_master
@@ -31,15 +31,15 @@ def hanging(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
         yield uri
 
 
-def test_one_that_is_not_there_is_not_online(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_that_is_not_there_is_absent(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_MASTER_URI", f"http://127.0.0.1:{free_port()}")
-    assert not is_master_online()
+    assert master_state() is MasterState.ABSENT
 
 
 def test_one_that_hangs_is_told_of(hanging: str) -> None:
-    for ask in (is_master_online, RoombaClient.connect):
-        with pytest.raises(RobotUnavailableError, match=f"expected the ROS master at {hanging} to"):
-            ask()
+    assert master_state() is MasterState.HANGS
+    with pytest.raises(RobotUnavailableError, match=f"expected the ROS master at {hanging} to"):
+        RoombaClient.connect()
     assert not wait_for_master(0.1, lambda: False)
 
 
