@@ -70,7 +70,7 @@ class Transitions:
         self._at_station.forget()
         if event is not Event.FAILED:
             self.reason = NO_REASON
-        if event in (Event.RESUME, Event.POWER):
+        if event in (Event.RESUME, Event.BEAMS_SEEN):
             self._retries.renew()
             self._job.take_up()
         if event is Event.FINISHED:

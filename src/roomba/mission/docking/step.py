@@ -63,8 +63,8 @@ class Trouble(Enum):
     TIMEOUT = "it took too long"
 
     @property
-    def is_without_beams(self) -> bool:
-        """Whether no beams were seen: where there are some again, another docking may succeed."""
+    def may_end_with_beams(self) -> bool:
+        """Whether beams that are seen again may be all it takes; a lost robot is to be brought."""
         return self in (Trouble.NO_POWER, Trouble.NOT_THERE, Trouble.HIDDEN)
 
 

@@ -104,7 +104,7 @@ class AtStation:
             self._without_beams = RobotTime(senses.now)
         self._without_beams.tick(senses.now)
         are_seen = self._without_beams.elapsed > self._config.contact_wait
-        return PhaseStep(event=Event.POWER if are_seen else None)
+        return PhaseStep(event=Event.BEAMS_SEEN if are_seen else None)
 
     @property
     def _is_turned(self) -> bool:
@@ -178,7 +178,7 @@ class AtStation:
 
 def _not_docked(step: DockStep) -> Failure:
     outcome = CleanOutcome.NOT_DOCKED
-    if step.trouble is None or not step.trouble.is_without_beams:
+    if step.trouble is None or not step.trouble.may_end_with_beams:
         return Failure(outcome, step.reason)
     return Failure(outcome, f"{step.reason}{_AWAITS_BEAMS}", awaits_beams=True)
 

@@ -52,7 +52,7 @@ class Event(Enum):
     EMPTIED = "the dust bin was emptied"
     """By its level sensor, or told by a person; it changes nothing of what was commanded."""
     CHARGED = "charged enough to go on"
-    POWER = "the beams of its station, for want of which it did not dock"
+    BEAMS_SEEN = "the beams of its station, for want of which it did not dock"
     FAILED = "it cannot go on by itself"
 
     @property
@@ -229,7 +229,7 @@ def _standing(state: MissionState, event: Event) -> MissionState | None:
         return replace(state, phase=Phase.CHARGING)
     if event is Event.FAILED and phase is Phase.CHARGING:
         return replace(state, phase=Phase.ERROR, resumes=Phase.CHARGING)
-    if event is Event.POWER and phase is Phase.ERROR and state.resumes is not None:
+    if event is Event.BEAMS_SEEN and phase is Phase.ERROR and state.resumes is not None:
         return MissionState(state.resumes, state.errand)
     return None
 

@@ -124,8 +124,8 @@ def test_without_beams_it_waits_until_it_sees_them_for_a_while(
     station.await_beams(BEFORE)
     seen = [replace(lit if tick > 100 else BEFORE, now=0.1 * tick) for tick in range(200)]
     events = [station.look_for_beams(senses).event for senses in seen]
-    power = events.index(Event.POWER)
-    assert seen[power].now == pytest.approx(10.0 + DockingConfig().contact_wait, abs=0.2)
+    seen_at = events.index(Event.BEAMS_SEEN)
+    assert seen[seen_at].now == pytest.approx(10.0 + DockingConfig().contact_wait, abs=0.2)
     station.await_beams(BEFORE)
     held = [replace(each, wheel_hangs=True) for each in seen]
     assert not any(station.look_for_beams(senses).event for senses in held)
