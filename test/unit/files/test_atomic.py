@@ -158,7 +158,7 @@ def test_names_of_unfinished_files_cannot_be_foreseen(
 KILLED_WHILE_WRITING = """
 import os, signal, sys
 from pathlib import Path
-from roomba.files.atomic import write_output, write_whole
+from roomba.files.atomic import write_whole
 
 os.replace = lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL)
 write_whole(Path(sys.argv[1]), b"new")
