@@ -14,8 +14,8 @@ import sys
 from collections.abc import Iterator
 from typing import Final
 
-NOT_READ: Final = 1
-"""Exit status when the reader of the output has closed it, or disk or memory is full."""
+FAILED: Final = 1
+"""Exit status when the output is read no more, or disk or memory is full."""
 INTERRUPTED: Final = 130
 """Exit status after Ctrl-C."""
 _STANDARD_ERROR: Final = 2
@@ -33,16 +33,16 @@ def quiet_end() -> Iterator[None]:
             yield
     except BrokenPipeError:
         _give_output_up()
-        sys.exit(NOT_READ)
+        sys.exit(FAILED)
     except OSError as error:
         if error.errno not in _FULL:
             raise
         _give_output_up()
         print(f"expected room for what is written: {error}; make some", file=sys.stderr)
-        sys.exit(NOT_READ)
+        sys.exit(FAILED)
     except MemoryError:
         print("expected more memory than there is; end other programs", file=sys.stderr)
-        sys.exit(NOT_READ)
+        sys.exit(FAILED)
     except KeyboardInterrupt:
         print(STOPPED, file=sys.stderr)
         sys.exit(INTERRUPTED)
