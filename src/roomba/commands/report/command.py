@@ -92,7 +92,7 @@ def _wants_figures_alone(wanted: argparse.Namespace) -> bool:
 
 def _report(wanted: argparse.Namespace, history: History, run: KeptRun) -> None:
     recording = _recording(history, run)
-    tell_tables([run_table(run)], _on_standard_output(wanted), quiet=False)
+    tell_tables([run_table(run)], _taken_output(wanted), quiet=False)
     if wanted.recording is not None:
         write_run(run.figures, recording or history.recording(run.number), wanted.recording)
         print(f"Recording: {wanted.recording}", file=_told_to(wanted))
@@ -131,11 +131,11 @@ def _write_document(wanted: argparse.Namespace, usual: Path, text: str) -> None:
 
 def _told_to(wanted: argparse.Namespace) -> TextIO:
     """Return where words for people go: not where figures are told."""
-    return sys.stderr if _on_standard_output(wanted) else sys.stdout
+    return sys.stderr if _taken_output(wanted) else sys.stdout
 
 
-def _on_standard_output(wanted: argparse.Namespace) -> str | None:
-    """Return its name if figures, or the report, are written there."""
+def _taken_output(wanted: argparse.Namespace) -> str | None:
+    """Return standard output if figures, or the report, have it for themselves."""
     files = (wanted.json, str(wanted.csv), str(wanted.out))
     return STANDARD_OUTPUT if STANDARD_OUTPUT in files else None
 
