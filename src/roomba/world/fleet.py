@@ -11,7 +11,6 @@ import itertools
 import math
 import os
 from collections.abc import Mapping, Sequence
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +22,7 @@ from roomba.world.engine.contact_kernels import gap_at
 from roomba.world.engine.layout import layout_of
 from roomba.world.engine.lidar.projection import ScanBuffers, buffers_for
 from roomba.world.engine.populate import first_state, starts_of
-from roomba.world.engine.state.arrays import MOST_DISCS, WORLD, Fault, Rows, Solid, State
+from roomba.world.engine.state.arrays import MOST_DISCS, RENEWED, Fault, Rows, Solid, State
 from roomba.world.engine.state.numbers import numbers_of
 from roomba.world.engine.state.random_kernels import normal_quantiles
 from roomba.world.engine.step_kernels import advance
@@ -35,10 +34,6 @@ _CHUNKS_PER_THREAD = 4
 """Parts of the worlds for each thread: several, since some take longer than others."""
 _WORTH_A_THREAD = 32
 """World-steps from which on threads pay."""
-_OWN_NUMBERS: Final = tuple(
-    name for name in WORLD.names or () if name != "home" and not name.endswith(("_at", "_end"))
-)
-"""What a world's row has beside its home and where its parts are."""
 
 
 class Fleet:
@@ -156,7 +151,7 @@ class Fleet:
             count,
             self._max_speed,
         )
-        for name in _OWN_NUMBERS:
+        for name in RENEWED:
             row[name] = fresh.worlds[name][0]
         row["discs_end"] = row["discs_at"]
         state.solid.discs[row["discs_at"] : row["discs_at"] + MOST_DISCS] = fresh.solid.discs

@@ -99,26 +99,28 @@ BOX: Final = np.dtype(
         ("top", "f8"),
     ]
 )
-WORLD: Final = np.dtype(
-    [
-        ("time", "f8"),
-        ("random", "u8"),
-        ("home", "i8"),
-        ("robots_at", "i8"),
-        ("robots_end", "i8"),
-        ("dirt_at", "i8"),
-        ("dirt_end", "i8"),
-        ("brought_in", "i8"),
-        ("falls_at", "i8"),
-        ("falls_end", "i8"),
-        ("things_at", "i8"),
-        ("things_end", "i8"),
-        ("discs_at", "i8"),
-        ("discs_end", "i8"),
-        ("pull_x", "f8"),  # by carpets, m for each metre rolled
-        ("pull_y", "f8"),
-    ]
+_WORLD: Final = (
+    ("time", "f8", True),
+    ("random", "u8", True),
+    ("home", "i8", False),
+    ("robots_at", "i8", False),
+    ("robots_end", "i8", False),
+    ("dirt_at", "i8", False),
+    ("dirt_end", "i8", False),
+    ("brought_in", "i8", True),
+    ("falls_at", "i8", False),
+    ("falls_end", "i8", False),
+    ("things_at", "i8", False),
+    ("things_end", "i8", False),
+    ("discs_at", "i8", False),
+    ("discs_end", "i8", False),
+    ("pull_x", "f8", True),  # by carpets, m for each metre rolled
+    ("pull_y", "f8", True),
 )
+"""Name, type, and whether a reset renews it."""
+WORLD: Final = np.dtype([(name, kind) for name, kind, _ in _WORLD])
+RENEWED: Final = tuple(name for name, _, is_renewed in _WORLD if is_renewed)
+"""Fields of a world's row that a reset renews: all but its home and the bounds of its parts."""
 FALL: Final = np.dtype([("time", "f8"), ("source", "i8")])
 """When the next crumb of a source falls."""
 THING: Final = np.dtype(
