@@ -69,7 +69,7 @@ class RunRecorder:
     ) -> tuple[RunFigures, RunRecording] | None:
         """Take a look; return the run that it was the end of.
 
-        Raises what ``layer`` does; the next look is the end then.
+        Raises what ``layer`` does. A run that ended at such a look is returned by the next one.
         """
         if self._run is None and view.vacuum.phase in BEGINS:
             self._run = RunUnderWay(view, self._source_of_run())
@@ -121,7 +121,7 @@ class HistoryKeeper:
     def look(self, view: RobotView, home: HomeView, layer: Layers) -> None:
         """Take a look, and keep a run that it was the end of.
 
-        What goes wrong is told, and the next look is the end then.
+        A look that fails is told. A run that ended at it is kept by the next look.
         """
         try:
             self._look(view, home, layer)
