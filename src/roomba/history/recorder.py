@@ -103,7 +103,8 @@ class HistoryKeeper:
         """Begin between two runs."""
         self.history = history
         self._recorder = RunRecorder(source)
-        self._tell = ToldOnce(tell)
+        self.tell = ToldOnce(tell)
+        """Tells trouble with the history."""
         self._unfinished = UnfinishedFile(history.path.parent)
         self._has_looked = False
         self._set_aside: Path | None = None
@@ -127,10 +128,10 @@ class HistoryKeeper:
             self._look(view, home, layer)
         # What a robot of another program answers, asked for a layer, is not known here.
         except Exception as fault:
-            self._tell(f"a look for the history failed: {type(fault).__name__}: {fault}")
+            self.tell(f"a look for the history failed: {type(fault).__name__}: {fault}")
         if self.history.set_aside is not self._set_aside:
             self._set_aside = self.history.set_aside
-            self._tell(f"the history was damaged; it is set aside as {self._set_aside}")
+            self.tell(f"the history was damaged; it is set aside as {self._set_aside}")
 
     def _look(self, view: RobotView, home: HomeView, layer: Layers) -> None:
         if not self._has_looked:
@@ -148,12 +149,12 @@ class HistoryKeeper:
         try:
             self._add(figures, recording)
         except RoombaError as error:
-            self._tell(f"the run was not kept: {error}")
+            self.tell(f"the run was not kept: {error}")
             # It is kept as interrupted if its file cannot take the end, either.
             with contextlib.suppress(*_UNWRITABLE):
                 self._unfinished.leave(figures)
         else:
-            self._tell("")
+            self.tell("")
             self._remove_unfinished()
 
     def _add(self, figures: RunFigures, recording: RunRecording) -> None:
@@ -164,13 +165,13 @@ class HistoryKeeper:
 
     def _take_up(self, view: RobotView) -> None:
         """Take the runs that were interrupted: one that goes on is resumed, others are kept."""
-        with interrupted_runs(self.history.path.parent, self._tell) as runs:
+        with interrupted_runs(self.history.path.parent, self.tell) as runs:
             for path, run in runs:
                 try:
                     self._take(run, view)
                     path.unlink(missing_ok=True)
                 except (RoombaError, OSError) as error:
-                    self._tell(f"a run that was interrupted was not kept: {error}")
+                    self.tell(f"a run that was interrupted was not kept: {error}")
         # A history that cannot be read is told of when it is to keep a run.
         with contextlib.suppress(RoombaError):
             self.interrupted = self._newest_interrupted()
@@ -203,13 +204,13 @@ class HistoryKeeper:
         try:
             self._unfinished.keep(run, home_of(home), lambda: cells_of(layer))
         except _UNWRITABLE as error:
-            self._tell(f"the run under way is not kept until it ends: {error}")
+            self.tell(f"the run under way is not kept until it ends: {error}")
 
     def _remove_unfinished(self) -> None:
         try:
             self._unfinished.remove()
         except OSError as error:
-            self._tell(f"the file of a run that is over cannot be removed: {error}")
+            self.tell(f"the file of a run that is over cannot be removed: {error}")
 
     def totals(self) -> TotalsView:
         """Return the sums over all runs that were kept of this program; raises HistoryError.

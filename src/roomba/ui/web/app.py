@@ -65,6 +65,7 @@ def create_app(
             yield
         finally:
             looking.cancel()
+            await asyncio.wait({looking})
             if replays is not None:
                 await replays.end()
 

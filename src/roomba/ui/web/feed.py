@@ -13,8 +13,10 @@ from typing import Final
 from roomba.client.household import Household, told_of
 from roomba.client.observed import ObservedRobot, Timeline
 from roomba.client.plain import home_of, replay_of, state_of
+from roomba.client.protocol import CleanReport
 from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
 from roomba.errors import RoombaError
+from roomba.history.keeping import KeepingThread
 from roomba.history.recorder import HistoryKeeper
 from roomba.ui.web.streams.events import Events, first_of
 from roomba.ui.web.streams.metrics import RobotMetrics
@@ -26,8 +28,6 @@ PERIOD: Final = 0.1
 """s between two looks."""
 _LAYERS_EVERY: Final = 3
 """Looks at the robot for one look at its layers."""
-_KEPT_AHEAD: Final = 600
-"""Looks that wait for the disk of the history: a minute of them. Those beyond it are not kept."""
 
 
 class Feed:
@@ -41,10 +41,13 @@ class Feed:
     ) -> None:
         """Begin with nothing; :meth:`run` shows the keeper, if there is one, each look."""
         self._robot, self._keeper, self._household = robot, keeper, household
-        self._to_keep: asyncio.Queue[tuple[RobotView, HomeView]] = asyncio.Queue(_KEPT_AHEAD)
+        self._keeping = None if keeper is None else KeepingThread(keeper)
         self._recorded = robot if isinstance(robot, Timeline) else None
         self._looked = asyncio.Event()
         self._looks = 0
+        self._layers: dict[LayerName, GridLayer] = {}
+        """Those that were looked at last, as they were then."""
+        self._last: CleanReport | None = None
         self.number = 0
         self.events = Events(first_of(time.time()))
         self.metrics = RobotMetrics(robot)
@@ -57,29 +60,26 @@ class Feed:
         """Times that another time of a recording was chosen."""
 
     async def run(self) -> None:
-        """Look at the robot for ever."""
-        keeping = asyncio.create_task(self._keep())
+        """Look at the robot until it is cancelled; what was seen is kept before it ends."""
+        if self._keeping is not None:
+            self._keeping.start()
         try:
             while True:
                 await self.look()
                 await asyncio.sleep(PERIOD)
         finally:
-            keeping.cancel()
-
-    async def _keep(self) -> None:
-        """Show the keeper each look, in a thread of its own: no viewer waits for its disk."""
-        while self._keeper is not None:
-            view, home = await self._to_keep.get()
-            await asyncio.to_thread(self._keeper.look, view, home, self._robot.layer)
+            if self._keeping is not None:
+                await asyncio.to_thread(self._keeping.stop)
 
     async def look(self) -> None:
         """Look at the robot once, and let waiting viewers know."""
         self._looks += 1
         try:
             view, home, layers = await asyncio.to_thread(self._look_at_robot)
+            self._layers = layers or self._layers
             self._show(view, home)
-            if self._keeper is not None and not self._to_keep.full():
-                self._to_keep.put_nowait((view, home))
+            if self._keeping is not None:
+                self._keeping.look(view, home, self._layers)
             # Not in the thread that looks: viewers take tiles and their version meanwhile.
             for name, layer in layers.items():
                 self.layers[name].update(layer)
@@ -121,9 +121,15 @@ class Feed:
         self.metrics.look(None, self.events.note_gone(reason))
 
     def _look_at_robot(self) -> tuple[RobotView, HomeView, dict[LayerName, GridLayer]]:
-        """Return what there is to see; of the layers, those that are looked at this time."""
+        """Return what there is to see; of the layers, those that are looked at this time.
+
+        They are looked at when a run has ended, too: so the history keeps the floor of that time.
+        """
         view, home = self._robot.robot(), self._robot.home()
-        layers = self._look_at_layers() if self._looks % _LAYERS_EVERY == 1 else {}
+        is_end = view.last is not self._last
+        is_time = self._looks % _LAYERS_EVERY == 1
+        layers = self._look_at_layers() if is_end or is_time else {}
+        self._last = view.last
         return view, home, layers
 
     def _look_at_layers(self) -> dict[LayerName, GridLayer]:

@@ -11,13 +11,14 @@ from typing import cast
 
 import numpy as np
 import pytest
-from unit.history.seen import HOME, view
+from unit.history.seen import HOME, REPORT, view
 
 from roomba.client.observed import ObservedRobot, TimelineView
 from roomba.client.protocol import RobotUnavailableError
 from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
 from roomba.geometry import Point
 from roomba.history.recorder import HistoryKeeper
+from roomba.history.under_way import Layers
 from roomba.ui.web.feed import Feed
 from roomba.ui.web.streams.trail import Place
 
@@ -141,6 +142,22 @@ def test_layers_change_between_two_turns_of_the_viewers_and_not_meanwhile() -> N
     asyncio.run(look())
 
 
+class Sweeping(Seen):
+    """A robot whose layers are full of the number of its look; its run has ended at look 4."""
+
+    def __init__(self) -> None:
+        super().__init__((float(time), (0.0, 0.0)) for time in itertools.count())
+        self.now = 0
+
+    def robot(self) -> RobotView:
+        seen = super().robot()
+        self.now = int(seen.time)
+        return seen if self.now < 4 else replace(seen, last=REPORT)
+
+    def layer(self, name: LayerName) -> GridLayer | None:
+        return GridLayer(1, 0.05, 0.0, 0.0, np.full((4, 5), self.now, np.uint8))
+
+
 class OnSlowDisk:
     """A keeper whose first look lasts until it is let go."""
 
@@ -148,10 +165,13 @@ class OnSlowDisk:
 
     def __init__(self) -> None:
         self.goes_on = threading.Event()
-        self.seen: list[float] = []
+        self.seen: list[tuple[int, int]] = []
+        """The number of each look, and that of which it has the layers."""
 
-    def look(self, view: RobotView, *_: object) -> None:
-        self.seen.append(view.time)
+    def look(self, seen: RobotView, _: HomeView, layer: Layers) -> None:
+        coverage = layer(LayerName.COVERAGE)
+        assert coverage is not None
+        self.seen.append((int(seen.time), int(coverage.cells[0, 0])))
         assert self.goes_on.wait(10.0)
 
 
@@ -160,20 +180,19 @@ def test_viewers_do_not_wait_for_the_disk_of_the_history_and_it_gets_each_look(
 ) -> None:
     monkeypatch.setattr("roomba.ui.web.feed.PERIOD", 0.01)
     keeper = OnSlowDisk()
-    robot = Seen((float(time), (0.0, 0.0)) for time in itertools.count())
-    feed = Feed(cast(ObservedRobot, robot), cast(HistoryKeeper, keeper))
+    feed = Feed(cast(ObservedRobot, Sweeping()), cast(HistoryKeeper, keeper))
 
     async def run() -> None:
         running = asyncio.create_task(feed.run())
         try:
-            while feed.number < 5:
+            while feed.number < 9:
                 await asyncio.wait_for(feed.newer(feed.number), 5.0)
-            assert keeper.seen == [0.0]
+            assert len(keeper.seen) == 1
         finally:
             keeper.goes_on.set()
-        while len(keeper.seen) < 5:
-            await asyncio.wait_for(feed.newer(feed.number), 5.0)
-        running.cancel()
+            running.cancel()
+            await asyncio.wait({running}, timeout=5.0)
 
     asyncio.run(run())
-    assert keeper.seen[:5] == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert keeper.seen[:9] == list(enumerate((0, 0, 0, 3, 4, 4, 6, 6, 6)))
+    assert len(keeper.seen) == feed.number
