@@ -20,7 +20,6 @@ from roomba_robot.msg import ExploreResult as ExploreResultMessage
 from roomba_robot.msg import OpenEdge as OpenEdgeMessage
 from roomba_robot.msg import RoomDirt as RoomDirtMessage
 from roomba_robot.msg import TimeSpent as TimeSpentMessage
-from roomba_robot.srv import ChangeRoomsRequest
 
 from roomba.clean_request import CleanRefusedError, CleanRequest, require_passes
 from roomba.mission.cleaning.result import CleanOutcome, CleanResult, Missed, MissReason
@@ -75,11 +74,11 @@ def request_of(goal: CleanGoal) -> CleanRequest:
             passes=goal.passes or 1,
             fan=FANS[goal.fan],
             in_order=goal.in_order,
-            each=ways_of(goal),
+            each=ways_of(goal.room_passes, goal.room_fans),
             carpets=CARPETS[goal.carpets],
             edges=EDGES[goal.edges],
         )
-    except CleanRefusedError as error:
+    except (CleanRefusedError, MessageError) as error:
         raise CleanGoalError(str(error)) from error
     return request
 
@@ -111,13 +110,12 @@ def way_codes(each: Sequence[RoomWay]) -> tuple[list[int], list[int]]:
     return [way.passes for way in each], [code_of(FANS, way.fan) for way in each]
 
 
-def ways_of(asked: CleanGoal | ChangeRoomsRequest) -> tuple[RoomWay, ...]:
-    """Return how each room is cleaned; arrays of uint8 come as bytes. Raises CleanGoalError."""
-    passes, fans = list(asked.room_passes), list(asked.room_fans)
+def ways_of(passes: Sequence[int], fans: Sequence[int]) -> tuple[RoomWay, ...]:
+    """Return how each room is cleaned; arrays of uint8 come as bytes. Raises MessageError."""
     if len(passes) != len(fans) or not set(fans) <= set(FANS):
-        raise CleanGoalError(
+        raise MessageError(
             f"expected as many fan levels from 0 to {len(FANS) - 1} as passes of rooms, got "
-            f"{fans} for {passes}"
+            f"{list(fans)} for {list(passes)}"
         )
     return tuple(RoomWay(often, FANS[fan]) for often, fan in zip(passes, fans, strict=True))
 

@@ -1,4 +1,7 @@
-"""What the robot tells its clients, as values; numbers that are not finite raise MessageError."""
+"""What the robot tells its clients, as values.
+
+Numbers that are not finite, and ways to clean that are none, raise MessageError.
+"""
 
 from __future__ import annotations
 
@@ -32,15 +35,13 @@ from roomba.client.protocol import (
 )
 from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
 from roomba.vocabulary import (
-    FanLevel,
     Hindrance,
     OpenEdge,
     Reason,
     RoomDirt,
-    RoomWay,
     word_of,
 )
-from roomba_ros.convert.clean_action import EDGE_REASONS, FANS, HINDRANCES, OUTCOMES, REASONS
+from roomba_ros.convert.clean_action import EDGE_REASONS, HINDRANCES, OUTCOMES, REASONS, ways_of
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.localization import knowledge_of
 
@@ -75,10 +76,7 @@ def vacuum_of(message: VacuumState) -> VacuumSnapshot:
         is_on_carpet=message.on_carpet,
         hindrance=_hindrance_of(message.hindrance),
         looks_within=message.looks_within,
-        queue_ways=tuple(
-            RoomWay(often, FANS.get(fan, FanLevel.STANDARD))
-            for often, fan in zip(message.queue_passes, message.queue_fans, strict=False)
-        ),
+        queue_ways=ways_of(message.queue_passes, message.queue_fans),
     )
 
 

@@ -165,7 +165,7 @@ class MissionOrders:
 
     def _on_rooms(self, request: ChangeRoomsRequest) -> ChangeRoomsResponse:
         try:
-            each = ways_of(request)
+            each = ways_of(request.room_passes, request.room_fans)
         except RoombaError as error:
             return ChangeRoomsResponse(False, str(error))
         return ChangeRoomsResponse(*self._answer_to(RoomsOrder(tuple(request.rooms), each)))

@@ -266,6 +266,12 @@ def test_what_hinders_the_robot_is_told_by_its_code() -> None:
     assert line_trouble_of(line_trouble_message(gone)) == gone
 
 
+@pytest.mark.parametrize(("passes", "fans"), [([2, 1], [1]), ([1], [9])])
+def test_ways_to_clean_that_are_none_are_refused(passes: list[int], fans: list[int]) -> None:
+    with pytest.raises(MessageError, match="expected as many fan levels from 0 to"):
+        vacuum_of(VacuumState(queue_passes=passes, queue_fans=fans))
+
+
 TOLD = Readings(
     12.5,
     Pose(1.0, -2.0, 0.5),
