@@ -1,7 +1,7 @@
 """What the broker is told of one robot, and what comes of the commands that it hands on.
 
-:class:`~roomba.ui.smart_home.smart_home.SmartHome` calls it. It draws the map in a thread of its
-own: no command waits for that.
+:class:`~roomba.ui.smart_home.smart_home.SmartHome` calls it. It draws the map in a
+thread of its own.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _STEP: Final = 0.05
 
 
 class MqttBridge:
-    """One robot and its broker; start and stop the ``broker``."""
+    """One robot and its broker, from :meth:`start` to :meth:`stop`."""
 
     def __init__(
         self,
@@ -51,7 +51,7 @@ class MqttBridge:
         """Connect nothing yet; raises BrokerError."""
         self._robot, self._config = robot, config
         self.topics = MqttTopics(f"{config.topics}/{config.robot}", config.discovery)
-        self.broker = Broker(config, self.topics, wake.set, tell)
+        self._broker = Broker(config, self.topics, wake.set, tell)
         self._commands = SmartCommands(robot)
         self._teller = StateTeller()
         self._home_version = 0
@@ -61,14 +61,23 @@ class MqttBridge:
         self._painter = ThreadPoolExecutor(1, "smart home map")
         self._drawing: Future[None] | None = None
         for topic, entity in announcements(self.topics, config.robot, config.name).items():
-            self.broker.hold(topic, json.dumps(entity))
+            self._broker.hold(topic, json.dumps(entity))
+
+    def start(self) -> None:
+        """Begin to connect; returns at once."""
+        self._broker.start()
+
+    def stop(self) -> None:
+        """Draw no more, and say that the robot is gone: within 2 s, as the broker does."""
+        self._painter.shutdown(wait=False, cancel_futures=True)
+        self._broker.stop()
 
     def obey(self) -> bool:
         """Obey what came; returns whether something did."""
         has_obeyed = False
         while True:
             try:
-                topic, payload = self.broker.commands.get_nowait()
+                topic, payload = self._broker.commands.get_nowait()
             except queue.Empty:
                 return has_obeyed
             if topic == self.topics.birth:
@@ -80,16 +89,16 @@ class MqttBridge:
                 self.topics.fan_speed: self._commands.set_fan,
                 self.topics.send_command: self._commands.send,
             }[topic]
-            self.broker.hold(self.topics.answer, json.dumps(take(payload)))
+            self._broker.hold(self.topics.answer, json.dumps(take(payload)))
             self._state_told = -math.inf
 
     def show_gone(self) -> None:
         """Tell that the robot does not answer."""
-        self.broker.hold(self.topics.available, OFFLINE)
+        self._broker.hold(self.topics.available, OFFLINE)
 
     def show(self, view: RobotView, home: HomeView, *, is_new_run: bool) -> None:
         """Tell what is seen now, not more often than is wanted."""
-        self.broker.hold(self.topics.available, ONLINE)
+        self._broker.hold(self.topics.available, ONLINE)
         now = time.monotonic()
         if is_new_run:
             self._way.clear()
@@ -97,11 +106,11 @@ class MqttBridge:
             self._way.append(view.pose[:2])
         if home.version != self._home_version:
             self._home_version = home.version
-            self.broker.hold(self.topics.attributes, json.dumps(attributes_of(home)))
+            self._broker.hold(self.topics.attributes, json.dumps(attributes_of(home)))
         state = self._teller.state_of(view, self._commands.fan.value)
         if now - self._state_told >= self._config.state_period:
             self._state_told = now
-            self.broker.hold(self.topics.state, json.dumps(state))
+            self._broker.hold(self.topics.state, json.dumps(state))
         before = self._drawing
         is_free = before is None or before.done()
         if is_free and now - self._map_told >= self._config.map_period:
@@ -116,7 +125,7 @@ class MqttBridge:
         now = time.monotonic()
         if payload == ONLINE and now - self._announced >= _BIRTH_PERIOD:
             self._announced = now
-            self.broker.hold_again()
+            self._broker.hold_again()
 
     def _show_map(self, view: RobotView, home: HomeView, way: tuple[Point, ...]) -> None:
         """Draw the map, if it is not the one that was drawn last."""
@@ -132,8 +141,8 @@ class MqttBridge:
         floor = FloorMap(cells, coverage, home, view.pose, way)
         valetudo = _valetudo_text(floor)
         if valetudo:
-            self.broker.hold(self.topics.map_data, zlib.compress(valetudo.encode()))
-        self.broker.hold(self.topics.map, picture_of(floor, valetudo))
+            self._broker.hold(self.topics.map_data, zlib.compress(valetudo.encode()))
+        self._broker.hold(self.topics.map, picture_of(floor, valetudo))
 
 
 def _sum_of(layer: GridLayer | None) -> int:

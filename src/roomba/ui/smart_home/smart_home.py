@@ -48,7 +48,7 @@ class SmartHome:
         if self._webhook is not None:
             self._webhook.start()
         if self.mqtt is not None:
-            self.mqtt.broker.start()
+            self.mqtt.start()
         self._thread.start()
 
     def stop(self) -> None:
@@ -57,7 +57,7 @@ class SmartHome:
         self._wake.set()
         self._thread.join(2.0)
         if self.mqtt is not None:
-            self.mqtt.broker.stop()
+            self.mqtt.stop()
         if self._webhook is not None:
             self._webhook.stop()
 

@@ -45,9 +45,9 @@ def robot() -> WrittenRobot:
 def bridge(broker: Mosquitto, robot: WrittenRobot) -> Iterator[MqttBridge]:
     config = MqttConfig(host="127.0.0.1", port=broker.port, state_period=60.0, map_period=600.0)
     made = MqttBridge(robot, config, threading.Event(), print)
-    made.broker.start()
+    made.start()
     yield made
-    made.broker.stop()
+    made.stop()
 
 
 def test_it_announces_itself_and_tells_what_is_seen(bridge: MqttBridge, home: HomeSide) -> None:
@@ -59,6 +59,12 @@ def test_it_announces_itself_and_tells_what_is_seen(bridge: MqttBridge, home: Ho
     assert any(topic.startswith("homeassistant/") for topic in home.newest)
     bridge.show_gone()
     wait_until(lambda: home.text(f"{BASE}/available") == "offline", 10.0)
+    bridge.stop()
+    wait_until(lambda: not any(map(_draws, threading.enumerate())), 10.0)
+
+
+def _draws(thread: threading.Thread) -> bool:
+    return thread.name.startswith("smart home map")
 
 
 def test_state_and_map_are_told_no_more_often_than_is_wanted(
