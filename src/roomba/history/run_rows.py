@@ -141,7 +141,8 @@ class Choice:
     @property
     def values(self) -> tuple[Any, ...]:
         """What stands in the places of :data:`CHOSEN`."""
-        return self.home, self.home, self.program, self.program, self.campaigns, CAMPAIGN
+        home = None if self.home is None else _legible(self.home)
+        return home, home, self.program, self.program, self.campaigns, CAMPAIGN
 
 
 CHOSEN: Final = "(? IS NULL OR home = ?) AND (? IS NULL OR program = ?) AND (? OR program != ?)"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+import shutil
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -22,7 +24,7 @@ from roomba.client.view import GridLayer, LayerName, exploration_as_clean
 from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper, RunRecorder
 from roomba.history.run import RunFigures, RunRecording
-from roomba.history.unfinished import UnfinishedFile
+from roomba.history.unfinished import INTERRUPTED, UnfinishedFile
 from roomba.vocabulary import EdgeReason, OpenEdge
 
 
@@ -209,6 +211,21 @@ def test_a_robot_that_goes_away_at_the_end_of_a_run_has_it_kept_by_the_next_look
     keeper.look(view(9.5, "docked", REPORT), HOME, layer)
     assert told == []
     assert [run.is_recorded for run in keeper.history.runs()] == [True]
+
+
+def test_an_interrupted_run_of_a_home_whose_name_is_no_utf_8_is_kept(tmp_path: Path) -> None:
+    source = replace(SOURCE, home=os.fsdecode(b"K\xfcche"))
+    HistoryKeeper(History(tmp_path), source, pytest.fail).look(view(0.0, "cleaning"), HOME, layer)
+    (held,) = tmp_path.glob("unfinished-*")
+    # As if the program were no more, which holds its own file.
+    shutil.copy(held, tmp_path / "unfinished-left.journal")
+    held.unlink()
+    keeper = HistoryKeeper(History(tmp_path), source, pytest.fail)
+    keeper.look(view(0.0, "docked"), HOME, layer)
+    (kept,) = keeper.history.runs(home=source.home)
+    assert (kept.figures.source.home, kept.figures.outcome) == ("K?che", INTERRUPTED)
+    assert keeper.interrupted is not None
+    assert not list(tmp_path.glob("unfinished-*"))
 
 
 def go_away(_: LayerName) -> GridLayer | None:
