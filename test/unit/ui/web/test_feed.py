@@ -7,19 +7,26 @@ import itertools
 import threading
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import cast
 
 import numpy as np
 import pytest
-from unit.history.seen import HOME, REPORT, view
+from fixtures.households.written_robot import VIEW, WrittenRobot
+from fixtures.waiting import wait_until
+from unit.history.seen import HOME, REPORT, SOURCE, view
 
 from roomba.client.observed import ObservedRobot, TimelineView
 from roomba.client.protocol import RobotUnavailableError
 from roomba.client.view import GridLayer, HomeView, LayerName, RobotView
 from roomba.geometry import Point
+from roomba.history.database import History
 from roomba.history.recorder import HistoryKeeper
+from roomba.history.run import RunFigures, RunRecording
 from roomba.history.under_way import Layers
+from roomba.ui.web.app import create_app
 from roomba.ui.web.feed import Feed
+from roomba.ui.web.guard import Guard
 from roomba.ui.web.streams.trail import Place
 
 Look = tuple[float, tuple[float, float] | None]
@@ -196,3 +203,29 @@ def test_viewers_do_not_wait_for_the_disk_of_the_history_and_it_gets_each_look(
     asyncio.run(run())
     assert keeper.seen[:9] == list(enumerate((0, 0, 0, 3, 4, 4, 6, 6, 6)))
     assert len(keeper.seen) == feed.number
+
+
+def test_the_application_ends_when_the_run_that_ended_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot = WrittenRobot()
+    keeper = HistoryKeeper(History(tmp_path), SOURCE, pytest.fail)
+    app = create_app(cast(ObservedRobot, robot), Guard("the-token"), keeper)
+    add, begins, goes_on = keeper.history.add, threading.Event(), threading.Event()
+
+    def add_slowly(figures: RunFigures, recording: RunRecording | None = None) -> int:
+        begins.set()
+        assert goes_on.wait(10.0)
+        return add(figures, recording)
+
+    monkeypatch.setattr(keeper.history, "add", add_slowly)
+
+    async def live() -> int:
+        async with app.router.lifespan_context(app):
+            await asyncio.to_thread(wait_until, lambda: list(tmp_path.iterdir()), 5.0)
+            robot.view = replace(VIEW, last=REPORT)
+            assert await asyncio.to_thread(begins.wait, 10.0)
+            asyncio.get_running_loop().call_later(0.02, goes_on.set)
+        return len(keeper.history.runs())
+
+    assert asyncio.run(live()) == 1
