@@ -25,6 +25,13 @@ _FULL: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """Reasons for which a file takes no more."""
 
 
+def ending_signals() -> tuple[signal.Signals, ...]:
+    """Return the signals that tell a program to end; a lost terminal does not under ``nohup``."""
+    told = (signal.SIGINT, signal.SIGTERM)
+    is_kept = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    return told if is_kept else (*told, signal.SIGHUP)
+
+
 @contextlib.contextmanager
 def quiet_end() -> Iterator[None]:
     """End the process in order if its output is closed, or Ctrl-C comes, while this goes on."""

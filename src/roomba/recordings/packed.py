@@ -65,6 +65,12 @@ def head_of(path: Path, size: int) -> bytes:
         raise LogError(f"{path}: cannot be read: {error}") from None
 
 
+def refuse_pipe(path: Path) -> None:
+    """Raise LogError for a pipe or a device: a recording is read more than once."""
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise LogError(f"{path}: expected a file, got a pipe or a device; copy it into a file")
+
+
 def plain_name(path: Path) -> str:
     """Return a file's name without the suffix of a packer."""
     return path.stem if path.suffix.lower() in _SUFFIXES else path.name
@@ -74,8 +80,7 @@ def _opener(path: Path) -> _Opener | None:
     """Return what opens a packed file; None for others. Raises LogError."""
     if path.is_dir():
         return None
-    if path.exists() and not path.is_file():
-        raise LogError(f"{path}: expected a file, got a pipe or a device; copy it into a file")
+    refuse_pipe(path)
     try:
         with path.open("rb") as file:
             head = file.read(max(map(len, _OPENERS)))

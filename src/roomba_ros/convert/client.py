@@ -34,13 +34,7 @@ from roomba.client.protocol import (
     VacuumSnapshot,
 )
 from roomba.time_spent import NAMES, NOT_COUNTED, TimeSpent
-from roomba.vocabulary import (
-    Hindrance,
-    OpenEdge,
-    Reason,
-    RoomDirt,
-    word_of,
-)
+from roomba.vocabulary import Hindrance, OpenEdge, Reason, RoomDirt, word_of
 from roomba_ros.convert.clean_action import EDGE_REASONS, HINDRANCES, OUTCOMES, REASONS, ways_of
 from roomba_ros.convert.errors import MessageError, require_finite
 from roomba_ros.convert.localization import knowledge_of

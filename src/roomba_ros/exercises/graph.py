@@ -17,8 +17,10 @@ import rosgraph
 import rospy
 
 from roomba.commands.exercise.verdict import NotYetError, expect
-from roomba_ros.runtime.graph.master import node_at
+from roomba_ros.runtime.graph.master import master, node_at
 
+_CHECK: Final = "/check"
+"""The node that the check is."""
 _UP: Final = 30.0
 """s of wall time in which a master, or a learner's node, is to be there."""
 _LOOK: Final = 0.02
@@ -69,7 +71,7 @@ class OwnGraph:
         self._answer = self._run(sys.executable, str(file), *arguments)
 
         def is_there() -> bool:
-            nodes = _others(_master().getSystemState())
+            nodes = _others(master(_CHECK).getSystemState())
             expect(
                 not nodes or f"/{node}" in nodes,
                 f"expected your program to be the node {node}, it is {', '.join(nodes)}",
@@ -93,7 +95,7 @@ class OwnGraph:
 
     def has_service(self, name: str) -> bool:
         """Return whether a node serves it."""
-        return any(served == f"/{name}" for served, _ in _master().getSystemState()[2])
+        return any(served == f"/{name}" for served, _ in master(_CHECK).getSystemState()[2])
 
     def expect_running(self) -> None:
         """Raise NotYetError when the learner's program has ended."""
@@ -104,7 +106,7 @@ class OwnGraph:
     def _instead(self) -> str:
         """Return in words what the learner's program is in the graph, if it is there."""
         try:
-            state = _master().getSystemState()
+            state = master(_CHECK).getSystemState()
             told = [f"{node}, which {_connections_of(node, state)}" for node in _others(state)]
         except (OSError, rosgraph.MasterException):
             # There is no master, or the node ends meanwhile.
@@ -117,13 +119,9 @@ class OwnGraph:
         return program
 
 
-def _master() -> rosgraph.Master:
-    return rosgraph.Master("/check")
-
-
 def _others(state: Any) -> list[str]:
     """Return the names of all nodes but the check."""
-    return sorted({node for part in state for _, nodes in part for node in nodes} - {"/check"})
+    return sorted({node for part in state for _, nodes in part for node in nodes} - {_CHECK})
 
 
 def _connections_of(node: str, state: Any) -> str:
@@ -131,10 +129,10 @@ def _connections_of(node: str, state: Any) -> str:
 
     Of what all nodes have only the log is left out.
     """
-    asked = node_at(_master().lookupNode(node))
+    asked = node_at(master(_CHECK).lookupNode(node))
     parts = {
-        "publishes": _typed(asked.getPublications("/check")),
-        "hears": _typed(asked.getSubscriptions("/check")),
+        "publishes": _typed(asked.getPublications(_CHECK)),
+        "hears": _typed(asked.getSubscriptions(_CHECK)),
         "serves": [name for name, nodes in state[2] if node in nodes and "_logger" not in name],
     }
     return ", ".join(f"{verb} {' '.join(what) or 'nothing'}" for verb, what in parts.items())

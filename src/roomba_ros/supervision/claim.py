@@ -8,6 +8,7 @@ import socket
 from urllib.parse import urlsplit
 
 from roomba.errors import RoombaError
+from roomba_ros.runtime.graph.master import port_of
 
 
 def claim_robot(master: str, namespace: str) -> socket.socket:
@@ -34,8 +35,7 @@ def claim_robot(master: str, namespace: str) -> socket.socket:
 
 def _place_of(master: str) -> tuple[str, int]:
     """Return the address and port of a master: its URI can be spelled in several ways."""
-    uri = urlsplit(master)
-    port = uri.port or 11311
-    found = socket.getaddrinfo(uri.hostname, port, type=socket.SOCK_STREAM)
+    port = port_of(master)
+    found = socket.getaddrinfo(urlsplit(master).hostname, port, type=socket.SOCK_STREAM)
     # Of several the least: "localhost" may have ::1 as well, in any order.
     return min(str(place[0]) for *_, place in found), port

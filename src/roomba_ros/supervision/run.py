@@ -25,7 +25,7 @@ from roomba.files.shipped import CONFIGURATION, HOMES
 from roomba_ros.maps.map_wish import FOLDER, require_map
 from roomba_ros.runtime.graph.alone import living
 from roomba_ros.runtime.graph.joining import require_own_address
-from roomba_ros.runtime.graph.master import MasterState, master_state, require_answering
+from roomba_ros.runtime.graph.master import MasterState, master_state, port_of, require_answering
 from roomba_ros.runtime.parameters import folder_for
 from roomba_ros.runtime.senders import SUPERVISOR
 from roomba_ros.supervision.claim import claim_robot
@@ -84,7 +84,7 @@ def _run(launch: Launch, scripts: Path) -> int:
     with tempfile.TemporaryDirectory(prefix="roomba_run_") as folder:
         try:
             if master_state() is MasterState.ABSENT:
-                port = urlparse(rosgraph.get_master_uri()).port or 11311
+                port = port_of(rosgraph.get_master_uri())
                 memory = Path(folder) / "master.xml"
                 supervisor.add("master", partial(be_master, port, memory), is_master=True)
             if not wait_for_master(_MASTER_WITHIN, lambda: supervisor.is_ending):

@@ -11,6 +11,7 @@ from typing import Final
 
 from roomba.commands.emulate.making import BAUD, LD19_BAUD, MADE_UP
 from roomba.commands.options import MOST_SEED, Parser, UsageError, choice, number, whole
+from roomba.commands.process_end import ending_signals
 from roomba.commands.program_name import spelled
 from roomba.errors import RoombaError
 
@@ -38,9 +39,8 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _live(given: argparse.Namespace) -> int:
     is_over = threading.Event()
-    for ending in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        if ending is not signal.SIGHUP or signal.getsignal(ending) is not signal.SIG_IGN:  # nohup
-            signal.signal(ending, lambda *_: is_over.set())
+    for ending in ending_signals():
+        signal.signal(ending, lambda *_: is_over.set())
     with MADE_UP[given.robot](given) as told:
         print(f"{told} Ctrl-C ends it.")
         sys.stdout.flush()

@@ -6,7 +6,8 @@ import signal
 import time
 from typing import Final
 
-_ENDING: Final = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+from roomba.commands.process_end import ending_signals
+
 _PATIENCE: Final = 10.0
 """s that an end may take: a robot is given back, its map and its history are kept."""
 
@@ -23,16 +24,12 @@ class ToldToEnd:
     """
 
     def __init__(self, patience: float = _PATIENCE) -> None:
-        """Listen from now on; shells have their background jobs ignore SIGINT.
-
-        SIGHUP stays ignored where it is, as nohup wants it.
-        """
+        """Listen from now on; shells have their background jobs ignore SIGINT."""
         self.is_told = False
         """Whether a signal came."""
         self._patience, self._told_at = patience, 0.0
-        for number in _ENDING:
-            if number is not signal.SIGHUP or signal.getsignal(number) is not signal.SIG_IGN:
-                signal.signal(number, self._interrupt)
+        for number in ending_signals():
+            signal.signal(number, self._interrupt)
 
     def _interrupt(self, number: int, _: object) -> None:
         now = time.monotonic()

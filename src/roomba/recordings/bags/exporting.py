@@ -15,6 +15,7 @@ from rosbags.convert import convert
 from roomba.recordings.bag_format.index_sizes import has_wrong_sizes, mend_sizes
 from roomba.recordings.bag_format.mending import Mended, mend_bag, needs_mending
 from roomba.recordings.bag_format.records import MAGIC
+from roomba.recordings.packed import refuse_pipe
 from roomba.recordings.readings import LogError
 
 _VERSION: Final = 9
@@ -99,8 +100,7 @@ def _require_recording(source: Path) -> None:
                 f"{source}: expected a .bag, or the folder of a bag of ROS 2, got {_OTHER}"
             )
         return
-    if not source.is_file():
-        raise LogError(f"{source}: expected a file, got a pipe or a device; copy it into a file")
+    refuse_pipe(source)
     with source.open("rb") as file:
         begin = file.read(len(MAGIC))
     if not begin:

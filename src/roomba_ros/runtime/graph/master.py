@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import Enum
 from http.client import HTTPException
 from typing import Final
+from urllib.parse import urlsplit
 from xmlrpc.client import Error as XmlRpcError
 from xmlrpc.client import ServerProxy
 
@@ -16,6 +17,8 @@ from roomba.client.xml_rpc import ImpatientTransport
 ANSWER_WITHIN: Final = 5.0
 """s of wall time without an answer, after which one hangs; a busy one takes over a second."""
 _CALLER: Final = "/roomba_robot_start"
+_USUAL_PORT: Final = 11311
+"""Of a master, where its URI has none."""
 
 
 class MasterState(Enum):
@@ -29,6 +32,11 @@ class MasterState(Enum):
 def node_at(uri: str) -> ServerProxy:
     """Return a node, or the master, to be asked; raises OSError when it does not answer in time."""
     return ServerProxy(uri, transport=ImpatientTransport(ANSWER_WITHIN))
+
+
+def port_of(uri: str) -> int:
+    """Return the port of a master."""
+    return urlsplit(uri).port or _USUAL_PORT
 
 
 def master(caller: str = _CALLER) -> rosgraph.Master:
