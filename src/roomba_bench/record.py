@@ -9,6 +9,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
+from roomba.files.atomic import write_output
+
 
 class Better(Enum):
     """Which of two figures is the better one."""
@@ -133,4 +135,4 @@ def write_json(path: Path | None, records: Sequence[Record]) -> None:
     if path is None:
         print(text)
     else:
-        path.write_text(f"{text}\n", encoding="utf-8")
+        write_output(path, f"{text}\n".encode())

@@ -110,6 +110,13 @@ def number(is_right: Callable[[float], bool], expected: str) -> Callable[[str], 
 finite = number(math.isfinite, "finite numbers (m, rad)")
 
 
+def folder(text: str) -> Path:
+    """Return the folder that an option names: the type of one that is read."""
+    if not Path(text).is_dir():
+        raise argparse.ArgumentTypeError(f"expected a folder that is there, got {text!r}")
+    return Path(text)
+
+
 def file_of(name: str | None) -> Path | None:
     """Return the file that figures are written to; None for standard output."""
     return None if name in (None, STANDARD_OUTPUT) else Path(str(name))

@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from roomba.commands.options import STANDARD_OUTPUT
+from roomba.files.atomic import write_output
 from roomba.geometry import Pose
 
 _WIDTH: Final = 120
@@ -58,9 +59,9 @@ def pose_as_json(pose: Pose) -> dict[str, float]:
 
 
 def write_json(target: str, values: dict[str, Any]) -> None:
-    """Write figures to a file, or standard output; raises OSError."""
+    """Write figures to a file, whole or not at all, or standard output; raises OSError."""
     text = json.dumps(values, allow_nan=False)
     if target == STANDARD_OUTPUT:
         print(text, flush=True)
     else:
-        Path(target).write_text(f"{text}\n", encoding="utf-8")
+        write_output(Path(target), f"{text}\n".encode())

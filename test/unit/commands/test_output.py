@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import resource
 from pathlib import Path
 
 import pytest
@@ -43,3 +44,16 @@ def test_figures_are_written_as_one_line_and_never_as_what_json_does_not_have(
     assert json.loads(file.read_text(encoding="utf-8")) == {"way": 5.0}
     with pytest.raises(ValueError, match="JSON"):
         write_json(str(file), {"way": float("nan")})
+
+
+def test_figures_are_written_whole_or_not_at_all(tmp_path: Path) -> None:
+    file, before = tmp_path / "figures.json", resource.getrlimit(resource.RLIMIT_FSIZE)
+    write_json(str(file), {"way": 5.0})
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+        with pytest.raises(OSError, match="too large"):
+            write_json(str(file), {"ways": [5.0] * 1000})
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert json.loads(file.read_text(encoding="utf-8")) == {"way": 5.0}
+    assert list(tmp_path.iterdir()) == [file]

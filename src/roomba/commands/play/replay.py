@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Final
 
-from roomba.commands.options import HelpfulParser
+from roomba.commands.options import HelpfulParser, folder
 from roomba.commands.play.serving import add_page_options, listen_at, serve_page
 from roomba.commands.play.told_to_end import ToldToEnd
 from roomba.commands.program_name import spelled
@@ -63,7 +63,7 @@ def _parser() -> argparse.ArgumentParser:
         "report --recording",
     )
     parser.add_argument(
-        "--history", type=Path, metavar="FOLDER", help="where the runs are (default: the own)"
+        "--history", type=folder, metavar="FOLDER", help="where the runs are (default: the own)"
     )
     add_page_options(parser)
     return parser

@@ -10,7 +10,7 @@ from typing import Final, TextIO
 
 from rich.console import Console
 
-from roomba.commands.options import STANDARD_OUTPUT, HelpfulParser
+from roomba.commands.options import STANDARD_OUTPUT, HelpfulParser, folder
 from roomba.commands.output import tell_tables, told_width, write_json
 from roomba.commands.program_name import spelled
 from roomba.commands.report.table import csv_of, json_of, run_table, runs_table, weeks_table
@@ -179,6 +179,6 @@ def _parser() -> argparse.ArgumentParser:
         help="also the run as a file, to replay elsewhere",
     )
     parser.add_argument(
-        "--history", type=Path, metavar="FOLDER", help="where the runs are (default: the own)"
+        "--history", type=folder, metavar="FOLDER", help="where the runs are (default: the own)"
     )
     return parser

@@ -106,6 +106,16 @@ def test_a_run_behind_json_is_no_file(
     assert not (tmp_path / run).exists()
 
 
+def test_a_folder_of_runs_that_is_not_there_is_refused_and_not_made(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mistyped = tmp_path / "hsitory"
+    with pytest.raises(SystemExit, match="2"):
+        main(["--history", str(mistyped)])
+    assert f"expected a folder that is there, got '{mistyped}'" in capsys.readouterr().err
+    assert not mistyped.exists()
+
+
 def test_a_run_is_repeated_by_what_was_kept_of_it(history: History, tmp_path: Path) -> None:
     home, wishes = str(tiny_home(tmp_path)), ["--battery", "0.8", "--things", "1"]
     assert sim(["--home", home, "--seed", "5", *wishes, "--quiet"]) == 0
