@@ -25,6 +25,7 @@ from roomba.errors import RoombaError
 from roomba_ros.client.ros_client import RosRobot
 from roomba_ros.model.screen import VirtualScreen
 from roomba_ros.runtime.graph.joining import join_graph
+from roomba_ros.runtime.graph.master import MasterState, master, master_state
 
 SIZE: Final = (1400, 900)
 """Pixels of the window."""
@@ -118,9 +119,9 @@ def _has_robot(process: subprocess.Popen[bytes], output: Path) -> bool:
     """Whether RViz and the mission are there; raises RoombaError when all ended instead."""
     if process.poll() is not None:
         raise RoombaError(f"the robot did not start:\n{output.read_text(errors='replace')}")
-    if not rosgraph.is_master_online():
+    if master_state() is not MasterState.ANSWERS:
         return False
-    publishers, subscribers, _ = rosgraph.Master("/picture_of_rviz").getSystemState()
+    publishers, subscribers, _ = master("/picture_of_rviz").getSystemState()
     told = dict(publishers)
     return "/vacuum/state" in told and any("/rviz" in nodes for _, nodes in subscribers)
 

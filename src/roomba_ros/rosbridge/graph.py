@@ -12,6 +12,7 @@ import rospy
 import rospy.core
 
 from roomba.client.protocol import RobotUnavailableError
+from roomba_ros.runtime.graph.master import master as answering_master
 
 _PATIENCE: Final = 5.0
 """s of wall time for a node to say what a service is."""
@@ -19,8 +20,8 @@ _LONGEST_HEADER: Final = 4096
 
 
 def master() -> Any:
-    """Return the master as this node asks it."""
-    return rosgraph.Master(rospy.get_name())
+    """Return the master as this node asks it; raises OSError when it does not answer in time."""
+    return answering_master(rospy.get_name())
 
 
 def topic_types() -> dict[str, str]:

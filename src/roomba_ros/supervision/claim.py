@@ -37,5 +37,17 @@ def _place_of(master: str) -> tuple[str, int]:
     """Return the address and port of a master: its URI can be spelled in several ways."""
     port = port_of(master)
     found = socket.getaddrinfo(urlsplit(master).hostname, port, type=socket.SOCK_STREAM)
-    # Of several the least: "localhost" may have ::1 as well, in any order.
+    # By its name this machine has other addresses than as localhost.
+    if any(_is_own(family, str(place[0])) for family, *_, place in found):
+        return "this machine", port
     return min(str(place[0]) for *_, place in found), port
+
+
+def _is_own(family: socket.AddressFamily, address: str) -> bool:
+    """Whether an address is one of this machine: only there a socket can be bound."""
+    with socket.socket(family, socket.SOCK_DGRAM) as bound:
+        try:
+            bound.bind((address, 0))
+        except OSError:
+            return False
+    return True

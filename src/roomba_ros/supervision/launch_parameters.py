@@ -7,6 +7,8 @@ from typing import Any, Final
 import rosgraph
 from rosgraph.names import get_ros_namespace, ns_join
 
+from roomba_ros.runtime.graph.master import master
+
 _CALLER: Final = "/roomba_run"
 _LAUNCHED: Final = "robot_launched"
 """The parameter, in the robot's namespace, with the names of all that its last run has set."""
@@ -18,19 +20,19 @@ def set_parameters(parameters: dict[str, Any], run_id: str) -> None:
     ``parameters`` are by full name. What people have set stays. ``run_id`` is for a master that has
     none yet.
     """
-    master = rosgraph.Master(_CALLER)
-    if not master.hasParam("/run_id"):
-        master.setParam("/run_id", run_id)
+    asked = master(_CALLER)
+    if not asked.hasParam("/run_id"):
+        asked.setParam("/run_id", run_id)
     launched = ns_join(get_ros_namespace(), _LAUNCHED)
-    _remove_last_run(master, launched, parameters)
+    _remove_last_run(asked, launched, parameters)
     # First: a start that is interrupted may have set any of them.
-    master.setParam(launched, sorted(parameters))
+    asked.setParam(launched, sorted(parameters))
     for name, value in parameters.items():
-        master.setParam(name, value)
+        asked.setParam(name, value)
 
 
-def _remove_last_run(master: rosgraph.Master, launched: str, parameters: dict[str, Any]) -> None:
-    names = master.getParam(launched) if master.hasParam(launched) else []
+def _remove_last_run(asked: rosgraph.Master, launched: str, parameters: dict[str, Any]) -> None:
+    names = asked.getParam(launched) if asked.hasParam(launched) else []
     for name in names if isinstance(names, list) else []:
-        if name not in parameters and master.hasParam(name):
-            master.deleteParam(name)
+        if name not in parameters and asked.hasParam(name):
+            asked.deleteParam(name)

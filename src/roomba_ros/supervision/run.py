@@ -11,7 +11,7 @@ import uuid
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Final, NoReturn
+from typing import Any, Final, NoReturn
 from urllib.parse import urlparse
 
 import rosgraph
@@ -87,11 +87,10 @@ def _run(launch: Launch, scripts: Path) -> int:
                 port = port_of(rosgraph.get_master_uri())
                 memory = Path(folder) / "master.xml"
                 supervisor.add("master", partial(be_master, port, memory), is_master=True)
-            if not wait_for_master(_MASTER_WITHIN, lambda: supervisor.is_ending):
+            if not _has_told_master(launch.parameters, run_id, supervisor):
                 print("./roomba run: the master does not answer", file=sys.stderr)
                 return 1
             if not supervisor.is_ending:
-                set_parameters(launch.parameters, run_id)
                 import_for(scripts / each.script for each in launch.processes if each.script)
             supervisor.add(SUPERVISOR, partial(be_supervisor_node, supervisor.tell_to()))
             for entry in launch.processes:
@@ -104,6 +103,18 @@ def _run(launch: Launch, scripts: Path) -> int:
             return supervisor.run()
         finally:
             supervisor.end_all()
+
+
+def _has_told_master(parameters: dict[str, Any], run_id: str, supervisor: Supervisor) -> bool:
+    """Wait for the master and set parameters; return whether it answers."""
+    if not wait_for_master(_MASTER_WITHIN, lambda: supervisor.is_ending):
+        return False
+    if not supervisor.is_ending:
+        try:
+            set_parameters(parameters, run_id)
+        except OSError:
+            return False
+    return True
 
 
 def _require_home(launch: Launch) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import socket
+
 import pytest
 
 from roomba.errors import RoombaError
@@ -14,9 +16,10 @@ def test_a_robot_is_of_one_run_until_that_ends() -> None:
     with claim_robot(HERE, "/"):
         with pytest.raises(RoombaError, match=f"^expected no such robot on {HERE}, got another"):
             claim_robot(HERE, "/")
-        for spelling in (f"{HERE}/", "http://localhost:19311"):
+        # 127.0.1.1 is what Debian gives the machine's own name.
+        for host in ("127.0.0.1", "localhost", "127.0.1.1", socket.gethostname()):
             with pytest.raises(RoombaError, match="got another run on this machine"):
-                claim_robot(spelling, "/")
+                claim_robot(f"http://{host}:19311/", "/")
         claim_robot(HERE, "/second/").close()
         claim_robot(ELSEWHERE, "/").close()
     claim_robot(HERE, "/").close()

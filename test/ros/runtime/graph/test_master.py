@@ -15,10 +15,12 @@ from roomba_ros.camera import turn_camera_client
 from roomba_ros.client import control_node
 from roomba_ros.client.roomba_client import RoombaClient
 from roomba_ros.dirt.dirt_pub_node import DirtPubNode
+from roomba_ros.rosbridge.graph import topic_types
 from roomba_ros.runtime.graph.master import MasterState, master_state
 from roomba_ros.runtime.node import run_node
 from roomba_ros.supervision import run
 from roomba_ros.supervision.kept_master import wait_for_master
+from roomba_ros.supervision.launch_parameters import set_parameters
 
 
 @pytest.fixture
@@ -69,3 +71,11 @@ def test_each_program_says_that_it_hangs_and_ends(
     told = capsys.readouterr().err
     assert f"expected the ROS master at {hanging} to answer within" in told
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "asks", [topic_types, lambda: set_parameters({"/a": 1}, "a run")], ids=["bridge", "run"]
+)
+def test_what_asks_on_the_way_gives_up_in_time(hanging: str, asks: Callable[[], object]) -> None:
+    with pytest.raises(TimeoutError):
+        asks()
