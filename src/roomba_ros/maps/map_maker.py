@@ -43,11 +43,9 @@ class MapMaker:
         """Begin nothing yet."""
         self._config, self._mapping, self._placing = config, mapping, placing
         self._place, self._background, self._memory = place, background, memory
-        self._mapper: Mapper | None = None
         self._drawing: MapDrawing | None = None
         self._lock = threading.Lock()
         self._whole: OccupancyMap | None = None
-        self._finishes = False
         self.is_docked = False
         self.has_dock = False
         self.station: Pose | None = None
@@ -56,7 +54,7 @@ class MapMaker:
     @property
     def is_growing(self) -> bool:
         """Whether a map is being made."""
-        return self._mapper is not None
+        return self._place.mapper is not None
 
     def begin(self) -> None:
         """Begin where the robot is by what was told; needs odometry."""
@@ -90,21 +88,21 @@ class MapMaker:
     def note_station(self, is_docked: bool) -> bool:
         """Remember where the station is while the robot stands on it; tell whether that is new."""
         self.is_docked = is_docked
-        mapper = self._mapper
+        mapper = self._place.mapper
         if mapper is None or not (is_docked and mapper.version):
             return False
         if self.station is None:
             self._remember_station(mapper, mapper.pose)
             return True
-        if mapper.estimate.knowledge is Knowledge.LOST and not self._finishes:
+        if mapper.estimate.knowledge is Knowledge.LOST and not self._place.is_mapping_held:
             # It was carried home.
             mapper.told(self._config.body.docked_at(self.station))
         return False
 
     def keep(self, now: float) -> None:
         """Remember the map, if it is time to, and once its place is remembered as well."""
-        mapper = self._mapper
-        if mapper is None or self._finishes or not self._place.is_place_kept:
+        mapper = self._place.mapper
+        if mapper is None or self._place.is_mapping_held or not self._place.is_place_kept:
             return
         is_lost = mapper.estimate.knowledge is Knowledge.LOST
         if not self._memory.is_due(now, mapper.version, is_lost=is_lost):
@@ -115,27 +113,26 @@ class MapMaker:
 
     def grown(self, now: float) -> OccupancyMap | None:
         """Return the map as it is by now, if it is time to tell it."""
-        if self._drawing is None or self._finishes:
+        if self._drawing is None or self._place.is_mapping_held:
             return None
         return self._drawing.draw(now)
 
     def finish(self) -> None:
         """Make the map whole, in the background; the robot should stand meanwhile."""
-        mapper = self._mapper
-        if mapper is None or self._finishes:
+        mapper = self._place.mapper
+        if mapper is None or self._place.is_mapping_held:
             return
-        self._finishes = True
-        if self.station is None and not self.has_dock:
-            self._remember_station(mapper, mapper.start)
         # Its place is told on, by the wheels, but nothing is added any more.
         self._place.is_mapping_held = True
+        if self.station is None and not self.has_dock:
+            self._remember_station(mapper, mapper.start)
         self._background.do("the map does not become whole", lambda: self._finish(mapper))
 
     def take_whole(self) -> OccupancyMap | None:
         """Return the whole map, once, as soon as it is; the localizer goes on with it."""
         with self._lock:
             whole, self._whole = self._whole, None
-        mapper = self._mapper
+        mapper = self._place.mapper
         if whole is None or mapper is None:
             return None
         if self._station_from_start is not None:
@@ -143,8 +140,7 @@ class MapMaker:
             self.station = mapper.start.compose(self._station_from_start)
         self._place.go_on(whole, mapper.pose, self._placing.on_finished)
         self._place.map_with(None)
-        self._mapper = self._drawing = None
-        self._finishes = False
+        self._drawing = None
         return whole
 
     def _remember_station(self, mapper: Mapper, docked: Pose) -> None:
@@ -153,7 +149,6 @@ class MapMaker:
         self._station_from_start = mapper.start.inverse().compose(self.station)
 
     def _map_with(self, mapper: Mapper) -> None:
-        self._mapper = mapper
         self._place.map_with(mapper)
         self._drawing = MapDrawing(mapper, self._config.timing)
 
@@ -161,7 +156,7 @@ class MapMaker:
         try:
             whole = mapper.finish()
         except BaseException:
-            self._finishes = self._place.is_mapping_held = False
+            self._place.is_mapping_held = False
             raise
         with self._lock:
             self._whole = whole
