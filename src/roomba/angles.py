@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from roomba.geometry import TWO_PI, wrap_angle
 
 wrapped: Final[Callable[[float], float]] = register_jitable(wrap_angle)
-"""The same function, for compiled callers as well."""
+""":func:`roomba.geometry.wrap_angle`, for compiled callers as well."""
 
 
 def wrap_angles(angles: NDArray[np.float64]) -> NDArray[np.float64]:

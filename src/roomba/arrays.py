@@ -1,6 +1,6 @@
 """Types of arrays that many modules speak of: a name tells the type of the numbers everywhere.
 
-Shapes, units and frames are told where an array is.
+Where an array is used, its documentation tells its shape, units and frame.
 """
 
 from __future__ import annotations
@@ -15,4 +15,4 @@ Floats32 = NDArray[np.float32]
 Ints32 = NDArray[np.int32]
 Ints64 = NDArray[np.int64]
 Mask = NDArray[np.bool_]
-"""Which cells are meant."""
+"""True in each cell that is meant."""

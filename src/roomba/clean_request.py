@@ -20,7 +20,7 @@ from roomba.vocabulary import (
 
 
 class CleanRefusedError(RequestRefusedError):
-    """A request that cannot be fulfilled; the message says what was expected, and came."""
+    """A request that cannot be fulfilled; the message says what was expected and what came."""
 
 
 Rectangle = tuple[float, float, float, float]
@@ -31,8 +31,8 @@ Rectangle = tuple[float, float, float, float]
 class CleanRequest:
     """``rooms`` for ROOMS, in order if ``in_order``; ``zones`` for ZONES; ``spot`` for SPOT.
 
-    ``each`` is how each of the rooms is cleaned, in their order; empty if ``passes`` and ``fan``
-    hold for all.
+    ``each`` says how to clean each room, in the order of ``rooms``; it is empty if ``passes`` and
+    ``fan`` hold for all.
     """
 
     mode: CleanMode = CleanMode.WHOLE
@@ -68,7 +68,7 @@ class CleanRequest:
         if self.spot is not None and not all(map(math.isfinite, self.spot)):
             raise CleanRefusedError(f"expected a spot of finite numbers, m, got {self.spot}")
         for zone in self.zones:
-            # What is not finite is kept by no checkpoint.
+            # A checkpoint cannot keep numbers that are not finite.
             is_finite = all(map(math.isfinite, zone))
             if not (is_finite and zone[0] < zone[2] and zone[1] < zone[3]):
                 raise CleanRefusedError(
@@ -78,7 +78,7 @@ class CleanRequest:
 
     @property
     def most_passes(self) -> int:
-        """How often the floor is cleaned that is cleaned the most often."""
+        """The greatest number of passes that any part of the floor gets."""
         return max((way.passes for way in self.each), default=self.passes)
 
     def moved(self, old_in_new: Pose) -> CleanRequest:

@@ -6,9 +6,9 @@ import math
 from typing import Final
 
 LONGEST_TICK: Final = 2.0
-"""s; a clock that shows more between two ticks of the robot was set."""
+"""s; if more passes between two ticks of the robot, its clock was set."""
 ROUNDING: Final = 1e-6
-"""s; two times since 1970, as floating-point numbers, differ by as much from what they should."""
+"""s; rounding error of a difference between two times since 1970 in floating point."""
 
 
 class ClockJumps:
@@ -36,7 +36,7 @@ class ClockJumps:
 
 
 class RobotTime:
-    """Adds up the time between ticks; a clock that is set back or forward changes little."""
+    """Adds up the time between ticks; setting the clock adds one longest tick at most."""
 
     def __init__(self, now: float) -> None:
         """Begin at ``now``, s of the robot's clock."""
@@ -53,8 +53,8 @@ class RobotTime:
 
 
 def is_recent(now: float, heard: float, longest: float) -> bool:
-    """Whether what was heard at a time is not yet ``longest`` s old; times are in s of one clock.
+    """Whether a message of time ``heard`` is less than ``longest`` s old; s of one clock.
 
-    What comes from the future, by a clock that was set back, is not recent.
+    A message from the future, which a clock that was set back makes possible, is not recent.
     """
     return 0.0 <= now - heard < longest - ROUNDING

@@ -1,15 +1,15 @@
 """How hot loops are compiled: entries, which Python calls, and their parts, in one piece of code.
 
-A part is compiled with each entry that uses it and not by itself: called from Python it is plain
-Python, which is slow. Whether a function may allocate is part of how it is compiled. One that may
-not has no runtime for references: numba refuses code that allocates, and counts no references to
-the arrays that it is given, which takes most of the time of small functions. It must not be given
-a new array by a function that it calls either: nothing would free that.
+A part is compiled into each entry that uses it, never by itself: called from Python, a part runs as
+plain Python, which is slow. Each decorator says whether its function may allocate memory. If it may
+not, numba compiles it without reference counting: numba then refuses code that allocates, and saves
+the counting of references to array arguments, which takes most of the time of small functions. Such
+a function must not call one that returns a new array either: nothing would free that array.
 
-An entry that is called in compiled code with a number that stands there is compiled for that number
-alone, once more: ``int(NUMBER)`` is any number.
+An entry that compiled code calls with a literal number is compiled once more, for that number
+alone. Pass ``int(NUMBER)`` instead: it counts as any number.
 
-Division by zero is not looked for: it gives what the processor makes of it.
+Division by zero raises nothing: the result is what the processor gives.
 """
 
 from __future__ import annotations
@@ -32,22 +32,22 @@ from roomba.compiled_sources import PACKAGE, Sources
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 _ALWAYS: Final[dict[str, Any]] = {"error_model": "numpy", "no_cfunc_wrapper": True}
-"""None is called by its address, from C: what would make that possible is not compiled."""
+"""No C code calls these functions by their address, so numba compiles no C wrapper for them."""
 _ALLOCATES: Final[dict[str, Any]] = {**_ALWAYS, "_nrt": True}
 _ALLOCATES_NOT: Final[dict[str, Any]] = {**_ALWAYS, "_nrt": False}
 _ANY_ORDER: Final = {"nsz", "arcp", "contract", "reassoc"}
-"""Fast math, but for what is not finite: a beam that meets nothing is infinite."""
+"""Fast math that keeps infinities right: the range of a beam that meets nothing is infinite."""
 _NUMBA: Final[Any] = config
 _KNOWN: Final = "sources.json"
-"""File in numba's folder: what is known of sources, by their path, until they change."""
+"""File in numba's folder that remembers the state of each source file until it changes."""
 _BLAS: Final = "scipy.linalg.cython_blas"
 
 
 def _read_arrays_without_blas() -> None:
-    """Let numba read what it knows of arrays, and find no BLAS meanwhile.
+    """Import numba's support of arrays, and hide BLAS from numba meanwhile.
 
-    It only asks whether there is one, for ``np.correlate``, and imports all of scipy's linear
-    algebra to know: 0.13 s of each start. What multiplies matrices looks for it later by itself.
+    numba only asks whether there is a BLAS, for ``np.correlate``, but imports all of scipy's linear
+    algebra to find out: 0.13 s of each start. Code that multiplies matrices looks for BLAS later.
     """
     if _BLAS in sys.modules:
         return
@@ -63,17 +63,17 @@ _read_arrays_without_blas()
 
 
 def _keep_code_one_at_a_time() -> None:
-    """Let processes that compile at once keep what they compiled one after the other.
+    """Make processes that compile at the same time write into numba's cache one by one.
 
-    numba reads the index of a function, takes a free number in it, and writes index and code: of
-    two that do so at once one entry is lost, or leads to the code of the other.
+    To cache a function, numba reads its index, takes a free number from it, and writes index and
+    code. If two processes do so at once, one entry is lost or points to the code of the other.
     """
     kept: Any = IndexDataCacheFile
     save = kept.save
 
     @functools.wraps(save)
     def save_alone(self: Any, key: Any, data: Any) -> None:
-        with open(__file__, "rb") as lock:  # any file that all of them have
+        with open(__file__, "rb") as lock:  # any file that all processes have
             with contextlib.suppress(ImportError, OSError):  # Windows and some disks have no locks
                 import fcntl
 
@@ -97,7 +97,7 @@ def allocating_entry(function: _Function) -> _Function:
 
 
 def any_order_entry(function: _Function) -> _Function:
-    """Compile a function, which may allocate, whose sums may be taken in any order."""
+    """Compile a function that may allocate and whose sums may be taken in any order."""
     return _called_from_python(function, {**_ALLOCATES, "fastmath": _ANY_ORDER})
 
 
@@ -107,10 +107,10 @@ def part(function: _Function) -> _Function:
 
 
 def inner_part(function: _Function) -> _Function:
-    """Make a part, which allocates nothing, whose code stands in that of its callers.
+    """Make a part that allocates nothing and is inlined into its callers.
 
-    An array is handed over as seven arguments and more, so that a call with many of them costs more
-    than a little work. It is for parts that are called in one or two places.
+    Each array is passed as seven arguments or more, so a call with many arrays can cost more than
+    the work of a short part. Use it for parts that are called in one or two places.
     """
     return _part(function, {**_ALLOCATES_NOT, "forceinline": True})
 
@@ -121,7 +121,7 @@ def allocating_part(function: _Function) -> _Function:
 
 
 def inlined_entry(function: _Function) -> _Function:
-    """Compile a function that allocates nothing, whose body stands in its compiled callers."""
+    """Compile a function that allocates nothing and is inlined into its compiled callers."""
     return _called_from_python(function, {**_ALLOCATES_NOT, "inline": "always"})
 
 
@@ -147,11 +147,11 @@ def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
 @contextlib.contextmanager
 def kept_by_sources(file: Path) -> Iterator[None]:
-    """Let numba keep what is compiled meanwhile of a file in the folder for its sources.
+    """Let numba cache what is compiled meanwhile from ``file`` in the folder of the file's sources.
 
-    Without a folder that numba was told, and for what stands in no file, it keeps that where it
-    likes. A file of another folder, such as a stage of planning of a user's own, counts with the
-    parts of this package that it imports.
+    If numba was told no cache folder, or the code stands in no file, numba chooses the place. The
+    sources of a file outside this package, such as a user's own planning stage, are this file and
+    the modules of this package that it imports.
     """
     before = _NUMBA.CACHE_DIR
     if not before or not file.is_file():

@@ -1,11 +1,11 @@
-"""Of which sources compiled code is made: a module and all of this package that it imports.
+"""The sources of a module's compiled code: the module and all that it imports of this package.
 
-numba keeps what it compiled by the file of a function, and does not see that another file changed
-from which a part or a number of it comes. So each module's code is kept in a folder of its own for
-each state of these sources (`roomba.compilation`). Another state, of another branch say, has other
-folders, and the ones of before are there still when one goes back.
+numba caches compiled code by the file of the function, and does not notice a change in another file
+from which the function takes a part or a number. So each module's code is cached in a folder of its
+own for each state of these sources (`roomba.compilation`). Another state, such as that of another
+branch, has other folders, and the earlier folders are still there when the user switches back.
 
-``python3 -m roomba.compiled_sources`` prints a name for the state of all of them.
+``python3 -m roomba.compiled_sources`` prints a name for the state of all sources of compiled code.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from uuid import uuid4
 
 PACKAGE: Final = Path(__file__).parent
 _NO_PART: Final = (Path(__file__).name,)
-"""Files that have no part in what is compiled, though they are imported for it."""
+"""Files that are imported to compile, but do not influence what is compiled."""
 _DIGITS: Final = 16
-"""Of a hash in the name of a folder."""
+"""Hexadecimal digits of the hash in a folder's name."""
 _COMPILES: Final = re.compile(r"^from roomba[\w.]*\.compilation import", re.MULTILINE)
 _IMPORT: Final = re.compile(
     r"^\s*(?:from\s+(?P<of>roomba[\w.]*)\s+import\s+(?P<names>\([^)]*\)|.*)|import\s+(?P<module>roomba[\w.]*))",
@@ -34,9 +34,9 @@ _IMPORT: Final = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class SourceFile:
-    """What a file is: its ``content`` hashed, and the package's files it imports from, by path.
+    """The state of a file: the hash of its ``content``, and the package's files that it imports.
 
-    It is known to be so while its time of change, ns, and its size, bytes, stay.
+    This state is trusted while the file's modification time, ns, and size, bytes, stay the same.
     """
 
     changed: int
@@ -57,7 +57,7 @@ class Sources:
     def key(self, *files: Path) -> str:
         """Return a name for the state of files and of all that they import, directly or not.
 
-        A file may be one of another folder, which imports from the package.
+        A file may lie outside the package and import from it.
         """
         left = [self._named(file) for file in files]
         reached = set(left)
@@ -69,7 +69,7 @@ class Sources:
         return hashlib.sha256(states.encode()).hexdigest()[:_DIGITS]
 
     def remember(self) -> None:
-        """Write ``known`` anew if something changed; one that cannot be written is left out."""
+        """Write ``known`` again if something changed; a failure to write it is ignored."""
         if self._file is None or self._found.items() <= self._known.items():
             return
         self._known |= self._found
@@ -105,7 +105,7 @@ class Sources:
         )
 
     def _imports(self, text: str) -> Iterator[str]:
-        """Yield the files of the package that a source imports from, in any function."""
+        """Yield the package's files that a source imports, inside its functions as well."""
         for found in _IMPORT.finditer(text):
             module = found["of"] or found["module"]
             names = re.findall(r"\w+", found["names"] or "")
@@ -117,7 +117,7 @@ class Sources:
 
 
 def _read(known: Path) -> dict[str, SourceFile]:
-    """Return what a file of before knows; nothing of one that is missing or damaged."""
+    """Return what an earlier process wrote; nothing if the file is missing or damaged."""
     try:
         return {
             str(at): SourceFile(

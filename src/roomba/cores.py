@@ -6,7 +6,7 @@ import os
 
 
 def usable_cores() -> int:
-    """Return their number, at least 1: those that it was given, where the system tells (Linux)."""
+    """Return how many cores the process was given (Linux), elsewhere all cores; at least 1."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

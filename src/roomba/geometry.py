@@ -16,7 +16,7 @@ Point = tuple[float, float]
 
 TWO_PI = 2.0 * math.pi
 FARTHEST = 1e5
-"""m; from the origin of its frame no place of a home is farther."""
+"""m; no place of a home is farther than this from the origin of its frame."""
 
 
 def wrap_angle(angle: float) -> float:
@@ -75,7 +75,7 @@ class Pose:
     def transform(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return points, given in this pose's frame, in the frame that this pose is given in.
 
-        float64 [n, 2 or more]: x, y, m, and what else there is of each, which stays as it is.
+        float64 [n, 2 or more]: x, y, m; further columns stay as they are.
         """
         cosine, sine = math.cos(self.theta), math.sin(self.theta)
         moved = points.copy()
@@ -103,8 +103,9 @@ class Pose:
 
 
 def old_in_new(before: Pose, after: Pose) -> Pose:
-    """Return where an old frame lies in a new one; a place is ``before`` in it, ``after`` in this.
+    """Return the pose of an old frame in a new one, from one place given in both.
 
-    Exactly the identity where both are the same.
+    The place is ``before`` in the old frame and ``after`` in the new one. The result is exactly the
+    identity where both are the same.
     """
     return Pose() if before == after else after.compose(before.inverse())

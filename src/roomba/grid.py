@@ -16,9 +16,9 @@ FREE = 0
 OCCUPIED = 100
 
 MOST_CELLS = 20_000_000
-"""Of a map: 50,000 m2 in cells of 5 cm."""
+"""Most cells of a map: 50,000 m2 in cells of 5 cm."""
 FINEST_CELL, COARSEST_CELL = 1e-3, 1.0
-"""m; finer than a millimetre no map is, and in coarser cells than a metre no robot fits."""
+"""m; no map is finer than a millimetre, and no robot fits on a map coarser than a metre."""
 
 _Floats = NDArray[np.float64]
 _Indices = NDArray[np.int64] | NDArray[np.float64]
@@ -80,7 +80,7 @@ class GridFrame:
         return inside
 
     def centre_of(self, row: float, column: float) -> tuple[float, float]:
-        """Return the (x, y) of a cell's centre, m; parts of a cell count as such."""
+        """Return the (x, y) of a cell's centre, m; ``row`` and ``column`` may be fractions."""
         return (
             self.origin_x + (column + 0.5) * self.resolution,
             self.origin_y + (row + 0.5) * self.resolution,
@@ -91,8 +91,8 @@ class GridFrame:
     ) -> tuple[_Floats, _Floats]:
         """Return x and y, m, of the centres of cells.
 
-        x has the shape of ``columns``, y that of ``rows``; by default they are all of the grid, and
-        parts of a cell count as such.
+        x has the shape of ``columns``, y that of ``rows``; both may be fractions, and are all of
+        the grid by default.
         """
         rows = np.arange(self.rows) if rows is None else rows
         columns = np.arange(self.columns) if columns is None else columns
@@ -110,7 +110,7 @@ class GridFrame:
 class OccupancyMap:
     """What is known of a floor: int8 [rows, columns]; 0 free, 100 occupied, -1 unknown.
 
-    Between them: how much of a cell is occupied, in percent.
+    A value between 0 and 100 is how much of the cell is occupied, in percent.
     """
 
     frame: GridFrame
@@ -131,7 +131,7 @@ class OccupancyMap:
 
     @property
     def likely_solid(self) -> NDArray[np.bool_]:
-        """Cells of which no less than half is solid, or not known: bool [rows, columns]."""
+        """Cells that are unknown, or at least half occupied: bool [rows, columns]."""
         solid: NDArray[np.bool_] = (self.values >= OCCUPIED // 2) | (self.values < FREE)
         return solid
 

@@ -6,13 +6,14 @@ import math
 from typing import Final
 
 _SLACK: Final = 1e-6
-"""%; what sums of small parts may be off."""
+"""%; rounding error that sums of small parts may have."""
 
 
 def share_of(part: float, whole: float) -> float:
     """Return which share of the ``whole`` a ``part`` is, 0..1; all of nothing is 1.
 
-    What is counted as the part may be more than the whole is by now: that is 1. NaN stays NaN.
+    The whole may have shrunk since the part was counted: a part above the whole gives 1. NaN stays
+    NaN.
     """
     if whole <= 0.0:
         return 1.0
@@ -21,5 +22,5 @@ def share_of(part: float, whole: float) -> float:
 
 
 def whole_percent(share: float) -> int:
-    """Return a share as a whole number of percent, 0..100; 100 is all of it, and nothing less."""
+    """Return a share as whole percent, 0..100, rounded down: only all of it gives 100."""
     return min(max(math.floor(100.0 * share + _SLACK), 0), 100)

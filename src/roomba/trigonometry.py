@@ -1,6 +1,6 @@
-"""Sine, cosine and arc tangent without branches, which a compiler works on for many at once.
+"""Sine, cosine and arc tangent without branches, so that a compiler can vectorize them.
 
-They are those of the C library to 5e-16.
+They agree with the C library's to 5e-16.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from roomba.compilation import inner_part
 _PER_QUARTER: Final = 2.0 / math.pi
 _QUARTER: Final = 1.57079632673412561417
 _QUARTER_REST: Final = 6.07710050650619224932e-11
-"""A right angle, rad, in two parts: whole multiples of the first one up to 2^20 are exact."""
+"""A right angle, rad, is the sum of both parts; multiples of the first are exact up to 2^20."""
 _SINE: Final = (
     -1.66666666666666324348e-01,
     8.33333333332248946124e-03,
@@ -32,7 +32,7 @@ _COSINE: Final = (
     2.08757232129817482790e-09,
     -1.13596475577881948265e-11,
 )
-"""Polynomials of squares, up to an eighth of a turn (fdlibm, Sun Microsystems 1993)."""
+"""Coefficients, by powers of the squared angle, to 1/8 turn (fdlibm, Sun Microsystems 1993)."""
 _ATAN_ABOVE: Final = (
     -8.750608600031904122785e-01,
     -1.615753718733365076637e01,
@@ -47,13 +47,13 @@ _ATAN_BELOW: Final = (
     4.853903996359136964868e02,
     1.945506571482613964425e02,
 )
-"""The fraction of two polynomials of squares, up to 0.66 (Cephes, Moshier 1989)."""
+"""Coefficients of both polynomials of a fraction, for ratios to 0.66 (Cephes, Moshier 1989)."""
 _ATAN_MOST: Final = 0.66
 
 
 @inner_part
 def sine_cosine(angle: float) -> tuple[float, float]:
-    """Return both of an angle, rad, of 1000 turns at most."""
+    """Return sine and cosine of an angle, rad, of 1000 turns at most."""
     quarters = np.int32(angle * _PER_QUARTER + (0.5 if angle >= 0.0 else -0.5))
     turned = float(quarters)
     rest = angle - turned * _QUARTER - turned * _QUARTER_REST

@@ -1,5 +1,7 @@
-"""The words and limits of what can be asked for, by programs, the menu, messages, the page; and
-the words for what a robot does."""
+"""The words and limits of what can be asked of a robot, and the words for what it does.
+
+Programs, the menu, messages and the page share them.
+"""
 
 from __future__ import annotations
 
@@ -10,19 +12,19 @@ from enum import Enum
 from typing import Final
 
 MOST_PASSES: Final = 5
-"""Over the same floor; more are a slip of the finger."""
+"""Most passes over the same floor; a larger number is taken for a typing mistake."""
 MOST_ZONES: Final = 1000
-"""Zones of a map, rooms of it that are remembered, and zones or rooms of one clean, or plan."""
+"""Most zones of a map, remembered rooms of a map, and zones or rooms of one clean or plan."""
 MOST_CORNERS: Final = 200
-"""Of a zone."""
+"""Most corners of a zone."""
 LONGEST_NAME: Final = 80
-"""Characters of a room's or zone's name."""
+"""Most characters of a room's or zone's name."""
 OVERTAKEN: Final = "a newer goal took over"
-"""Why a goal ended to which another one was preferred."""
+"""Why a goal ended that another goal replaced."""
 _JOINERS: Final = "\u200c\u200d"
-"""Invisible, but part of a word in Persian and of many emoji: between what they join or part."""
+"""Invisible characters between two others, which Persian words and many emoji need."""
 _LISTED: Final = 20
-"""Names that a message lists."""
+"""Most names that a message lists."""
 
 
 class CleanMode(Enum):
@@ -58,25 +60,25 @@ class CarpetWay(Enum):
     SAME = "as elsewhere"
     """The fan as it was asked for."""
     AVOID = "avoid"
-    """Those that are drawn on the map are not cleaned."""
+    """Carpets that are drawn on the map are not cleaned."""
 
 
 class EdgeOrder(Enum):
     """When the strip along walls and furniture is cleaned."""
 
     ANY = "any"
-    """Where that makes the way shortest."""
+    """At the point of the tour that makes the way shortest."""
     FIRST = "first"
     """Before the rest of the floor, room by room."""
     LAST = "last"
-    """After it."""
+    """After the rest of the floor."""
 
 
 class Phase(str, Enum):
     """What a robot does now.
 
-    A phase equals its word, which is what programs hear. Another program's robot may tell a word
-    that is none of these.
+    A phase equals its word, which is what programs hear. A robot of another program may report a
+    word that is none of these.
     """
 
     IDLE = "idle"
@@ -90,11 +92,11 @@ class Phase(str, Enum):
     RETURNING = "returning"
     """On its way to a place before its station."""
     DOCKING = "docking"
-    """Into the station, by its beams."""
+    """Driving onto the station, by its beams."""
     CHARGING = "charging"
-    """On its station, to go on with its errand afterwards."""
+    """On its station until it is charged enough to go on with its errand."""
     BIN_FULL = "bin full"
-    """Stands, to go on with its errand when its dust bin was emptied."""
+    """Stands until its dust bin was emptied, then goes on with its errand."""
     EMPTYING = "emptying"
     """On its station, which takes the dirt out of its bin."""
     PAUSED = "paused"
@@ -123,7 +125,7 @@ class RoomWay:
 class RoomDirt:
     """How dirty a room was that a clean swept: ``share`` of its floor that was swept, 0..1.
 
-    ``grains`` are those a m2 that the dirt sensor counted there.
+    ``grains`` is how many the dirt sensor counted per m2 there.
     """
 
     room: str
@@ -138,28 +140,28 @@ class Hindrance(str, Enum):
     """
 
     NONE = ""
-    """Nothing, or what no program treats apart from the rest: the sentence beside it tells."""
+    """No hindrance, or one that programs need not know: the text beside it tells people."""
     NO_WAY = "no way"
     """It waits for a way to open."""
     BIN_FULL = "bin full"
     NOT_EMPTIED = "not emptied"
-    """Its station did not empty its dust bin: that is done by hand."""
+    """Its station did not empty its dust bin, which has to be emptied by hand."""
     STOP_RELEASED = "stop released"
     """The emergency stop that interrupted it was released, and it waits to be told to go on."""
     UNREACHABLE = "unreachable"
-    """Its line is gone, or it does not answer."""
+    """The connection to the robot is gone, or the robot does not answer."""
     SENSOR_SILENT = "sensor silent"
-    """It stands, as it does not tell what it senses."""
+    """It stands, because it does not report its sensors."""
     DISOBEYS = "disobeys"
-    """It tells what it senses, and does not do what it is told."""
+    """It reports its sensors, but does not do what it is told."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reason:
     """Why a robot does not do what was asked; empty when all is well.
 
-    ``text`` is for people, with what helps; it may be said otherwise tomorrow. Programs decide by
-    ``hindrance``. ``looks_within``: it looks again for a way within so many s; 0 if it does not.
+    ``text`` is for people and says what helps; its wording may change. Programs decide by
+    ``hindrance``. ``looks_within``: the robot looks again for a way within so many s; 0 if not.
     """
 
     text: str = ""
@@ -167,7 +169,7 @@ class Reason:
     looks_within: float = 0.0
 
     def __bool__(self) -> bool:
-        """Whether there is one."""
+        """Whether there is a reason."""
         return bool(self.text)
 
 
@@ -175,7 +177,7 @@ NO_REASON: Final = Reason()
 
 
 class EdgeReason(str, Enum):
-    """Why a map goes on no further; a reason equals its words."""
+    """Why a map ends at an edge; a reason equals its words."""
 
     NOT_LOOKED_AT = "it got to no place from which to look there"
     NO_ECHO = "it looked there and the lidar met nothing: too far away, black, or of glass"
@@ -212,22 +214,22 @@ def word_of(reason: Enum) -> str:
 
 
 def fault_of_name(name: str) -> str:
-    """Return why a text is no valid name: what was expected, and came; empty if it is one."""
+    """Return why a text is no valid name: what was expected and what came; "" if it is valid."""
     if 0 < len(name) <= LONGEST_NAME and name.strip() and is_readable(name):
         return ""
-    # Of an endless one, the beginning tells enough.
+    # Of a very long name, the beginning tells enough.
     return f"expected a name of 1 to {LONGEST_NAME} printable characters, got {name[:40]!r}"
 
 
 def checked_name(name: str) -> str:
-    """Return a name; raises ValueError with what is expected in place of what is none."""
+    """Return a valid name as it is; raises ValueError, which says what was expected, for others."""
     if fault := fault_of_name(name):
         raise ValueError(fault)
     return name
 
 
 def is_readable(text: str) -> bool:
-    """Whether all of a text can be seen, but for joiners, each between two other characters."""
+    """Whether a text is visible throughout; a joiner counts between two visible characters."""
     is_visible = [letter.isprintable() and letter != " " for letter in text]
     return all(
         0 < at < len(text) - 1 and is_visible[at - 1] and is_visible[at + 1]
@@ -238,7 +240,7 @@ def is_readable(text: str) -> bool:
 
 
 def cleaned_name(text: str) -> str:
-    """Return a name that is made of any text, as other programs have it; "" if nothing is left.
+    """Return a name made from a text of another program; "" if nothing is left of it.
 
     White space of any kind is one space, what cannot be seen is left out, and the end is cut off.
     """
@@ -252,14 +254,14 @@ def cleaned_name(text: str) -> str:
 
 
 def places_told(count: int) -> str:
-    """Return how many places, as a person says it."""
+    """Return a number of places in words, such as "1 place"."""
     return f"{count} place" if count == 1 else f"{count} places"
 
 
 def another_name(name: str, taken: Collection[str]) -> str:
-    """Return a name with the first number, "X 2", "X 3" ..., with which none is ``taken``.
+    """Return the first of "X 2", "X 3" ... that is not ``taken``, X being ``name``.
 
-    It is cut so that it is no longer than a name may be.
+    ``name`` is cut where the result would be longer than a name may be.
     """
     ends = (f" {number}" for number in itertools.count(2))
     names = (f"{name[: LONGEST_NAME - len(end)].rstrip()}{end}" for end in ends)

@@ -1,8 +1,9 @@
-"""Onto the station by its beams, by a robot that knows neither its place nor the station's.
+"""Docking by the station's beams, for a robot that knows neither its pose nor the station's.
 
-A receiver tells which beams it sees, and not from where. Where the robot crosses their middle it
-knows on which side of it the station is. It turns there, backs off, and drives at the station,
-steered by the side on which it is; places where both beams were seen say better where it is.
+The receiver tells which beams it sees, but not from which direction they come. Where the robot
+crosses the middle of the beams, it knows on which side of it the station is. It turns to that side,
+backs off, and drives at the station, steering by the beam that it sees. Places where it sees both
+beams tell the direction of the station more exactly.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ _QUARTER = 0.5 * math.pi
 
 
 class Approach(Enum):
-    """How it stands."""
+    """The stage of an approach."""
 
     CROSSING = "through the beams, until their middle was crossed"
     FACING = "turning to the station"
@@ -29,7 +30,7 @@ class Approach(Enum):
 
 
 class BeamApproach:
-    """One approach, from the first beam on; headings and places are by odometry."""
+    """One approach to the station, from the first beam on; poses are by odometry."""
 
     def __init__(self, config: BumpingConfig) -> None:
         """Begin."""
@@ -44,7 +45,7 @@ class BeamApproach:
         self._attempts = 0
 
     def tick(self, readings: Readings) -> Twist:
-        """Return what is wanted now."""
+        """Return the twist that is wanted now."""
         now = readings.time
         dt, self._last = min(max(now - self._last, 0.0), 0.1), now
         if self._entered is None:
@@ -83,12 +84,12 @@ class BeamApproach:
         side = self._crossed_from(readings)
         if side == 0:
             return Twist(config.beam_speed, 0.0)
-        # From the green side, its left, to the red one the station is on the left of the way.
+        # A robot that crosses from the green side to the red one has the station on its left.
         self._crossed_to = self._told = readings.odometry.theta + side * _QUARTER
         return self._enter(Approach.FACING, readings)
 
     def _crossed_from(self, readings: Readings) -> int:
-        """Return from which side it crossed the middle: 1 the green one, -1 the red one, 0 not."""
+        """Return from which side the robot crossed the middle: 1 green, -1 red, 0 not crossed."""
         beams, before = readings.beams, self._side
         side = int(beams.green) - int(beams.red)
         self._side = side or before
@@ -96,17 +97,17 @@ class BeamApproach:
             self._note_middle(readings.odometry)
             return before
         if side != 0 and before == 0 and self._middles:
-            # It was in the middle from the beginning, and leaves it to this side.
+            # The robot began in the middle and leaves it to this side.
             return -side
         return before if side * before < 0 else 0
 
     @property
     def _heading(self) -> float:
-        """Where the station is, rad: as the beams' middle told, put right by what it learned."""
+        """Heading to the station, rad: by the beams' middle, corrected while driving."""
         return wrap_angle(self._told + self._learned)
 
     def _note_middle(self, pose: Pose) -> None:
-        """Remember a place in the middle of the beams; two of them tell where these lead."""
+        """Remember a place in the middle of the beams; two of them tell where the beams lead."""
         apart = self._config.middles_apart
         for middle in reversed(self._middles):
             if middle.distance_to(pose.x, pose.y) >= apart:
@@ -138,10 +139,10 @@ class BeamApproach:
         return Twist(-config.beam_speed, max(min(2.0 * wrong, 1.0), -1.0))
 
     def _drive(self, readings: Readings, dt: float) -> Twist:
-        """Drive at the station: what side it is on tells where it aims, and how wrong that is."""
+        """Drive at the station; the beam that is seen corrects the aim and the learned heading."""
         config, beams = self._config, readings.beams
         way = self._way(readings)
-        # At the beginning it may be behind where they reach.
+        # At the beginning the robot may still be too far away for the beams.
         is_gone = readings.time - self._seen_at > config.beams_gone and way > 1.5 * config.beam_back
         is_past = way > config.beam_way + config.beam_back
         if is_gone or is_past or (readings.bumps and way > config.backing_way):

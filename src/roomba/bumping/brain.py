@@ -1,5 +1,7 @@
-"""The brain of a robot without a lidar, beside the mission: ticked with readings, it answers with
-commands. No clock, no files: it is given its random numbers."""
+"""The brain of a robot without a lidar: at each tick it takes readings and returns a command.
+
+It stands in for the mission. It reads no clock and no files, and is given its random numbers.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,7 @@ from roomba.robot.readings import Readings
 
 
 class BumpingState(Enum):
-    """What the robot is at."""
+    """What the robot is doing."""
 
     DOCKED = "on its station"
     LEAVING = "leaving its station"
@@ -48,14 +50,14 @@ _HOMEWARD: Final = frozenset({BumpingState.HOMING, BumpingState.DOCKING})
 """States whose aim is the station."""
 _DRIVES: Final = frozenset({BumpingState.LEAVING, BumpingState.SWEEPING, *_HOMEWARD})
 _WAITS: Final = frozenset({BumpingState.PAUSED, BumpingState.HELD})
-"""States in which it can be told to go on."""
+"""States in which the robot can be told to go on."""
 
 
 class BumpingBrain:
     """Sweeps by bump and go until the battery is low or it is told to go home.
 
-    ``state`` is what it is at; ``floor`` what odometry says was swept; ``station`` where the docked
-    robot stands, in the frame of the odometry, or None if it never stood there.
+    ``state`` is what the robot is doing; ``floor`` what odometry says was swept; ``station`` the
+    pose of the docked robot in the frame of the odometry, or None if it was never docked.
     """
 
     def __init__(
@@ -95,12 +97,12 @@ class BumpingBrain:
         self._enter(BumpingState.LEAVING)
 
     def dock(self) -> None:
-        """Go home; on its station it stays."""
+        """Go home; a robot that is on its station stays there."""
         if self.state is not BumpingState.DOCKED:
             self._enter(BumpingState.HOMING)
 
     def stop(self) -> None:
-        """Stand where it is, and go on with nothing; an emergency stop holds all the same."""
+        """Stand still and drop what it was doing; an emergency stop stays in force."""
         if self.state is BumpingState.EMERGENCY:
             self._paused = None
         elif self.state.drives or self.state in _WAITS:
@@ -113,14 +115,14 @@ class BumpingBrain:
             self._enter(BumpingState.PAUSED)
 
     def resume(self) -> None:
-        """Go on with what it was at; set free it goes on as well, and out of its station first."""
+        """Go on after a pause or after being set free; leave the station before sweeping."""
         if self.state in _WAITS and self._paused is not None:
             is_docked = self.readings is not None and self.readings.battery.is_docked
             leaves = is_docked and self._paused is BumpingState.SWEEPING
             self._enter(BumpingState.LEAVING if leaves else self._paused)
 
     def hold(self) -> None:
-        """Stand until the emergency stop is released; what it was at is paused."""
+        """Stand until the emergency stop is released; what the robot was doing is paused."""
         self._drive.emergency = True
         if self.state.drives:
             self._paused = self.state
@@ -143,7 +145,7 @@ class BumpingBrain:
 
     @property
     def move(self) -> BumpMove | None:
-        """What it does while it sweeps or looks for its station; None while it does neither."""
+        """The move of a robot that sweeps or looks for its station; None otherwise."""
         return None if self._sweeping is None else self._sweeping.move
 
     def limit_speed(self, speed: float) -> None:
@@ -151,7 +153,7 @@ class BumpingBrain:
         self._drive.set_max_speed(speed)
 
     def tick(self, readings: Readings) -> Command:
-        """Take what the sensors tell, and return what is wanted, as far as that is safe."""
+        """Take the readings of a tick; return the wanted command, as far as it is safe."""
         self.readings = readings = self._placed(readings)
         self._notice(readings)
         wanted = self._act(readings)
@@ -164,12 +166,12 @@ class BumpingBrain:
         return Command(self._safely(wanted, readings), rests, rests)
 
     def steer(self, twist: Twist, readings: Readings) -> Command:
-        """Return what is wanted when the robot is steered by hand, as far as that is safe."""
+        """Return the command for a robot that is steered by hand, as far as it is safe."""
         self.readings = readings = self._placed(readings)
         return Command(self._safely(twist, readings), 0.0, 0.0)
 
     def _placed(self, readings: Readings) -> Readings:
-        """Return what the sensors tell, with the place that walls put right."""
+        """Return the readings with the pose that the wall compass has corrected."""
         sweeping = self._sweeping
         is_along = sweeping is not None and sweeping.is_along(readings)
         self.compass.take(readings.odometry, is_along=is_along)
@@ -181,7 +183,7 @@ class BumpingBrain:
         return self._drive.tick(readings.time)[0]
 
     def _notice(self, readings: Readings) -> None:
-        """Notice what changes its state by itself."""
+        """Change the state if the robot docked, was taken off, runs low, or is held."""
         if readings.battery.is_docked:
             self._remember_station(readings.odometry)
             is_done = self.state in _WAITS and self._paused in _HOMEWARD
@@ -251,7 +253,7 @@ class BumpingBrain:
             self._enter(BumpingState.DOCKING)
             return STANDSTILL
         self._homing_since = readings.time if self._homing_since is None else self._homing_since
-        # Where odometry is far off, walls lead by the station all the same.
+        # Following walls leads past the station even where odometry is far off.
         looks = (readings.time - self._homing_since) % (2.0 * self._config.home_time)
         is_at_walls = self.station is None or looks > self._config.home_time
         if self._sweeping is None or is_at_walls is not (self._sweeping.goal is None):
@@ -264,7 +266,7 @@ class BumpingBrain:
     def _next_on_the_way(
         self, readings: Readings, goal: tuple[float, float] | None
     ) -> tuple[float, float] | None:
-        """Return where to go: back over driven floor, and from place to place where that ends."""
+        """Return where to go: back over driven floor, then from place to place near the station."""
         if self.station is None:
             return None
         pose, now = readings.odometry, readings.time
@@ -283,7 +285,7 @@ class BumpingBrain:
         return station.compose(Pose(-self._config.before_home, 0.0, 0.0))
 
     def _place_to_look(self) -> tuple[float, float] | None:
-        """Return a place before the station, the farther from it the longer it was looked for."""
+        """Return a random place before the station: farther away the longer the search lasts."""
         if self.station is None:
             return None
         before = self._before_station(self.station)

@@ -1,6 +1,6 @@
 """Where the robot has been: floor that leads back through doors, the way that it came or shorter.
 
-Cells lie in the frame of the place that it believes; the older they are, the more they are off.
+Cells lie in the frame of the robot's estimated pose; the older a cell, the larger its error.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from roomba.geometry import Pose
 
 _Cell = tuple[int, int]
 _AROUND = [(x, y) for x in range(-2, 3) for y in range(-2, 3) if (x, y) != (0, 0)]
-"""Cells that are taken for joined: between two ticks a cell may be passed over."""
+"""Offsets of cells that count as neighbours: between two ticks the robot may skip a cell."""
 
 
 class DrivenFloor:
-    """The cells in which its middle was, and by how many steps each is away from a place."""
+    """The cells where the robot's middle was, and how many steps each is from a destination."""
 
     def __init__(self, config: BumpingConfig) -> None:
         """Begin with none."""
@@ -31,7 +31,7 @@ class DrivenFloor:
         self._steps.clear()
 
     def drive(self, pose: Pose) -> None:
-        """Note where it is."""
+        """Note that the robot is at this pose."""
         self._driven.add(self._cell_at(pose.x, pose.y))
 
     def lead_to(self, x: float, y: float) -> None:
@@ -52,7 +52,7 @@ class DrivenFloor:
                     coming.append(beside)
 
     def next_from(self, pose: Pose) -> tuple[float, float] | None:
-        """Return the place within sight that is nearest to the end of the way, m; None: no way."""
+        """Return the place within reach that has the fewest steps left, m; None: no way."""
         side, reach = self._config.driven_cell, self._config.driven_ahead
         here, most = self._cell_at(pose.x, pose.y), math.ceil(reach / side)
         near = [

@@ -1,4 +1,4 @@
-"""What the wheels say was swept, and where something was felt: cells around where it began."""
+"""What the wheels say was swept, and where something was felt: cells around the robot's start."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ class FeltFloor:
         self.felt: NDArray[np.bool_] = np.zeros(self._frame.shape, np.bool_)
 
     def sweep(self, pose: Pose) -> None:
-        """Note that it swept up to here."""
+        """Note that the robot swept up to this pose."""
         if self._frame.contains(pose.x, pose.y):
             self.coverage.sweep(pose.x, pose.y)
 
     def feel(self, pose: Pose, ahead: float) -> None:
-        """Note that something is ``ahead`` m before it."""
+        """Note that the robot felt something ``ahead`` m before its middle."""
         x, y = pose.x + ahead * math.cos(pose.theta), pose.y + ahead * math.sin(pose.theta)
         if self._frame.contains(x, y):
             self.felt[self._frame.cell_of(x, y)] = True
@@ -49,7 +49,7 @@ class FeltFloor:
     def new_ahead(self, pose: Pose, heading: float, reach: float) -> float:
         """Return how much way of ``reach`` m in a direction was not swept yet, m.
 
-        It is looked up to what was felt there.
+        The look ends where something was felt, and at the edge of the grid.
         """
         step = self._frame.resolution
         new = 0.0

@@ -14,24 +14,24 @@ from roomba.robot.readings import Readings
 
 
 class BumpMove(Enum):
-    """What it is at."""
+    """What the robot is doing."""
 
     SPIRAL = "in a spiral"
     STRAIGHT = "straight on"
     WALL = "along a wall"
-    """The wall is on its right, where its wall sensor looks."""
+    """The wall is on the robot's right, where its wall sensor looks."""
     TURN = "turning"
     BACK = "backing off"
 
 
 class BumpAndGo:
-    """Drives by touch alone; ``goal``, m by odometry, is where it goes if it may.
+    """Drives by touch alone; ``goal``, m by odometry, is where it heads; None: nowhere.
 
-    ``stays_at_walls``: after each touch it goes along what it touched, and longer.
+    ``stays_at_walls``: after each touch the robot follows what it touched, for longer than usual.
 
-    ``wants_wall``: after the next touch it goes along what it touched.
+    ``wants_wall``: after the next touch the robot follows what it touched.
 
-    ``is_held``: it touched so often without coming away that it needs help.
+    ``is_held``: the robot touched so often without getting away that it needs help.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class BumpAndGo:
         self._along: float | None = None
 
     def tick(self, readings: Readings) -> Twist:
-        """Return what is wanted now."""
+        """Return the twist that is wanted now."""
         now, pose = readings.time, readings.odometry
         dt, self._last = min(max(now - self._last, 0.0), 0.1), now
         if self._began is None:
@@ -96,12 +96,12 @@ class BumpAndGo:
         return pose.distance_to(began.x, began.y)
 
     def is_along(self, readings: Readings) -> bool:
-        """Whether it goes along a wall, which it saw a moment ago."""
+        """Whether the robot follows a wall, saw it a moment ago, and touches nothing."""
         is_seen = readings.time - self._lost <= self._config.wall_gap
         return self.move is BumpMove.WALL and is_seen and not readings.bumps
 
     def _touch(self, readings: Readings) -> None:
-        """Remember it, and back off."""
+        """Remember the touch, choose what to do next, and back off."""
         pose, config = readings.odometry, self._config
         self._floor.feel(pose, self._radius)
         near = pose.distance_to(*self._touched_at) < config.free_way
@@ -115,7 +115,7 @@ class BumpAndGo:
         turns_along = self.move is BumpMove.TURN and self._next is BumpMove.WALL
         goes_along = self._stays_at_walls or turns_along or self.move is BumpMove.WALL
         goes_along |= self.wants_wall or self._bumps % config.wall_every == 0
-        # Between legs of chairs walls lead nowhere.
+        # Between the legs of chairs, following walls leads nowhere.
         goes_along &= self._touches <= config.wall_touches and not readings.cliff.any
         if goes_along:
             self._next = BumpMove.WALL
@@ -129,7 +129,7 @@ class BumpAndGo:
         self._enter(BumpMove.BACK, readings)
 
     def _away(self, pose: Pose, *, left: bool, right: bool) -> float:
-        """Return a heading away from what was touched, where most is new or the goal is nearer."""
+        """Return a heading away from what was touched, to the most unswept floor or to the goal."""
         config = self._config
         lowest = config.least_turn if left is not right else 2.0 * config.least_turn
         turns = self._rng.uniform(lowest, math.pi, config.headings)
@@ -141,7 +141,7 @@ class BumpAndGo:
         for turn in turns.tolist():
             heading = wrap_angle(pose.theta + turn)
             worth = self._floor.new_ahead(pose, heading, config.look_ahead)
-            # Where it touches again and again, the way to the goal is shut.
+            # After many touches at one place, the straight way to the goal is blocked.
             if self.goal is not None and self._touches <= config.wall_touches:
                 bearing = math.atan2(self.goal[1] - pose.y, self.goal[0] - pose.x)
                 worth = -abs(wrap_angle(heading - bearing))
@@ -171,7 +171,7 @@ class BumpAndGo:
         return Twist(0.0, math.copysign(self._config.turning_speed, wrong))
 
     def _has_turned_along(self, readings: Readings) -> bool:
-        """Whether the wall on its right was nearest a moment ago: it stands along it."""
+        """Whether the wall's signal is past its peak: the robot then stands along the wall."""
         self._nearest, self._near = max(self._nearest, readings.wall), readings.wall
         return self._nearest > 0.0 and readings.wall < self._nearest - self._config.wall_passed
 
@@ -185,7 +185,7 @@ class BumpAndGo:
 
     def _end_spiral(self, readings: Readings) -> None:
         self._spiral, self._spiralled = self._config.spiral_start, readings.time
-        # Carpets take some of each turn: those to the left and to the right make up for each other.
+        # Carpets swallow part of each turn: spirals to alternate sides cancel the error.
         self._around = -self._around
         self._enter(BumpMove.STRAIGHT, readings)
 
@@ -215,11 +215,11 @@ class BumpAndGo:
         return float(np.mean(new)) > config.spiral_room * reach
 
     def _go_along(self, readings: Readings, dt: float) -> Twist:
-        """Keep the wall on its right as near as its sensor can tell; look for it in a bend."""
+        """Keep the signal of the wall on the right constant; drive a bend to find a lost wall."""
         config = self._config
         speed = config.wall_speed
         self._along = readings.time if self._along is None else self._along
-        # Around furniture in the middle of a room it would go for ever.
+        # Around furniture in the middle of a room the robot would go for ever.
         longest = config.home_wall_time if self._stays_at_walls else config.wall_time
         if readings.time - self._along > longest:
             self._next, self._along = BumpMove.STRAIGHT, None
@@ -228,7 +228,7 @@ class BumpAndGo:
             return STANDSTILL
         if readings.wall > 0.0:
             self._lost = readings.time
-            # Its sensor is coarse: a step of it is no turn of the wall.
+            # The sensor is coarse: a step of its signal does not mean that the wall turns.
             share = dt / (dt + config.wall_smoothing)
             before, self._near = self._near, self._near + share * (readings.wall - self._near)
             rising = (self._near - before) / dt if dt > 0.0 else 0.0

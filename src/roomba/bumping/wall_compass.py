@@ -1,9 +1,10 @@
-"""Where the robot is by its wheels, its heading put right by walls.
+"""The pose by wheel odometry, with its heading corrected by walls.
 
 Wheels that differ by a thousandth turn a robot by 5 degrees a minute, always to the same side, and
 carpets take some of each turn. But walls of a home stand square to each other, and so does its
-station: a straight way along a wall tells the heading, up to quarter turns. By how much it was
-wrong, and over which way, also tells how the wheels differ, which is taken out from then on.
+station: a straight way along a wall tells the heading, up to quarter turns. How far the
+heading was wrong, and over which way, also tells how the wheels differ: from then on the robot's
+drift is taken out.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ from roomba.geometry import Pose
 
 _QUARTER = 0.5 * math.pi
 _PARTS = 8
-"""Of a way along a wall; one is left behind where the whole tells nothing."""
+"""Parts of a way along a wall; if the whole way tells nothing, its first part is dropped."""
 
 
 class WallCompass:
-    """Follows the odometry; ``pose`` is it put right, m and rad, from where it first was.
+    """Follows the odometry; ``pose`` is the corrected pose, m and rad, from the first one.
 
-    ``veer``, rad/m, is by how much the robot turns left by itself, as learned.
+    ``veer``, rad/m, is the learned drift: how far the robot turns left unasked.
     """
 
     def __init__(self, config: BumpingConfig) -> None:
@@ -43,25 +44,25 @@ class WallCompass:
 
     @property
     def is_due(self) -> bool:
-        """Whether it went or turned so far without a wall that its heading is doubtful."""
+        """Whether the heading is doubtful: never corrected, or too far driven or turned since."""
         config = self._config
         if not self._has_learned:
             return True
         return self._way > config.compass_due or abs(self._turned) > config.compass_turns
 
     def stand_square(self) -> None:
-        """The robot stands square to a wall, as on its station: walls are measured by that."""
+        """Take the present heading as square to the walls, as that on the station is."""
         self._square = self.pose.theta
         self._corrected_at, self._way, self._turned = self.pose, 0.0, 0.0
 
     def stand_at(self, pose: Pose) -> None:
-        """The robot stands at a place that is known, as on its station."""
+        """Take ``pose`` as the present one, when it is known, as on the station."""
         self.pose = self._corrected_at = pose
         self._points.clear()
         self._way = self._turned = 0.0
 
     def take(self, told: Pose, *, is_along: bool) -> bool:
-        """Take what the wheels tell; ``is_along``: along a wall. Return whether it learned."""
+        """Take the wheels' pose; ``is_along``: along a wall. Return whether that corrected it."""
         before, self._told = self._told or told, told
         moved = before.inverse().compose(told)
         step = math.hypot(moved.x, moved.y)
@@ -78,7 +79,7 @@ class WallCompass:
         if self._chord(0) < self._config.compass_way:
             return False
         learned = self._put_right()
-        # What tells something has told it; what tells nothing does not a step later either.
+        # Points that were used are done; those that told nothing tell nothing a step later either.
         for _ in range(len(self._points) if learned else len(self._points) // _PARTS):
             self._points.popleft()
         return learned
@@ -93,7 +94,7 @@ class WallCompass:
             return False
         way = max(self._way, self._config.compass_way)
         self.veer += self._config.compass_learning * wrong / max(way, self._config.compass_far)
-        # Half of it came before the middle of the way: so the place is wrong as well.
+        # Half of the error arose before the middle of the way, so the position is wrong as well.
         since = self._corrected_at or self.pose
         half, pose = -0.5 * wrong, self.pose
         off_x, off_y = pose.x - since.x, pose.y - since.y

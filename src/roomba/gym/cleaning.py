@@ -1,7 +1,7 @@
 """Cleaning as episodes: many robots at once, each in its own world of one fleet.
 
-Both environments are thin adapters of this, so a robot's episode is the same, bit for bit, in
-either.
+The environments of one robot and of many are thin adapters of this module, so a robot's episode is
+the same, bit for bit, in either.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ Beginning = tuple[int, Pose]
 CLEAN: Final = 0.99
 """0..1; with this share of the reachable dirt in the bin the task is done."""
 _TRIES: Final = 1000
-"""Places that are tried for a start; some are taken by things that move."""
+"""Places that are tried for a start; things that move may stand there."""
 _COUNTED: Final = {
     "dirt_removed": ("in_bin", 1.0 / MICROGRAMS_PER_GRAM),
     "energy": ("used", 1.0),
     "distance": ("distance", 1.0),
     "collisions": ("hits", 1.0),
 }
-"""Numbers of a robot's row that are told as counted since the episode's start, and their unit."""
+"""By name: a field of a robot's row and its unit; ``info`` tells its growth in the episode."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Outcome:
-    """What came of one action of each robot; arrays with a row for each."""
+    """The result of one action of each robot; each array has a row per robot."""
 
     observations: NDArray[np.float32]
     rewards: Floats
@@ -55,13 +55,13 @@ class Outcome:
 
 
 class CleaningTask:
-    """Robots that clean, each in a world of its own, and what they get for it."""
+    """Robots that clean, each in a world of its own, and their rewards."""
 
     def __init__(self, task: Task, robots: int, threads: int | None = None) -> None:
         """Make the worlds; :meth:`begin` every robot's episode before the first action."""
         self.task = task
         self.home = home = task.loaded_home()
-        # In it no time passes. All worlds begin like this, with any seed: it shows what fits there.
+        # No time passes in this world. All worlds begin like it: it shows where a robot fits.
         self._fresh = Fleet([home], task.robot)
         self.fleet = Fleet([home] * robots, task.robot, max_speed=task.max_speed, threads=threads)
         self.senses = Observer(self.fleet, task.max_speed)
@@ -110,13 +110,13 @@ class CleaningTask:
         return seed, start or self._free_place(random)
 
     def begin(self, robot: int, beginning: Beginning) -> None:
-        """Put a robot into its world as it is at first, where :meth:`beginning_of` says.
+        """Reset a robot's world and put the robot where :meth:`beginning_of` says.
 
-        The next action of this robot must be one of ``beginning``.
+        The next call of :meth:`act` must mark this robot as ``beginning``.
         """
         seed, start = beginning
         self.fleet.reset_world(robot, seed)
-        # That it fits was seen in the fresh world; to look again takes longer than the reset.
+        # The fresh world showed that the robot fits; another check takes longer than the reset.
         self.fleet.poses[robot] = start.as_array()
         self._coverage.forget(robot)
 
@@ -124,8 +124,8 @@ class CleaningTask:
         """Let the time of one action pass; ``actions`` is [robots, 2], each -1..1.
 
         Robots that are ``beginning`` stand for that time, in which their lidar scans for the first
-        time, and their episodes start at its end. Raises ValueError for actions of another shape,
-        or that are not finite; of robots that are beginning they are not used.
+        time, and their episodes start at its end. Their actions are not used. Raises
+        ValueError for actions of another shape, or for used ones that are not finite.
         """
         if np.shape(actions) != (expected := (len(beginning), 2)):
             raise ValueError(f"expected actions of shape {expected}, got {np.shape(actions)}")

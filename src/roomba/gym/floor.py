@@ -1,4 +1,4 @@
-"""The floor of a home for the reward: the cells that a brush can reach, and those that it did."""
+"""The floor of a home for the reward: the cells that a brush can reach, and has reached."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from roomba.world.home.dirt import DirtField
 from roomba.world.home.home import Home
 
 _STANDS_WITHIN = 0.5
-"""m; so far from the docked robot there must be floor on which it can stand free."""
+"""m; within this distance of the docked robot there must be floor where it can stand free."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FloorDistances:
     """What can be reached from the station; make it with :meth:`of`.
 
-    Of a home that was turned it is told in the home's own axes, as the fleet's dirt and poses are.
+    For a home that was turned, all is in the home's own axes, as the fleet's dirt and poses are.
     """
 
     frame: GridFrame
-    """Of the dirt's grid."""
+    """The frame of the dirt's grid."""
     places: NDArray[np.float64]
     """[places, 2]: x, y, m, where the robot's middle can stand and get to."""
     reachable: NDArray[np.bool_]
     """[rows, columns]: cells whose middles are within ``reach`` of a place."""
     reach: float
-    """m; half the brush's width, but less than the body, which keeps it on the grid."""
+    """m; half the brush's width, but less than the body's radius, so that it ends on the grid."""
     window: int
-    """How many cells away from the robot's own one there may be others within reach."""
+    """Cells along an axis from the robot's own cell to the farthest that can be within reach."""
 
     @staticmethod
     def of(home: Home, config: RobotConfig) -> FloorDistances:
@@ -117,7 +117,7 @@ class Coverage:
 
 
 def _disc(radius: float) -> NDArray[np.bool_]:
-    """Return the cells within so many cells of the middle one, bool [2 n + 1, 2 n + 1]."""
+    """Return the cells within ``radius`` cells of the middle one, bool [2 n + 1, 2 n + 1]."""
     reach = math.floor(radius + 1e-9)
     away = np.arange(-reach, reach + 1)
     disc: NDArray[np.bool_] = away[:, None] ** 2 + away[None, :] ** 2 <= (radius + 1e-9) ** 2

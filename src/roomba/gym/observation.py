@@ -59,9 +59,9 @@ _NAMES: Final = {
     46: "grains",
     47: "in_bin",
 }
-"""Where the numbers of a robot's row go."""
+"""By place in an observation: the field of a robot's row that goes there."""
 _MARGIN: Final = 2.0
-"""Measured speeds are cut off at so many times the greatest true ones."""
+"""Measured speeds are clipped at this multiple of the greatest true speeds."""
 
 
 def observation_space(config: RobotConfig, max_speed: float) -> Box:

@@ -15,7 +15,7 @@ PIXELS_PER_METRE = 40.0
 def picture_of(fleet: Fleet, world: int) -> NDArray[np.uint8]:
     """Return a world with one robot, seen from above, RGB uint8 [height, width, 3].
 
-    Furniture that moves is drawn where it stands at first, a home that was turned in its own axes.
+    Furniture that moves is drawn where it stands at first. A turned home is drawn in its own axes.
     """
     home, dirt = fleet.homes[world], fleet.dirt(world)
     rows, columns = home.frame.shape

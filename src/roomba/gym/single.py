@@ -99,7 +99,7 @@ class RoombaClean(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         """Return the plan with dirt and robot, uint8 [height, width, 3]; None without a mode."""
         if self.render_mode is None:
             return None
-        # Not above: it loads OpenCV, which training has no use for.
+        # Not imported above: it loads OpenCV, which training has no use for.
         from roomba.gym.picture import picture_of
 
         return picture_of(self._cleaning.fleet, 0)

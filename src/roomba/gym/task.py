@@ -20,9 +20,9 @@ _RANGES: Final = {
     "energy_weight": (0.0, 1e6),
     "time_weight": (0.0, 1e6),
 }
-"""The least and the most of each number: a longer step of the world passes through walls."""
+"""The least and the most of each number; with a longer ``dt`` robots pass through walls."""
 _MOST_STEPS: Final = 10_000
-"""Of the world for an action: they are one compiled call, which nothing interrupts."""
+"""Most steps of the world per action: they are one compiled call, which nothing interrupts."""
 
 
 @dataclass(frozen=True, slots=True)

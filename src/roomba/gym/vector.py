@@ -105,7 +105,7 @@ class RoombaCleanVector(VectorEnv[Observations, Actions, NDArray[Any]]):
         """Return a plan with dirt and robot of each world, uint8 [height, width, 3]."""
         if self.render_mode is None:
             return None
-        # Not above: it loads OpenCV, which training has no use for.
+        # Not imported above: it loads OpenCV, which training has no use for.
         from roomba.gym.picture import picture_of
 
         return tuple(picture_of(self._cleaning.fleet, robot) for robot in range(self.num_envs))
@@ -143,7 +143,7 @@ class RoombaCleanVector(VectorEnv[Observations, Actions, NDArray[Any]]):
 
 
 def _infos(outcome: Outcome) -> dict[str, Any]:
-    """Return the truths of all, each with a mask of those that have it, which are all."""
+    """Return the truths of all robots, each with Gymnasium's mask of robots that have it: all."""
     infos: dict[str, Any] = dict(outcome.truths)
     for name, values in outcome.truths.items():
         infos[f"_{name}"] = np.ones(len(values), np.bool_)

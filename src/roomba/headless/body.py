@@ -24,10 +24,10 @@ from roomba.world.simulator import Simulator
 class SimulatedBody:
     """One robot's body in one home.
 
-    ``trouble`` there is none with it: a :class:`roomba.robot.body.Body` may be out of reach.
+    It never has ``trouble``; another :class:`roomba.robot.body.Body` may be out of reach.
     ``seen`` is the observation after the last tick, with the truth and what the sensors measured;
     ``scans`` is the number of scans by then; ``has_late_scans`` says that scans are older than the
-    tick at which they come.
+    tick at which they arrive.
     """
 
     trouble = NO_REASON
@@ -40,7 +40,7 @@ class SimulatedBody:
         max_speed: float | None,
         start: Pose | None,
     ) -> None:
-        """Put it on its station, or at ``start``; raises HomeError where it does not fit."""
+        """Put the body on its station, or at ``start``; raises HomeError where it does not fit."""
         self.simulator = Simulator(home, robot, seed=seed, max_speed=max_speed, start=start)
         self.lidar = lidar_model(robot.lidar)
         self.has_late_scans = robot.is_swept
@@ -63,7 +63,7 @@ class SimulatedBody:
         return None if station is None else EmptyingTold(station.is_at_work, station.bag)
 
     def newest_scan(self) -> ScanReading:
-        """Return the newest scan; the stamp of one that takes time is that of its first beam."""
+        """Return the newest scan; a sweep is stamped with the time of its first beam."""
         stamp = self.seen.scan_stamp if self.has_late_scans else self.seen.time
         return ScanReading(stamp, self.simulator.ranges, self.lidar)
 

@@ -31,9 +31,9 @@ from roomba.world.home.dirt import MICROGRAMS_PER_GRAM
 LONGEST_BURST: Final = 1200
 """Ticks, a minute."""
 _EARLY: Final = 1e-6
-"""s; a burst ends so much before a time that the classes decide by: rounding changes nothing."""
+"""s; a burst ends so much before a time at which the classes decide, because of rounding."""
 _HARDLY_LESS: Final = 1.0 - 1e-9
-"""Factor on the energy, and on the dust, that the classes decide by, for the same reason."""
+"""Factor on the limits of energy and dust by which the classes decide, for the same reason."""
 
 
 class Burst:
@@ -64,7 +64,7 @@ class Burst:
         """Compute ticks until one is not steady; return their rows, float64 [ticks, PASSED]."""
         brain = self._brain
         if self._has_ended or not self._may_run:
-            # What ended the last one is most likely there still.
+            # What ended the last burst most likely lasts: let the classes do this tick.
             self._has_ended = False
             return self._rows[:0]
         senses = brain.senses()
@@ -96,18 +96,18 @@ class Burst:
 
     @property
     def _next_look(self) -> float:
-        """When a map that grows is looked at again, s."""
+        """When the classes look at a growing map again, s; infinite without one."""
         growing = self._brain.growing
         return math.inf if growing is None else growing.next_look
 
     @property
     def _mapper(self) -> Mapper | None:
-        """What makes the map, until that is whole."""
+        """The mapper, while there is no localizer."""
         return self._brain.mapper if self._brain.localizer is None else None
 
     @property
     def _cleaned(self) -> CoverageMap:
-        """What is cleaned now; without a clean what is driven over does not count."""
+        """The coverage of the clean under way; without a clean the truth's stands in its place."""
         cleaning = self._brain.mission.cleaning
         return self._truth if cleaning is None else cleaning.ledger.coverage
 
@@ -175,7 +175,7 @@ class Burst:
         return Drive(tracker.state, before, tracker.course, driver.progress, ahead)
 
     def _floor(self) -> Floor:
-        """Return what is cleaned now."""
+        """Return the arrays of the floor that is cleaned now."""
         mission, truth, coverage = self._brain.mission, self._truth, self._cleaned
         dirt = mission.dirt
         return Floor(
@@ -195,7 +195,7 @@ class Burst:
     def _end(self, places: Floats) -> Pose:
         """Hand the state back to the classes; ticks began at ``places``, float64 [n, 2], m.
 
-        Returns where the robot takes itself to be.
+        Returns the pose that the robot believes.
         """
         brain, row = self._brain, self._burst[0]
         mission = brain.mission
@@ -215,7 +215,7 @@ class Burst:
         return senses.pose
 
     def _tell_floor(self) -> None:
-        """Hand back what was swept."""
+        """Hand back to the classes what was swept."""
         row, cleaning = self._burst[0], self._brain.mission.cleaning
         if row["sweeps"] and cleaning is not None:
             x, y = row["swept_at"].tolist()
@@ -251,7 +251,7 @@ def _place_of(place: tuple[float, float] | None) -> tuple[float, float]:
 
 
 def _watched(cleaning: Cleaning | None) -> tuple[NDArray[np.void], NDArray[np.bool_]]:
-    """Return what a clean remembers of its looks for dirty floor."""
+    """Return what a clean remembers of its search for dirty floor."""
     return _UNWATCHED if cleaning is None else (cleaning.dirty.watch, cleaning.dirty.done)
 
 

@@ -1,8 +1,9 @@
 """The compiled burst: world, place, things and tracker, tick by tick, while nothing comes up.
 
-A tick is done here with the functions that the classes call as well, or it is left to them: it ends
-before the first tick that would do anything else. So it may end earlier, too; the result is the
-same. Ticks begin when all was sensed, and end there, as :meth:`HeadlessMission.tick` does.
+A tick is computed here with the same compiled functions that the classes call. The burst ends
+before the first tick that would need anything else, and leaves that tick to the classes. It may
+also end earlier: the result is the same. Ticks begin when all was sensed, and end there, as those
+of :meth:`HeadlessMission.tick` do.
 """
 
 from __future__ import annotations
@@ -79,7 +80,7 @@ def run(
 def comes_up(
     burst: Any, robot: Any, drive: Drive, things: Things, x: float, y: float, now: float
 ) -> bool:
-    """Tell whether the next tick is for the classes."""
+    """Tell whether the next tick must be left to the classes."""
     if is_in_danger(robot) or now >= burst.until:
         return True
     if not burst.drives:
@@ -130,9 +131,9 @@ def is_in_danger(robot: Any) -> bool:
 
 @inner_part
 def wanted(burst: Any, drive: Drive, x: float, y: float, theta: float) -> tuple[float, float, bool]:
-    """Return the twist, m/s and rad/s, along the path, and whether that has ended.
+    """Return the twist, m/s and rad/s, along the path, and whether the path has ended.
 
-    Then the tracker is left as it was: the path's last tick is for the classes.
+    If it has, the tracker is left as it was: the path's last tick is for the classes.
     """
     if not burst.drives:
         return 0.0, 0.0, False
@@ -179,7 +180,7 @@ def told(burst: Any, robot: Any) -> tuple[float, float, float]:
 
 @inner_part
 def sweep_truth(burst: Any, robot: Any, floor: Floor, x: float, y: float) -> None:
-    """Note what floor the tool, now at a place, really passed over, with room for its dust."""
+    """Note the floor that the tool really passed over up to a place, while the bin had room."""
     if robot.in_bin >= burst.bin_capacity:
         burst.true_at[0] = burst.true_at[1] = math.nan
         return
@@ -199,7 +200,7 @@ def write_down(
     y: float,
     theta: float,
 ) -> None:
-    """Fill a row with what is so after a tick."""
+    """Fill a row with the state after a tick."""
     row[TIME] = now
     row[TRUE] = true
     row[BELIEVED] = x, y, theta

@@ -1,7 +1,7 @@
-"""Knowing the place in a burst: wheels, gyro and scans, for a localizer and for a mapper.
+"""Localization within a burst, by wheels, gyro and scans: for a localizer or for a mapper.
 
-A burst is compiled for one of the two. The other one's argument, ``sights`` of a localizer or
-``following`` of a mapper, is None, and numba leaves out what is done only where it is not.
+A burst is compiled for one of the two. The argument of the other, ``sights`` of a localizer or
+``following`` of a mapper, is None, and numba leaves out the code that needs it.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ from roomba.perception.things.kernels import note
 
 @inner_part
 def believed(burst: Any, place: PlaceParts) -> tuple[float, float, float]:
-    """Return where the robot takes itself to be, x, y, theta, map."""
+    """Return the pose that the robot believes, x, y, theta, map."""
     return pose_of(burst, place.belief, place.following)
 
 
 @inner_part
 def pose_of(burst: Any, belief: Rows, following: Following | None) -> tuple[float, float, float]:
-    """Return the pose, x, y, theta, map, by what a localizer or a mapper knows of it."""
+    """Return the pose in the map, x, y, theta, as a localizer or a mapper knows it."""
     if following is not None:
         at = burst.at_scan
         return moved_since(following.follower, belief, at[0], at[1], at[2])
@@ -47,7 +47,7 @@ def pose_of(burst: Any, belief: Rows, following: Following | None) -> tuple[floa
 
 @inner_part
 def follow(burst: Any, world: World, place: PlaceParts, sight: Sight, now: float) -> bool:
-    """Go on by wheels, gyro and scans; tell whether the place is known and all of it is done."""
+    """Update the pose by wheels, gyro and a new scan; tell whether it is sure and all is done."""
     robot: Any = world.state.solid.robots[0]
     reckon_on(
         place.belief,
@@ -80,7 +80,7 @@ def look(
     stamp: float,
     now: float,
 ) -> bool:
-    """Know the place better by a scan of a time, s; tell whether nothing is left to be done."""
+    """Correct the pose by a scan of time ``stamp``, s; tell whether nothing is left to be done."""
     if following is not None:
         return map_on(burst, place, following, sight, ranges, stamp)
     if sights is not None:
@@ -90,7 +90,7 @@ def look(
 
 @inner_part
 def is_sure(place: PlaceParts, following: Following | None, now: float) -> bool:
-    """Tell whether the place is known well enough without a new scan; a mapper's always is."""
+    """Tell whether the pose is sure enough without a new scan; a mapper's pose always is."""
     if following is not None:
         return True
     return bool(is_calm(place.belief, place.numbers, now))
@@ -106,7 +106,7 @@ def localize(
     stamp: float,
     now: float,
 ) -> bool:
-    """Correct a localizer's place by a scan of a time, s; tell whether it is sure of it now."""
+    """Correct a localizer's pose by a scan of time ``stamp``, s; tell whether it is sure now."""
     belief, beams = place.belief, place.beams
     reckoned = place.work[0, :3]
     if burst.is_late:
@@ -140,7 +140,7 @@ def map_on(
     ranges: NDArray[np.float32],
     stamp: float,
 ) -> bool:
-    """Follow a mapper's place by a scan of a time, s; tell whether nothing is left to be done."""
+    """Follow a mapper's pose by a scan of time ``stamp``, s; tell whether all of that is done."""
     left = take_scan(following, stamp, ranges)
     if left != IS_DONE:
         burst.is_left, burst.is_followed = True, left != IS_LEFT

@@ -24,45 +24,45 @@ BURST: Final = np.dtype(
         # what does not change
         ("step", "f8"),  # s of the world
         ("steps", "i8"),  # of the world in a tick
-        ("apart", "f8"),  # s; at least, between two scans that are looked at
-        ("stride", "i8"),  # scans that such a one stands for
-        ("unsure", "f8"),  # m; deviation of the place of a mapper
+        ("apart", "f8"),  # s; the least between two scans that are processed
+        ("stride", "i8"),  # scans that a processed one stands for
+        ("unsure", "f8"),  # m; deviation of a mapper's position
         ("bin_capacity", "f8"),  # micrograms
-        ("is_late", "?"),  # whether scans are older than the tick at which they come
+        ("is_late", "?"),  # whether scans are older than the tick at which they arrive
         ("is_turned", "?"),  # whether poses are told in another frame than the world's
-        ("axes", "f8", (4,)),  # where the world's lies in it: x, y, cosine and sine of the turn
+        ("axes", "f8", (4,)),  # of the world's frame in that one: x, y, cosine, sine of turn
         ("turn", "f8"),  # rad
-        # what ends it
-        ("drives", "?"),  # along a path; else it stands on its station
+        # what ends a burst
+        ("drives", "?"),  # whether it drives along a path; else it stands on its station
         ("limit", "f8"),  # m/s
         ("until", "f8"),  # s
         ("least_charge", "f8"),  # Wh
         ("most_charge", "f8"),
         ("goal", "f8", (2,)),  # m
         ("near", "f8"),  # m
-        ("watches_dirt", "?"),  # whether dirty floor close by ends it
+        ("watches_dirt", "?"),  # whether dirty floor close by ends the burst
         ("most_in_bin", "f8"),  # micrograms
         ("most_silent", "f8"),  # m2 that became clean without a grain
         ("cell_area", "f8"),  # m2
         ("off_path", "f8"),  # m
         ("felt_version", "i8"),  # of what the bumper felt in the way
-        # what goes on
-        ("clock", "f8"),  # s; of the robot, beside the world's
-        ("scans", "i8"),  # that came so far
-        ("seen_at", "f8"),  # s; when the last one that was looked at came
-        ("submap", "f8", (3,)),  # m, rad; where a mapper follows it
-        ("at_scan", "f8", (3,)),  # a mapper's place at that one
-        ("seen_from", "f8", (3,)),  # where the newest scan was taken, as a localizer has it
+        # what changes
+        ("clock", "f8"),  # s; the robot's time minus the world's
+        ("scans", "i8"),  # how many came so far
+        ("seen_at", "f8"),  # s; the stamp of the last scan that was processed
+        ("submap", "f8", (3,)),  # m, rad; pose of the submap in which a mapper follows the robot
+        ("at_scan", "f8", (3,)),  # m, rad; a mapper's pose at the last processed scan
+        ("seen_from", "f8", (3,)),  # m, rad; a localizer's pose at the newest scan
         ("last", "f8", (3,)),  # time, s, and place, m, as believed, when the last tick began
-        ("way", "f8"),  # m; driven between these, as believed
-        ("sweeps", "?"),  # whether what is driven over counts
-        ("swept_at", "f8", (2,)),  # m; where it counted last, as believed
+        ("way", "f8"),  # m; driven in the burst, as believed
+        ("sweeps", "?"),  # whether floor that is driven over counts as cleaned
+        ("swept_at", "f8", (2,)),  # m; where floor counted last, as believed
         ("true_at", "f8", (2,)),  # m; the same in truth
         ("swept", "i8"),  # wanted cells that became clean
         ("truth_swept", "i8"),
         # what the classes have to finish
-        ("is_left", "?"),  # the newest scan
-        ("is_followed", "?"),  # though a mapper's place was followed by it
+        ("is_left", "?"),  # whether the rest of the newest scan is left to the classes
+        ("is_followed", "?"),  # whether a mapper has followed its pose by that scan already
     ],
     align=True,
 )
@@ -70,7 +70,7 @@ BURST: Final = np.dtype(
 
 
 class World(NamedTuple):
-    """The simulated one, of one robot: of those of ``state`` from ``first`` to before ``last``."""
+    """The world of one robot: those of ``state`` from ``first`` to before ``last``."""
 
     state: State
     numbers: Rows
@@ -81,9 +81,10 @@ class World(NamedTuple):
 
 
 class PlaceParts(NamedTuple):
-    """What knows the place: a localizer has ``sights``, a mapper what it is ``following``.
+    """What knows the robot's pose: a localizer has ``sights``, a mapper has ``following``.
 
-    In ``still``, float32 [beams], and ``work``, [SWEEP_WORK, beams], late scans are put together.
+    ``still``, float32 [beams], and ``work``, [SWEEP_WORK, beams], are room for turning a late scan
+    into one from a single pose.
     """
 
     belief: Rows
@@ -105,9 +106,9 @@ class Sight(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """The tracker, its path, how it comes farther on it, and how far that is clear.
+    """The path tracker, its path, its progress on the path, and how far the path is clear.
 
-    ``before`` is room for the tracker's state as it was before a tick.
+    ``before`` is room for the tracker's state before a tick.
     """
 
     state: Rows
@@ -118,7 +119,7 @@ class Drive(NamedTuple):
 
 
 class Floor(NamedTuple):
-    """What is cleaned as the robot believes and in truth, how dirty it was, and what came in."""
+    """Floor that is clean by belief and in truth, how dirty it was, and what came into the bin."""
 
     cells: NDArray[np.uint8]
     place: Floats

@@ -36,9 +36,9 @@ class Embodied:
     body: Body
 
     def __init__(self, body: Body, brain: Brain, robot_config: RobotConfig) -> None:
-        """Put a brain in a body, and stand until the first scan came: there is no map before.
+        """Put a brain in a body, and stand until the brain has a map, which needs a scan.
 
-        Raises RoombaError when there is none after a minute of ticks.
+        Raises RoombaError when there is no map after a minute of ticks.
         """
         self.body, self.brain, self.robot_config = body, brain, robot_config
         self.rows: list[NDArray[np.float64]] = []
@@ -75,7 +75,7 @@ class Embodied:
             self._pass(self.brain.steer(twist))
 
     def _reaches_body(self) -> bool:
-        """Whether its body can be reached; if not, let it try for a tick."""
+        """Whether the body can be reached; if not, let the body try for a tick."""
         if self.body.trouble:
             self.body.act(Command())
         return not self.body.trouble
@@ -102,7 +102,7 @@ class Embodied:
 
     @property
     def mission(self) -> Mission:
-        """What it is at; another one may take over, as after its process was killed."""
+        """The robot's mission; another one may replace it, as after its process was killed."""
         return self.brain.mission
 
     @mission.setter
@@ -111,22 +111,22 @@ class Embodied:
 
     @property
     def dirt(self) -> DirtMap:
-        """Where it found dirt."""
+        """Where the robot found dirt."""
         return self.mission.dirt
 
     @property
     def distance(self) -> float:
-        """What it drove, m."""
+        """Length of the way that the robot drove, m."""
         return self._way
 
     @property
     def battery_change(self) -> float:
-        """By how much of its capacity the charge of the battery changes, 1/s; NaN if not known."""
+        """Change of the battery's charge as a share of its capacity, 1/s; NaN if not known."""
         return math.nan
 
     @property
     def dirt_under(self) -> float:
-        """The dirt on the floor under it, g; NaN if not known."""
+        """The dirt on the floor under the robot, g; NaN if not known."""
         return math.nan
 
     @property
@@ -139,7 +139,7 @@ class Embodied:
         return self.brain.senses()
 
     def row(self) -> NDArray[np.float64]:
-        """Return what is so now, as a tick that passed: float64 [1, PASSED]."""
+        """Return the present state as the row of a tick: float64 [1, PASSED]."""
         now, believed = self.now, self.brain.pose
         poses = [(each.x, each.y, each.theta) for each in (believed, now.odometry)]
         turning = now.twist.angular if now.turning is None else now.turning

@@ -1,7 +1,7 @@
 """The robot without ROS: its brain in a simulated body, in one home.
 
-Time passes only while it is told to do something. The brain gets what the sensors tell and nothing
-else. It cleans, explores and walks on the map of the home, on another one, or on one that it makes.
+Time passes only while the robot is told to do something. The brain gets the sensors' readings and
+nothing else. It cleans, explores and walks on the home's map, on another one, or on its own.
 """
 
 from __future__ import annotations
@@ -53,9 +53,9 @@ class HeadlessMission(Embodied):
     """One robot in one home.
 
     ``truth`` is the floor that its tool really passed over, with room in its bin; ``rows`` are the
-    ticks that passed, as of :mod:`roomba.headless.tick_rows`, in pieces; ``context`` is the home as
-    it planned in it at first; ``emptied`` is what was taken out of the dust bin by hand each time,
-    g; ``is_emptied_at_station``: its station does that at once when it is full.
+    ticks that passed, as of :mod:`roomba.headless.tick_rows`, in pieces; ``context`` is the
+    planning context at the start; ``emptied`` is what was taken out of the dust bin by hand each
+    time, g; ``is_emptied_at_station``: its station empties the bin as soon as that is full.
     """
 
     body: SimulatedBody
@@ -80,11 +80,11 @@ class HeadlessMission(Embodied):
     ) -> None:
         """Put the robot on its station, or at ``start``.
 
-        ``known`` is the map that it goes by, in the home's frame, or how it makes one from its
-        station; the home's own one by default. ``max_speed``, m/s, is its top speed, by default its
-        body's. ``longest_burst`` is how many ticks pass at once at most, while nothing comes up.
-        So long after the robot said that its dust bin is full, ``empties_bin_after``, s, it is
-        emptied. ``stages`` are those of planning coverage.
+        ``known`` is the map that the robot goes by, in the home's frame, or the configuration by
+        which it makes one from its station; by default the home's own map. ``max_speed``, m/s, is
+        its top speed, by default its body's. ``longest_burst`` is the most ticks of a burst. A full
+        dust bin is emptied ``empties_bin_after`` s after the robot said that it is full.
+        ``stages`` are those of planning coverage.
         """
         robot, self.config = robot or SimulatedRobotConfig(), mission or MissionConfig()
         known = known or home.map
@@ -192,7 +192,7 @@ class HeadlessMission(Embodied):
         )
 
     def advance(self) -> None:
-        """Let time pass: many ticks at once while it is known what they do, else one."""
+        """Let time pass: a burst of steady ticks if the next ones are steady, else one tick."""
         rows = self._burst.run()
         if len(rows):
             self.rows.append(rows)
@@ -200,7 +200,7 @@ class HeadlessMission(Embodied):
             self.tick()
 
     def tick(self) -> None:
-        """Let one tick pass, by the ordinary classes."""
+        """Let one tick pass, by the ordinary classes and not in a burst."""
         growing = self.brain.growing
         was_whole = growing is None or growing.is_whole
         self._empty_bin_in_time()
@@ -214,7 +214,7 @@ class HeadlessMission(Embodied):
             self.whole_at = self.seen.time
 
     def look(self) -> None:
-        """Let the brain know how the world is now, after it was changed while no time passed."""
+        """Give the brain new readings, after the world was changed while no time passed."""
         self.brain.told(self.readings())
 
     def _empty_bin_in_time(self) -> None:
@@ -233,7 +233,7 @@ class HeadlessMission(Embodied):
 
     @property
     def seen(self) -> Observation:
-        """What is so now: the truth, and what the sensors tell."""
+        """The newest observation: the truth, and what the sensors tell."""
         return self.body.seen
 
     @property
@@ -248,46 +248,46 @@ class HeadlessMission(Embodied):
 
     @property
     def localizer(self) -> Localizer:
-        """What knows its place on a known or whole map; raises RoombaError without one."""
+        """The localizer, which needs a known or whole map; raises RoombaError without one."""
         if self.brain.localizer is None:
             raise RoombaError("a robot that makes its map has a mapper, no localizer")
         return self.brain.localizer
 
     @property
     def mapper(self) -> Mapper:
-        """What makes its map, until it is whole; raises RoombaError on a known one."""
+        """The mapper of a robot that makes its map; raises RoombaError on a known one."""
         if self.brain.mapper is None:
             raise RoombaError("only a robot that makes its map has a mapper: give a MappingConfig")
         return self.brain.mapper
 
     @property
     def things(self) -> ThingLayer:
-        """What it sees that its map does not show."""
+        """What the robot sees that its map does not show."""
         return self.brain.things
 
     @property
     def is_home(self) -> bool:
-        """Whether it stands on its station."""
+        """Whether the robot stands on its station."""
         return self.mission.state.phase is Phase.DOCKED
 
     @property
     def distance(self) -> float:
-        """What it really drove, m."""
+        """Length of the way that the robot really drove, m."""
         return self.simulator.numbers["distance"]
 
     @property
     def battery_change(self) -> float:
-        """By how much of its capacity the charge of the battery changes, 1/s."""
+        """Change of the battery's charge as a share of its capacity, 1/s."""
         battery = self.seen.battery
         return battery.current * (battery.voltage / (3600.0 * battery.capacity))
 
     @property
     def dirt_under(self) -> float:
-        """The dirt on the floor under it, g."""
+        """The dirt on the floor under the robot, g."""
         return self.seen.dirt_under
 
     def row(self) -> NDArray[np.float64]:
-        """Return what is so now, as a tick that passed: float64 [1, PASSED]."""
+        """Return the present state as the row of a tick: float64 [1, PASSED]."""
         seen, believed = self.seen, self.brain.pose
         poses = [(each.x, each.y, each.theta) for each in (seen.pose, believed, seen.odometry)]
         turning = seen.angular_velocity, self.brain.keeper.gyro_bias

@@ -1,4 +1,4 @@
-"""How far dead reckoning is off the truth of a run, with and without what was measured of it."""
+"""The error of dead reckoning over a run, with and without the robot's calibration."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ def odometry_error(
     has_gyro: bool = True,
     knows_bias: bool = False,
 ) -> float | None:
-    """Return by how much dead reckoning is off after each :data:`PIECE` of way, m per m.
+    """Return the mean error of dead reckoning after each :data:`PIECE` of way, m per m.
 
-    ``rows`` is float64 [n, PASSED], as of :mod:`roomba.headless.tick_rows`. It is the mean of the
-    distances between where the robot was and where wheels and gyro had it, from where both began a
-    piece, by the way of a piece; None of a shorter way. ``calibration`` None: without any;
-    ``has_gyro`` False: by the wheels alone. ``knows_bias``: after what was known of the gyro's bias
-    at each tick is taken out.
+    ``rows`` is float64 [n, PASSED], as of :mod:`roomba.headless.tick_rows`. The error of a piece is
+    the distance between the true position at its end and the one by wheels and gyro, both seen from
+    where the piece began; the mean is divided by the length of a piece. None if the way is shorter
+    than a piece. ``calibration`` None: without any; ``has_gyro`` False: by the wheels alone.
+    ``knows_bias``: the gyro's bias that the robot knew at each tick is taken out first.
     """
     true = rows[:, TRUE]
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(true[:, :2], axis=0).T))))

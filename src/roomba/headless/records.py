@@ -18,8 +18,8 @@ from roomba.world.home.home import Home
 
 _LONGEST_CLEAN: Final = 12 * 3600.0
 _LONGEST_PER_AREA: Final = 150.0
-"""s, and s for each m2 of floor: more than twice what an office of 1,476 m2 takes, 26 hours with
-ten charges."""
+"""s, and s more per m2 of floor: in all more than twice what an office of 1,476 m2 takes, which is
+26 h with ten charges."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -27,9 +27,9 @@ class CleanRecord:
     """What happened on a clean.
 
     ``poses`` has rows of t (s), x, y (m), theta (rad), true ones, map frame; ``truth`` is the floor
-    that the tool really passed over; ``planning`` what all ``plans`` took, s of a wall clock.
-    ``occupancy`` is the map in the end; ``whole_at`` when it became whole, s: at the end, if it
-    was from the beginning.
+    that the tool really passed over; ``planning`` is the wall time of all ``plans``, s.
+    ``occupancy`` is the map in the end; ``whole_at`` is when it became whole, s: for a map that was
+    whole from the beginning, the time of the end.
     """
 
     result: CleanResult
@@ -46,8 +46,10 @@ class CleanRecord:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ExploreRecord:
-    """What happened: rows of ``poses`` and ``believed`` are t (s), x, y (m), theta (rad), of each
-    tick; the first are true ones, map frame. ``occupancy`` is the map in the end.
+    """What happened on an exploration: ``occupancy`` is the map in the end.
+
+    ``poses``, true ones in the map frame, and ``believed`` have a row per tick: t (s), x, y (m),
+    theta (rad).
     """
 
     result: ExploreResult
@@ -56,14 +58,14 @@ class ExploreRecord:
     believed: NDArray[np.float64]
     hits: int
     wall: float
-    """s of a wall clock that it took."""
+    """s of wall time that the exploration took."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WalkRecord:
     """What happened on a walk: rows of ``poses`` are t (s), x, y (m), theta (rad), true ones.
 
-    ``believed`` has the same rows, of where the robot took itself to be; ``planned`` is its last
+    ``believed`` has the same rows with the poses that the robot believed; ``planned`` is its last
     path, float64 [n, 2], m.
     """
 
@@ -78,12 +80,12 @@ class WalkRecord:
 
     @property
     def distance(self) -> float:
-        """What was travelled, m."""
+        """Length of the way that the robot travelled, m."""
         return float(np.hypot(*np.diff(self.poses[:, 1:3], axis=0).T).sum())
 
 
 def longest_errand(home: Home) -> float:
-    """Return how long an errand lasts that only a fault keeps from ending, s."""
+    """Return how long an errand can last, s: if it lasts longer, the program has a fault."""
     return _LONGEST_CLEAN + _LONGEST_PER_AREA * home.map.free_area
 
 

@@ -17,7 +17,7 @@ PALENESS = 0.42
 """0..1; share of white in a floor, so that furniture and names stand out from it."""
 DIRT_COLOUR = (104, 76, 44)
 DIRT_HALF = 1.5
-"""g/m²; dirt that hides half of what a plan lets it hide."""
+"""g/m²; this much dirt hides half of what the most dirt hides on a plan."""
 
 Field = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""Resampling: values of the cells of one map of a home, on another map of it."""
+"""Resampling: the values of one map's cells on the grid of another map of the same home."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def _place(frame: GridFrame) -> Place:
 
 @entry
 def _carry(values: Any, old: Place, over: Any, new: Place, back: Place) -> None:
-    """Fill ``over``; places are x, y, m, and the resolution, m, or the heading, rad."""
+    """Fill ``over``; ``old`` and ``new``: x, y, resolution, m; ``back``: x, y, theta, m and rad."""
     cos, sin = math.cos(back[2]), math.sin(back[2])
     for row in range(over.shape[0]):
         y = new[1] + (row + 0.5) * new[2]

@@ -1,7 +1,7 @@
-"""Compiled growth of arrays whose length shows while they are filled.
+"""Compiled growth of arrays whose length is only known once they are filled.
 
-Rows are copied number by number. To assign a slice would compile, into each caller, the words of
-an error that cannot come: that took longer than all the rest of a caller.
+Rows are copied number by number. Assigning a slice would compile the message of an error that
+cannot occur into each caller, which took longer than compiling all the rest of the caller.
 """
 
 from __future__ import annotations

@@ -102,7 +102,7 @@ def join(parents: Labels, one: int, other: int) -> int:
 
 @allocating_entry
 def _number(mask: Mask, by_corners: bool, labels: Labels) -> None:
-    """Two passes with union-find; the numbers are in the order of the regions' first cells."""
+    """Number the regions in two passes with union-find, in the order of their first cells."""
     rows, columns = mask.shape
     parents = np.zeros(rows * columns // 2 + 2, np.int32)
     count = 0
@@ -113,7 +113,7 @@ def _number(mask: Mask, by_corners: bool, labels: Labels) -> None:
             above = labels[row - 1, column] if row > 0 else 0
             before = labels[row, column - 1] if column > 0 else 0
             if by_corners and above == 0 and row > 0:
-                # With a true cell above these two are of its region already.
+                # If the cell above is true, these two belong to its region already.
                 if before == 0 and column > 0:
                     before = labels[row - 1, column - 1]
                 if column + 1 < columns:

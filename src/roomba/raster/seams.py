@@ -1,4 +1,4 @@
-"""Lines and doorways that a map of segments leaves out: they part floor that is one in the home.
+"""Lines and doorways that a map of segments leaves out: they cut floor that is joined in the home.
 
 Some robots leave lines of a cell or two between two segments, or around a carpet; others tell
 nothing of the floor in a doorway. All masks and labels are [rows, columns].
@@ -20,24 +20,24 @@ Owners = NDArray[np.int16]
 WIDEST_SEAM: Final = 2
 """Cells; a line that is no wall and has floor on both sides is floor up to this width."""
 DEEPEST_DOORWAY: Final = 0.3
-"""m; from one room to the next through the wall between them."""
+"""m; longest way from one room to the next through the wall between them."""
 DOORWAY_WIDTHS: Final = (0.5, 1.5)
 """m; from post to post: what is narrower or wider is no door."""
 _POST: Final = 0.5
-"""0..1; more than this of what bounds a doorway at each of its two sides is wall."""
+"""0..1; at each side of a doorway, more than this share of the cells beside it is wall."""
 
 
 def without_seams(owners: Owners, nothing: Mask, wall: Mask, resolution: float) -> Owners:
     """Return ``owners`` with each cell of a seam or a doorway given to the floor nearest to it.
 
-    ``owners`` are segments from 1 on, 0 where there is none: ``nothing`` is told, a ``wall``, or
-    floor of no segment, by which no seam is known. ``resolution`` is m a cell.
+    ``owners`` holds the segment of each cell, from 1 on; 0 is a cell of which ``nothing`` is told,
+    a ``wall``, or floor of no segment, which bounds no seam. ``resolution`` is m per cell.
     """
     found = np.zeros_like(owners)
     _find_doorways(owners, nothing, wall, resolution, found)
     _find_doorways(owners.T, nothing.T, wall.T, resolution, found.T)
     joined = np.where(found > 0, found, owners)
-    # The second time for the corners of lines, which lie between lines.
+    # The second round is for corners of lines: they lie between cells that the first one filled.
     for widest in (WIDEST_SEAM, 1):
         found = joined.copy()
         _find_seams(joined, nothing, widest, found)
@@ -47,7 +47,7 @@ def without_seams(owners: Owners, nothing: Mask, wall: Mask, resolution: float) 
 
 
 def _find_seams(owners: Owners, nothing: Mask, widest: int, found: Owners) -> None:
-    """Write into ``found`` what owns the cells of seams that are crossed along rows."""
+    """Write into ``found`` the owners of cells of seams that a walk along a row crosses."""
     for cells, owner, _, _ in _crossings(owners, nothing & (owners == 0), widest):
         found[cells] = owner
 
@@ -55,7 +55,7 @@ def _find_seams(owners: Owners, nothing: Mask, widest: int, found: Owners) -> No
 def _find_doorways(
     owners: Owners, nothing: Mask, wall: Mask, resolution: float, found: Owners
 ) -> None:
-    """Write into ``found`` what owns the cells of doorways that are crossed along rows."""
+    """Write into ``found`` the owners of cells of doorways that a walk along a row crosses."""
     nearest, low, high = (np.zeros_like(owners) for _ in range(3))
     deepest = int(DEEPEST_DOORWAY / resolution + 1e-9)
     for cells, owner, before, after in _crossings(owners, nothing, deepest):
@@ -70,12 +70,12 @@ def _find_doorways(
 def _are_doorways(
     pieces: NDArray[np.int32], low: Owners, high: Owners, wall: Mask, resolution: float
 ) -> Mask:
-    """Return for each number of a piece whether it leads between segments and has two posts."""
+    """Return for each piece whether it joins segments, is as wide as a door and has two posts."""
     count = int(pieces.max(initial=0)) + 1
     rows, columns = np.nonzero(pieces)
     numbers = pieces[rows, columns]
     first, last = np.zeros(count, np.int64), np.zeros(count, np.int64)
-    # Cells come row by row: of those written to one place the last stays.
+    # Cells come row by row: of several written to the same index the last one stays.
     first[numbers[::-1]], last[numbers] = rows[::-1], rows
     width = (last - first + 1) * resolution
     is_doorway = (width >= DOORWAY_WIDTHS[0] - 1e-9) & (width <= DOORWAY_WIDTHS[1] + 1e-9)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Sight:
-    """What decides about a picture: copies, since the robot's time passes while it is taken."""
+    """The inputs of a picture: copies, since the robot's time passes while it is taken."""
 
     pose: Pose
     things: NDArray[np.float64]
@@ -56,7 +56,7 @@ class LiveCamera:
             raise RequestRefusedError(
                 f"expected an angle from {-most:g} to {most:g} degrees, got {degrees:g}"
             )
-        # Imported here: most runs take no picture, and the camera's loops take a while.
+        # Imported here: most runs take no picture, and loading the camera's loops takes a while.
         from roomba.world.camera.camera import Camera, Scene
 
         sight = ask(lambda _: self._sight())

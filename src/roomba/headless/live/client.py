@@ -36,7 +36,7 @@ from roomba.world.simulator import Simulator
 
 _Answer = TypeVar("_Answer")
 Watcher = Callable[[Embodied, ErrandsEnded], None]
-"""Is shown the robot, and what ended since the last call."""
+"""A callback that is given the robot, and the errands that ended since its last call."""
 
 
 class LiveClient:
@@ -80,9 +80,9 @@ class LiveClient:
     def keep_plan(self, folder: Path, config: FloorsConfig, tell: Callable[[str], object]) -> None:
         """Keep rooms and zones of the map in ``folder``, and go on with those kept before.
 
-        To be called before :meth:`start`, of a robot that knows its map. ``config`` says what is
-        another map of the same floor, ``tell`` is told in a sentence what could not be read;
-        raises ZonesError for zones that cannot.
+        To be called before :meth:`start`, of a robot that knows its map. ``config`` says when
+        another map shows the same floor, ``tell`` is told in a sentence what could not be read.
+        Raises ZonesError for zones that cannot be read.
         """
         context = self._robot.mission.context
         floor = FloorRecord(context.occupancy, context.station)
@@ -94,7 +94,7 @@ class LiveClient:
         self._live.start()
 
     def end(self) -> None:
-        """Let its time stop."""
+        """Stop the robot's time."""
         self._live.stop()
 
     @property
@@ -115,11 +115,11 @@ class LiveClient:
             return self._live.carry_out(question, timeout)
 
     def obey(self, command: Callable[[Embodied], None]) -> None:
-        """Let the robot obey; what it refuses is RequestRefusedError with its reason."""
+        """Let the robot obey; raises RequestRefusedError with the robot's reason if it refuses."""
         self.ask(lambda robot: self._obey(robot, command))
 
     def _put(self, command: Callable[[Embodied], None]) -> Future[None]:
-        """Let the robot obey when its turn comes, as :meth:`obey` does."""
+        """Let the robot obey, as :meth:`obey` does, when the command's turn comes; do not wait."""
         return self._live.put(lambda robot: self._obey(robot, command))
 
     def _obey(self, robot: Embodied, command: Callable[[Embodied], None]) -> None:
@@ -140,7 +140,7 @@ class LiveClient:
 
     @property
     def ending(self) -> str:
-        """Why the robot's time does not pass any more; empty while it does."""
+        """Why the robot's time has stopped; empty while it passes."""
         return self._live.ending
 
     def tick_times(self) -> TickTimes:
@@ -246,16 +246,16 @@ class LiveClient:
         self._play(playing.replace_bag)
 
     def emergency_stop(self, reason: str) -> None:
-        """Hold the drive until it is released; a walk ends, however soon that is.
+        """Hold the drive until it is released; a walk ends, even if the release comes at once.
 
-        A disk that does not keep it is told as part of why it is held. Raises
-        RobotUnavailableError for a robot that does not answer in time: it holds once it does.
+        If the disk cannot keep the stop, the reason of the hold says so. Raises
+        RobotUnavailableError if the robot does not answer in time: it holds as soon as it does.
         """
         self._live.drive(STANDSTILL)
         self._stop.engage(reason)
 
     def release(self) -> None:
-        """Release the emergency stop; raises RequestRefusedError too where it holds again later."""
+        """Release the emergency stop; raises RequestRefusedError also if the next start holds."""
         self._stop.release()
 
     def drive(self, linear: float, angular: float) -> None:
@@ -281,7 +281,7 @@ class LiveClient:
         self._edit(lambda plan: plan.without_zone(name))
 
     def ignore_low_thing(self, x: float, y: float) -> None:
-        """Offer no zone any more of what was felt there."""
+        """Stop offering a zone for the low thing that was felt there."""
 
         def ignore(robot: Embodied) -> None:
             obstacles = robot.mission.obstacles
@@ -306,7 +306,7 @@ class LiveClient:
         self._edit(lambda plan: plan.as_before())
 
     def _edit(self, change: Callable[[FloorPlan], FloorPlan]) -> None:
-        """Let the mission go on with other rooms and zones, once they are kept."""
+        """Let the mission go on with changed rooms and zones, once these are on the disk."""
 
         def edit(robot: Embodied) -> None:
             plan = change(self.plan)
@@ -316,7 +316,7 @@ class LiveClient:
         self.obey(edit)
 
     def _keep(self, plan: FloorPlan) -> None:
-        """Keep a changed plan; raises RequestRefusedError where that cannot be."""
+        """Keep a changed plan; raises RequestRefusedError if it cannot be kept."""
         if self._kept_plan is None:
             return
         try:
@@ -371,7 +371,7 @@ class LiveClient:
 
 @contextmanager
 def _refusals() -> Iterator[None]:
-    """Raise RequestRefusedError for what the robot refuses."""
+    """Turn the robot's refusals into RequestRefusedError."""
     try:
         yield
     except (RobotUnavailableError, RequestRefusedError):

@@ -1,5 +1,4 @@
-"""One thing that a live robot is to do: begun, followed and ended in the robot's thread, and
-waited for in others."""
+"""One errand of a live robot: it runs in the robot's thread, and other threads wait for it."""
 
 from __future__ import annotations
 
@@ -14,19 +13,19 @@ from roomba.headless.live.snapshots import ErrandsEnded
 from roomba.mission.phases.machine import Event
 
 _PERIOD: Final = 1.0
-"""s of the robot's clock between two news of an errand, as on ROS."""
+"""s of the robot's clock between two progress reports of an errand, as on ROS."""
 
 _News = TypeVar("_News")
 _Report = TypeVar("_Report")
 Obey = Callable[[Callable[[Embodied], None]], None]
-"""Lets the robot carry out a command."""
+"""A callback that lets the robot carry out a command."""
 
 
 class LiveErrand(ABC, Generic[_News, _Report]):
-    """One thing that the robot is to do.
+    """One errand of a robot: a walk, a clean, an exploration, a way to the station.
 
-    ``obey`` lets the robot carry out a command, ``ending`` tells why its time does not pass any
-    more, and ``pace`` is its seconds per second: one that is slow tells news more often.
+    ``obey`` lets the robot carry out a command, ``ending`` tells why the robot's time has stopped,
+    and ``pace`` is the robot's seconds per second: below 1, news comes more often by its clock.
     """
 
     def __init__(self, obey: Obey, ending: Callable[[], str], pace: float) -> None:
@@ -40,7 +39,7 @@ class LiveErrand(ABC, Generic[_News, _Report]):
         self._began = self._due = 0.0
 
     def next_feedback(self, timeout: float) -> _News | None:
-        """Wait up to ``timeout`` s of wall time for news, else None; None at once at its end."""
+        """Wait up to ``timeout`` s of wall time for news; None if none came or the errand ended."""
         with self._told:
             self._told.wait_for(lambda: self.has_ended or self._news is not None, timeout)
             if self.report() is not None:
@@ -49,7 +48,7 @@ class LiveErrand(ABC, Generic[_News, _Report]):
             return news
 
     def report(self) -> _Report | None:
-        """Return its end, or None while it lasts."""
+        """Return how the errand ended, or None while it lasts."""
         with self._told:
             if self._report is None and self._ending():
                 self._report = self._lost(self._ending())
@@ -61,7 +60,7 @@ class LiveErrand(ABC, Generic[_News, _Report]):
 
     @property
     def has_ended(self) -> bool:
-        """Whether its end is known."""
+        """Whether the errand's end is known."""
         return self._report is not None
 
     def begin(self, robot: Embodied) -> bool:
@@ -75,7 +74,7 @@ class LiveErrand(ABC, Generic[_News, _Report]):
 
     @abstractmethod
     def follow(self, robot: Embodied, ended: ErrandsEnded) -> None:
-        """Tell how far it is, and its end if it has ended."""
+        """Tell how far the errand is, or how it ended."""
 
     @abstractmethod
     def give_way(self) -> None:
@@ -90,14 +89,14 @@ class LiveErrand(ABC, Generic[_News, _Report]):
 
     @abstractmethod
     def _refused(self, reason: str) -> _Report:
-        """Return the report of what is not begun."""
+        """Return the report of an errand that was not begun."""
 
     @abstractmethod
     def _lost(self, reason: str) -> _Report:
-        """Return the report of what has no end, as the robot's time ended."""
+        """Return the report of an errand that cannot end, because the robot's time has stopped."""
 
     def _is_due(self, robot: Embodied) -> bool:
-        """Whether it is time for news, which is so each period."""
+        """Whether it is time for news: once in each period."""
         if robot.now.time < self._due:
             return False
         self._due = robot.now.time + self._period

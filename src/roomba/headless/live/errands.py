@@ -1,4 +1,4 @@
-"""What a live robot is let do, a class each: walk, clean, explore, dock and undock."""
+"""The errands of a live robot, a class each: walk, clean, explore, dock and undock."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class LiveWalk(LiveErrand[float, WalkReport]):
             self._tell(walk.path.length)
 
     def follow(self, robot: Embodied, ended: ErrandsEnded) -> None:
-        """Tell what is left of the path, or how it ended; one that was ended, when it stands."""
+        """Tell what is left of the path, or how it ended; a cancelled walk ends at standstill."""
         self._way = robot.distance - self._way_before
         self._duration = robot.now.time - self._began
         walking = robot.brain.walking

@@ -63,7 +63,7 @@ class FloorPlan:
 
 
 def made(make: Callable[[], _Value]) -> _Value:
-    """Return what is made of a wish; what cannot be is RequestRefusedError with the reason."""
+    """Return what ``make`` returns; its errors become RequestRefusedError with the reason."""
     try:
         return make()
     except (RoombaError, ValueError, KeyError) as refusal:

@@ -13,7 +13,7 @@ from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 from roomba.storage.kept_stop import NO_REASON, KeptStop
 
 ANSWER: Final = 5.0
-"""s of wall time within which the robot tells that it holds, or is free."""
+"""s of wall time within which the robot must confirm that its drive is held, or free."""
 
 _Robot = TypeVar("_Robot")
 
@@ -45,9 +45,9 @@ class HeldStop(Generic[_Robot]):
         return self._reason
 
     def keep_in(self, folder: Path, name: str, robot: _Robot) -> None:
-        """Keep the stop in ``folder`` under the robot's ``name``; hold one that was kept before.
+        """Keep the stop in ``folder`` under the robot's ``name``; hold if one was kept before.
 
-        To be called before the robot lives, as it is held in the caller's thread.
+        Call this before the robot lives, as it is held in the caller's thread.
         """
         self._kept = KeptStop(folder, name)
         if reason := self._kept.reason():
@@ -56,8 +56,8 @@ class HeldStop(Generic[_Robot]):
     def engage(self, reason: str) -> None:
         """Hold the drive until it is released.
 
-        A disk that does not keep it is told as part of why it is held. Raises
-        RobotUnavailableError for a robot that does not answer in time: it holds once it does.
+        If the disk cannot keep the stop, the reason of the hold says so. Raises
+        RobotUnavailableError if the robot does not answer in time: it holds as soon as it does.
         """
         answers = [self._ask_to_hold(reason.strip() or NO_REASON)]
         if refused := self._keep_newest():
@@ -66,9 +66,9 @@ class HeldStop(Generic[_Robot]):
             _wait_for(answer, "the emergency stop holds as soon as it answers")
 
     def release(self) -> None:
-        """Free the drive; raises RequestRefusedError too if the next start holds it again.
+        """Free the drive; raises RequestRefusedError also if the next start will hold it again.
 
-        RobotUnavailableError is for a robot that does not answer in time.
+        Raises RobotUnavailableError if the robot does not answer in time.
         """
         answer = self._put(self._free)
         try:
@@ -79,7 +79,7 @@ class HeldStop(Generic[_Robot]):
             raise RequestRefusedError(f"the drive is free; but {refused}")
 
     def _ask_to_hold(self, reason: str) -> Future[None]:
-        """Let the robot hold when its turn comes; it counts as the newest reason until then."""
+        """Queue a command to hold; until the robot carries it out its reason is the newest one."""
         with self._asking:
             self._asked.append(reason)
             answer = self._put(lambda robot: self._hold(robot, reason))
@@ -103,7 +103,7 @@ class HeldStop(Generic[_Robot]):
         return "" if self._kept is None else self._kept.keep(self._newest)
 
     def _newest(self) -> str:
-        """Return the newest reason of those that were asked for and those that hold."""
+        """Return the newest reason that waits to hold, else the one that holds."""
         asked = self._asked[-1:]
         return asked[0] if asked else self._reason
 

@@ -36,10 +36,10 @@ FOLDER: Final = "floor_plans"
 
 
 class KeptFloorPlan:
-    """The floor plan of one map, in a folder of its own in ``folder``, beside the map itself.
+    """The floor plan of one map: a folder in ``folder`` that holds plan and map.
 
-    A map that has none yet, and shows the floor of another one here, takes over what is kept of
-    that: rooms and zones outlive a change of the home.
+    If a map has no plan yet and shows the same floor as another map here, it takes over the plan of
+    that map: rooms and zones outlive a change of the home.
     """
 
     def __init__(
@@ -55,10 +55,10 @@ class KeptFloorPlan:
         self._own = folder / map_file_name(map_digest(floor.occupancy))
 
     def load(self, plan: FloorPlan) -> FloorPlan:
-        """Return a plan with the rooms and zones that were kept, where some were.
+        """Return ``plan`` with the rooms and zones that were kept, if there are any.
 
-        Rooms that cannot be read are those of ``plan``, of which it is told. Raises ZonesError for
-        zones that cannot be read: without them a robot may go where it must not.
+        If kept rooms cannot be read, ``plan`` keeps its own, and ``tell`` is told. Raises
+        ZonesError for zones that cannot be read: without them a robot may go where it must not.
         """
         if _has_plan(self._own):
             return self._own_plan(plan)
@@ -71,12 +71,12 @@ class KeptFloorPlan:
         return plan
 
     def save(self, before: FloorPlan, plan: FloorPlan) -> None:
-        """Keep what a plan has other than the one before; raises RoomsError, OSError."""
+        """Keep what ``plan`` has other than ``before``; raises RoomsError, OSError."""
         self._write(self._own, before, plan)
 
     def _own_plan(self, plan: FloorPlan) -> FloorPlan:
         rooms, zones = self._read(self._own, self._floor)
-        # Older programs kept no map beside them, and one that is damaged is of no use.
+        # Older programs kept no map beside the plan, and a damaged map is of no use.
         with self._telling_trouble():
             if _floor_in(self._own) is None:
                 self._write_floor(self._own)
@@ -95,17 +95,17 @@ class KeptFloorPlan:
     def _taken_over(
         self, plan: FloorPlan, rooms: Rooms | None, zones: Zones | None, old_in_new: Pose
     ) -> FloorPlan:
-        """Return a plan with what was kept of the map before it changed, and keep that."""
+        """Return ``plan`` with rooms and zones of the map before its change, and keep it."""
         kept = plan.zones
         for zone in moved(zones or Zones(), old_in_new).all:
-            # One of the home's own files that has this name is another one.
+            # A zone of this name from the home's own files is a different zone.
             is_taken = zone.name in kept.names and zone not in kept.all
             name = another_name(zone.name, kept.names) if is_taken else zone.name
             kept = kept.with_zone(replace(zone, name=name))
         taken = _with(plan, self._divided(plan.rooms, rooms, old_in_new), kept)
         self._tell("the map changed since its rooms or zones were edited; they are taken over")
         with self._telling_trouble():
-            # All of it or nothing: half would be all that the next start finds.
+            # All of it or nothing: the next start would take half a plan for all of it.
             unfinished = self._own.with_name(f".{self._own.name}.new")
             shutil.rmtree(unfinished, ignore_errors=True)
             self._write(unfinished, FloorPlan(plan.rooms), taken)
@@ -114,7 +114,7 @@ class KeptFloorPlan:
         return taken
 
     def _divided(self, new: Rooms | None, old: Rooms | None, old_in_new: Pose) -> Rooms | None:
-        """Return the rooms of the map with what people made of them before it changed."""
+        """Return the map's rooms with the edits that people made before the map changed."""
         if new is None or old is None:
             return new
         as_before = divided_as(old, new) if old_in_new == Pose() else None
@@ -123,9 +123,9 @@ class KeptFloorPlan:
         return carry_over(new, old, Zones(), self._config.same_room, old_in_new).rooms
 
     def _write(self, folder: Path, before: FloorPlan, plan: FloorPlan) -> None:
-        """Write the map, by which it is found when that changed, and what is other than before."""
+        """Write the map, by which a later map finds this plan, and what differs from ``before``."""
         occupancy = self._floor.occupancy
-        if not (folder / LAYER_NAME).exists():  # the last file of a map
+        if not (folder / LAYER_NAME).exists():  # is written last of a map's files
             self._write_floor(folder)
         if plan.zones is not before.zones:
             save_zones(plan.zones, map_digest(occupancy), folder / ZONES_NAME)
@@ -145,7 +145,7 @@ class KeptFloorPlan:
 
 
 def _with(plan: FloorPlan, rooms: Rooms | None, zones: Zones | None) -> FloorPlan:
-    """Return a plan with other rooms and zones, where there are some."""
+    """Return a plan with these rooms and zones in place of its own; None keeps its own."""
     return replace(
         plan,
         rooms=plan.rooms if rooms is None else rooms,
@@ -154,7 +154,7 @@ def _with(plan: FloorPlan, rooms: Rooms | None, zones: Zones | None) -> FloorPla
 
 
 def _has_plan(folder: Path) -> bool:
-    """Whether rooms or zones were kept there, also such that are damaged."""
+    """Whether rooms or zones, even damaged ones, were kept in a folder."""
     return any(any(folder.glob(f"{name}*")) for name in (ROOMS_NAME, ZONES_NAME))
 
 

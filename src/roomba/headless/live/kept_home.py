@@ -48,7 +48,7 @@ class KeptHome:
         self._thread.start()
 
     def stop(self) -> None:
-        """Return when what is to be kept is, or cannot be."""
+        """Return once all changes are on the disk, or could not be written."""
         with self._changed:
             self._is_over = True
             self._changed.notify_all()
@@ -56,7 +56,7 @@ class KeptHome:
             self._thread.join(_ENDING)
 
     def _look(self, robot: Embodied, plan: FloorPlan) -> None:
-        """Let a map be written that is another one than before; in the robot's thread."""
+        """Order a map to be written if it changed; called in the robot's thread."""
         context = robot.mission.context
         if context.is_growing:
             return

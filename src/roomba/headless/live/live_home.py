@@ -1,4 +1,4 @@
-"""What there is around a live robot beside what it knows: a simulated home, or a real one."""
+"""What surrounds a live robot besides what it knows: a simulated home, or a real one."""
 
 from __future__ import annotations
 
@@ -70,4 +70,4 @@ class RealHome:
         """Nothing is known."""
 
     def empty_bin(self) -> None:
-        """Do nothing: it was emptied by the hand that tells it."""
+        """Do nothing: the person who reports it has emptied the bin."""

@@ -30,7 +30,7 @@ SPEEDS: Final = (0.1, 100.0)
 """The robot's seconds per second of the wall clock: the least and the most."""
 
 TICK_BOUNDS: Final = (0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.05, 0.1, 0.3, 1.0)
-"""s by which ticks are counted."""
+"""s; ticks are counted by which of these bounds their computing time lies between."""
 
 
 class Ticked(Protocol):
@@ -91,8 +91,8 @@ class LiveRobot(Generic[_Robot]):
     def carry_out(self, command: Callable[[_Robot], _Answer], timeout: float = _ANSWER) -> _Answer:
         """Let the robot's thread call ``command`` between two frames, and return its answer.
 
-        Raises what it raises, and RobotUnavailableError when the robot ended or does not answer
-        within ``timeout`` s of wall time: then a command that it has not begun is left undone.
+        Raises what ``command`` raises, and RobotUnavailableError when the robot ended or does not
+        answer within ``timeout`` s of wall time: a command not begun by then is left undone.
         """
         answer = self.put(command)
         try:
@@ -106,8 +106,8 @@ class LiveRobot(Generic[_Robot]):
     def put(self, command: Callable[[_Robot], _Answer]) -> Future[_Answer]:
         """Let the robot's thread call ``command`` after those that wait; return its answer to come.
 
-        It is called however long that thread is busy, unless the answer is cancelled before. That
-        of a robot which has ended is RobotUnavailableError.
+        The command is called however long that thread is busy, unless its answer is cancelled
+        before. If the robot has ended, the answer is RobotUnavailableError.
         """
         answer: Future[_Answer] = Future()
         if self.ending:
@@ -117,7 +117,7 @@ class LiveRobot(Generic[_Robot]):
         return answer
 
     def tick_times(self) -> TickTimes:
-        """Return how long ticks took to compute; those of one frame count alike."""
+        """Return how long ticks took to compute; each counts with the mean of its frame."""
         return TickTimes(TICK_BOUNDS, tuple(self._ticks), self._ticking)
 
     def drive(self, twist: Twist) -> None:
@@ -142,7 +142,7 @@ class LiveRobot(Generic[_Robot]):
                 self._obey()
                 self._pass_frame()
                 self._observe(self._robot)
-                # A robot that cannot keep up with its clock is slower, and does not catch up.
+                # A robot that cannot keep up with its clock runs slower, and does not catch up.
                 due = max(due + _FRAME, time.monotonic() - _FRAME)
                 self._ends.wait(max(0.0, due - time.monotonic()))
         except BaseException as failure:

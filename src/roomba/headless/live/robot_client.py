@@ -35,11 +35,11 @@ _Begun = TypeVar("_Begun", bound=_AnyErrand)
 class LiveRobotClient(CleaningClient):
     """A :class:`roomba.client.protocol.RobotClient` of a robot that lives in this process.
 
-    One walk and one errand can be under way: a walk lets the errand pause.
+    One walk and one errand can be under way: a walk pauses the errand.
     """
 
     def __init__(self, client: LiveClient) -> None:
-        """Take the robot, which others start and end."""
+        """Take the robot; this object neither starts nor ends it."""
         self._client = client
         self._begun: _AnyErrand | None = None
         self._under_way: list[_AnyErrand] = []

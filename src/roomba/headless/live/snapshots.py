@@ -27,7 +27,7 @@ from roomba.perception.swept.visits import Visits
 
 @dataclass(frozen=True, slots=True)
 class ErrandsEnded:
-    """How errands ended that did since the last look."""
+    """The reports of errands that ended since the last look."""
 
     clean: CleanReport | None = None
     exploration: ExploreReport | None = None
@@ -91,7 +91,7 @@ class Snapshots:
         self._view = robot_view(robot, self._last, self._live_home.truth())
 
     def begin_coverage(self) -> None:
-        """Count sweeps from nothing on."""
+        """Count sweeps anew, from zero."""
         with self._lock:
             self._visits.clear()
 
@@ -148,13 +148,13 @@ class Snapshots:
             cells = map_cells(self._live_home.plan, occupancy)
             self._map = GridLayer.over(occupancy.frame, cells, self._shape)
         if robot.brain.zones != self.plan.zones:
-            # They were turned with the map, as it became whole.
+            # The brain turned the zones with the map when that became whole.
             self.plan = replace(self.plan, zones=robot.brain.zones)
         self._find_rooms(robot)
         self._look_at_home(robot)
 
     def _lies_alike(self, frame: GridFrame) -> bool:
-        """Whether the newest map has the same cells."""
+        """Whether the newest map has the same cells as ``frame``."""
         shown = self._map
         if shown is None or shown.cells.shape != frame.shape:
             return False

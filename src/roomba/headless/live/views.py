@@ -50,13 +50,13 @@ from roomba.world.home.materials import MATERIALS
 from roomba.world.home.raster import footprint, outline
 
 _DIRTIEST: Final = 8000.0
-"""Grains/m2 that are drawn as the dirtiest floor there is: sixteen times where dirt begins."""
+"""Grains/m2 that are drawn as the dirtiest floor: sixteen times those of barely dirty floor."""
 
 
 def robot_view(
     robot: Embodied, last: CleanReport | None, truth: TruthView | None = None
 ) -> RobotView:
-    """Return the robot as it is now, by what it believes; the truth is told beside."""
+    """Return the robot as it is now, by its own belief; the truth is told apart."""
     now, estimate = robot.now, robot.brain.keeper.place.estimate
     pose, mission = estimate.pose, robot.mission
     scan = robot.body.newest_scan()
@@ -138,7 +138,7 @@ def dirt_layer(dirt: DirtMap, shape: int) -> GridLayer:
 
 
 def map_cells(plan: Home | None, occupancy: OccupancyMap) -> NDArray[np.uint8]:
-    """Return the cells of the map; on that of a home's plan furniture is told from walls."""
+    """Return the cells of the map; on a home's plan, furniture differs from walls."""
     cells = known_cells(occupancy)
     if plan is not None and plan.turned is None and occupancy.frame == plan.frame:
         cells[(cells == 2) & ~plan.walls] = 3
@@ -193,7 +193,7 @@ def _rings(outline: shapely.Polygon | shapely.MultiPolygon) -> Iterator[tuple[Po
 def _outlines(home: Home, height: float, *, is_overhead: bool) -> Iterator[tuple[Point, ...]]:
     """Yield the outlines of the boxes of all furniture that the map shows, the lowest first.
 
-    Those that a robot of a ``height``, m, passes below, or the others.
+    ``is_overhead``: the boxes below which a robot of ``height``, m, passes; else all others.
     """
     boxes = [box for piece in home.furniture if piece.on_map for box in piece.boxes]
     for box in sorted(boxes, key=lambda box: box.top):

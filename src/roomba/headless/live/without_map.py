@@ -1,4 +1,4 @@
-"""What a robot without a map cannot be told: its client refuses that, with the reason."""
+"""Requests that need a map: the client of a robot without one refuses them, with the reason."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from roomba.vocabulary import RoomWay
 
 
 class WithoutMap:
-    """Refuses, by ``no_map``, what rooms, zones and explorations are needed for."""
+    """Refuses requests for rooms, zones and explorations; ``no_map`` is the reason."""
 
     no_map: ClassVar[str]
     """Why there is no map, in words."""
@@ -21,7 +21,7 @@ class WithoutMap:
         raise RequestRefusedError(self.no_map)
 
     def explore(self) -> None:
-        """Refuse it: it makes no map that is told."""
+        """Refuse it: the robot tells no map."""
         raise RequestRefusedError(self.no_map)
 
     def put_zone(self, zone: view.ZoneView) -> None:
@@ -49,9 +49,9 @@ class WithoutMap:
         raise RequestRefusedError(self.no_map)
 
     def empty_at_station(self) -> None:
-        """Refuse it: its station does not."""
+        """Refuse it: the robot's station empties no bin."""
         raise RequestRefusedError("its station empties no bin: empty it by hand")
 
     def replace_bag(self) -> None:
-        """Refuse it: there is none."""
+        """Refuse it: the robot's station has no bag."""
         raise RequestRefusedError("its station has no bag")

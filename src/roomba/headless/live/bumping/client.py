@@ -70,7 +70,7 @@ class BumpingClient(WithoutMap):
         self._live.start()
 
     def end(self) -> None:
-        """Let its time stop."""
+        """Stop the robot's time."""
         self._live.stop()
 
     @property
@@ -80,7 +80,7 @@ class BumpingClient(WithoutMap):
 
     @property
     def ending(self) -> str:
-        """Why the robot's time does not pass any more; empty while it does."""
+        """Why the robot's time has stopped; empty while it passes."""
         return self._live.ending
 
     def limits(self) -> view.PageLimits:
@@ -144,23 +144,23 @@ class BumpingClient(WithoutMap):
         self._obey(lambda robot: robot.body.locate())
 
     def empty_bin(self) -> None:
-        """Do nothing: it does not know how full its bin is, and the household counts."""
+        """Do nothing: the robot does not know how full its bin is; the household keeps count."""
 
     def emergency_stop(self, reason: str) -> None:
         """Hold the drive until it is released.
 
-        A disk that does not keep it is told as part of why it is held. Raises
-        RobotUnavailableError for a robot that does not answer in time: it holds once it does.
+        If the disk cannot keep the stop, the reason of the hold says so. Raises
+        RobotUnavailableError if the robot does not answer in time: it holds as soon as it does.
         """
         self._live.drive(STANDSTILL)
         self._stop.engage(reason)
 
     def release(self) -> None:
-        """Release the emergency stop; raises RequestRefusedError too where it holds again later."""
+        """Release the emergency stop; raises RequestRefusedError also if the next start holds."""
         self._stop.release()
 
     def drive(self, linear: float, angular: float) -> None:
-        """Drive by hand; refused while the emergency stop holds, or it drives by itself."""
+        """Drive by hand; refused while the emergency stop holds, or the robot drives by itself."""
         state = self._robot.brain.state
         if state.drives or state is BumpingState.EMERGENCY:
             raise RequestRefusedError(f"the robot is {state.value}; stop it to drive by hand")
@@ -173,7 +173,7 @@ class BumpingClient(WithoutMap):
         self._obey(lambda robot: robot.brain.limit_speed(speed))
 
     def go_to(self, x: float, y: float) -> None:
-        """Refuse it: it does not know its place."""
+        """Refuse it: the robot does not know its pose."""
         raise RequestRefusedError(BY_WHEELS)
 
     def _require_free(self, robot: BumpingRobot) -> None:
@@ -187,11 +187,11 @@ class BumpingClient(WithoutMap):
         self._live.carry_out(self._observed(command))
 
     def _put(self, command: Callable[[BumpingRobot], None]) -> Future[None]:
-        """Let the robot obey when its turn comes."""
+        """Let the robot obey when the command's turn comes; do not wait."""
         return self._live.put(self._observed(command))
 
     def _observed(self, command: Callable[[BumpingRobot], None]) -> Callable[[BumpingRobot], None]:
-        """Return the command, after which snapshots are taken."""
+        """Return a command that takes snapshots after the given one."""
 
         def obey(robot: BumpingRobot) -> None:
             command(robot)
@@ -227,7 +227,7 @@ class _CleanUnderWay:
     def look(
         self, robot: BumpingRobot, last: CleanReport | None
     ) -> tuple[CleanReport | None, _CleanUnderWay | None]:
-        """Follow it; return the last report, and itself unless it ended."""
+        """Follow the clean; return the last report, and this object unless the clean ended."""
         now, state = robot.now, robot.brain.state
         self._way += self._at.distance_to(now.odometry.x, now.odometry.y)
         self._at = now.odometry

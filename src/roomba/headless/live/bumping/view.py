@@ -1,4 +1,4 @@
-"""What a page shows of a robot without a lidar: by what its wheels say."""
+"""What a page shows of a robot without a lidar: all by its wheels."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from roomba.vocabulary import Phase
 
 BY_WHEELS: Final = "it has no lidar: where it is, and what it swept, is by wheels and walls"
 _MARGIN: Final = 20
-"""Cells around what was swept that are shown; as often the grid is drawn elsewhere."""
+"""Cells shown around what is known; the grid that is shown grows in steps of so many."""
 _PHASES: Final = {
     BumpingState.DOCKED: Phase.DOCKED,
     BumpingState.LEAVING: Phase.UNDOCKING,

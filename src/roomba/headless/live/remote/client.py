@@ -30,8 +30,8 @@ _KINDS: Final = {
 class RemoteClient(WithoutMap):
     """Watches and tells one robot; its methods may be called from any thread.
 
-    The emergency stop is one more request: it tells the robot to stop, and again at each look at
-    which it moves, until it is released. A robot that is not reached is not stopped by it.
+    The emergency stop is only a request: the robot is told to stop, and told again at each look at
+    which it moves, until the stop is released. A robot that is out of reach is not stopped.
     """
 
     no_map = BY_ITSELF
@@ -77,9 +77,9 @@ class RemoteClient(WithoutMap):
         self._watch.start()
 
     def end(self) -> None:
-        """Look no more, and tell nothing but a stop that still waits.
+        """Stop looking, and tell nothing but a stop that still waits.
 
-        The robot goes on with what it does otherwise.
+        Without such a stop the robot goes on with what it does.
         """
         self._teller.end()
         self._watch.end()
@@ -91,7 +91,7 @@ class RemoteClient(WithoutMap):
 
     @property
     def ending(self) -> str:
-        """Why it is not looked at any more; empty while it is, and before :meth:`start`."""
+        """Why the robot is not looked at any more; empty while it is, and before :meth:`start`."""
         return self._watch.ending
 
     def limits(self) -> view.PageLimits:
@@ -99,7 +99,7 @@ class RemoteClient(WithoutMap):
         return self._limits
 
     def robot(self) -> view.RobotView:
-        """Return what it told last."""
+        """Return what the robot told last."""
         if self.ending:
             raise RobotUnavailableError(f"{self.ending}; start it again")
         watch, state = self._watch, self._watch.state
@@ -115,10 +115,10 @@ class RemoteClient(WithoutMap):
         return self._home
 
     def layer(self, name: view.LayerName) -> view.GridLayer | None:
-        """Return None: it tells no map."""
+        """Return None: the robot tells no map."""
 
     def clean(self, request: CleanRequest) -> None:
-        """Let it clean all, or where it stands."""
+        """Let the robot clean all floor, or a spot where it stands."""
         wish = _KINDS.get(request.mode)
         if wish is None or request.spot is not None:
             raise RequestRefusedError(BY_ITSELF)
@@ -137,54 +137,54 @@ class RemoteClient(WithoutMap):
         self._ask(RemoteWish.RESUME)
 
     def stop(self) -> None:
-        """End what it does, also while another program has it.
+        """End what the robot does, also while another program controls it.
 
-        Raises RequestRefusedError where the robot refuses that, RobotUnavailableError where it is
-        not reached: then it goes on.
+        Raises RequestRefusedError if the robot refuses, RobotUnavailableError if it is not reached:
+        then it goes on.
         """
         self._tell(RemoteWish.STOP)
 
     def locate(self) -> None:
-        """Let it beep, also while another program has it."""
+        """Let the robot beep, also while another program controls it."""
         self._tell(RemoteWish.BEEP)
 
     def empty_bin(self) -> None:
-        """Do nothing: it does not know how full its bin is, and the household counts."""
+        """Do nothing: the robot does not know how full its bin is; the household keeps count."""
 
     def emergency_stop(self, reason: str) -> None:
-        """Tell it to stop, at once and until :meth:`release` wherever it moves, and nothing else.
+        """Tell the robot to stop now, and again whenever it moves, until :meth:`release`.
 
-        A disk that does not keep it is told as part of why it is held.
+        If the disk cannot keep the stop, the reason of the hold says so.
         """
         self._stop.engage(reason)
 
     def release(self) -> None:
-        """Release the emergency stop; raises RequestRefusedError too where it holds again later."""
+        """Release the emergency stop; raises RequestRefusedError also if the next start holds."""
         self._stop.release()
 
     def drive(self, linear: float, angular: float) -> None:
-        """Refuse it: it is not driven from here."""
+        """Refuse it: the robot cannot be driven from here."""
         raise RequestRefusedError(
             "it cannot be driven by hand: its bridge tells nothing of where the floor ends"
         )
 
     def set_top_speed(self, speed: float) -> None:
-        """Refuse it: its own brain says how fast it drives."""
+        """Refuse it: the robot's own brain decides its speed."""
         raise RequestRefusedError(BY_ITSELF)
 
     def go_to(self, x: float, y: float) -> None:
-        """Refuse it: it does not tell its place."""
+        """Refuse it: the robot does not tell its pose."""
         raise RequestRefusedError(BY_ITSELF)
 
     def hold(self, reason: str) -> None:
-        """Tell it to stop as soon as it can be told, and again until it has heard that."""
+        """Tell the robot to stop as soon as possible, and again until it has heard that."""
         with self._holding:
             self._held, self._has_to_stop = reason, True
         self._teller.put(RemoteWish.STOP, self._tell_held_stop)
         self._watch.hurry()
 
     def let_go(self) -> None:
-        """Tell it to stop no more."""
+        """Do not tell the robot to stop any more."""
         with self._holding:
             self._held, self._has_to_stop = "", False
             self._not_stopped = ""
@@ -201,7 +201,7 @@ class RemoteClient(WithoutMap):
         return answer
 
     def _require_free(self) -> None:
-        """Raise RequestRefusedError where it is held or another program has it."""
+        """Raise RequestRefusedError if the robot is held or another program controls it."""
         if held := self._held:
             raise RequestRefusedError(f"the emergency stop holds it ({held}); release it first")
         state = self._watch.state
@@ -209,7 +209,7 @@ class RemoteClient(WithoutMap):
             raise RequestRefusedError(TAKEN)
 
     def _ask(self, wish: RemoteWish) -> None:
-        """Tell it, unless it is held or another program has it, now or when its turn comes."""
+        """Tell a wish, unless the robot is held or taken, now or when the wish's turn comes."""
         self._teller.require_open()
         self._require_free()
         self._tell(wish, self._require_free)
@@ -223,7 +223,7 @@ class RemoteClient(WithoutMap):
         self._watch.hurry()
 
     def _tell_held_stop(self) -> None:
-        # Before it is told: a hold that comes meanwhile wants one more.
+        # Before telling: a hold that comes meanwhile needs one more stop.
         with self._holding:
             self._has_to_stop = False
         try:

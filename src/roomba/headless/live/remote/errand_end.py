@@ -1,4 +1,4 @@
-"""How a clean by a robot's own brain ended: it does not say so, but it can be seen to rest."""
+"""How a clean by a robot's own brain ended: the robot does not tell, but can be seen at rest."""
 
 from __future__ import annotations
 

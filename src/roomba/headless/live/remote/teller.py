@@ -1,4 +1,4 @@
-"""What a robot is told, one wish after another, in a thread of its own."""
+"""Tells a robot wishes, one after another, in a thread of its own."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from roomba.errors import RoombaError
 from roomba.robot.remote import RemoteWish, WishRefusedError
 
 _DEADLINE: Final = 5.0
-"""s that a wish may take, waiting for others included."""
+"""s that a wish may take, its wait for earlier wishes included."""
 _ENDING: Final = 10.0
-"""s for stops that still wait to be told: one request that is under way, and theirs."""
+"""s that :meth:`Teller.end` waits for stops: for a request under way, and for their own."""
 _OVER: Final = "the robot is not told anything any more: the program ends; start it again"
 
 
@@ -48,8 +48,8 @@ class Teller:
     def carry_out(self, wish: RemoteWish, tell: Callable[[], None]) -> None:
         """Let ``tell`` tell a wish, and wait until it is told.
 
-        Raises RequestRefusedError where the robot refuses it, RobotUnavailableError where it is not
-        reached in time: a wish that still waits then is left undone.
+        Raises RequestRefusedError if the robot refuses the wish, RobotUnavailableError if the robot
+        is not reached in time: a wish that still waits then is left undone.
         """
         telling = self.put(wish, tell)
         try:
@@ -69,7 +69,7 @@ class Teller:
             raise RobotUnavailableError(str(error)) from error
 
     def end(self) -> None:
-        """Tell nothing more but the stops that wait already; those within a deadline."""
+        """Tell nothing more but the stops that wait already; wait for these, with a deadline."""
         with self._lock:
             self._is_over = True
             waiting = dict(self._waiting)

@@ -1,4 +1,4 @@
-"""What a page shows of a robot that cleans by its own brain: what that tells, and no place."""
+"""What a page shows of a robot that cleans by its own brain: what it tells, and no pose."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TAKEN: Final = "another program drives it by hand"
 
 @dataclass(frozen=True, slots=True)
 class Failures:
-    """What does not work now with such a robot, each as a reason; empty: it does.
+    """What does not work now with such a robot: a reason each, empty where all is well.
 
     ``lost`` is why it is not reached, ``stop`` why it was not stopped though it is held, ``scan``
     why its scan is not shown.
@@ -41,7 +41,7 @@ def remote_view(
     failures: Failures = Failures(),
     last: CleanReport | None = None,
 ) -> RobotView:
-    """Return a robot as it told at ``time``, s: it is shown where it began, with what it sees.
+    """Return the view of a robot as it told at ``time``, s: at its start, with what it sees.
 
     ``held`` is why the emergency stop holds, ``last`` how its last clean ended.
     """

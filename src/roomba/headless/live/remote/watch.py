@@ -1,4 +1,4 @@
-"""A robot that cleans by its own brain is looked at again and again, in a thread of its own."""
+"""Polls a robot that cleans by its own brain, in a thread of its own."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from roomba.vocabulary import Phase
 _PERIOD: Final = 2.0
 """s between two looks; OpenNeato's bridge keeps a state for so long."""
 _SCAN_EACH: Final = 2
-"""Looks for one scan, which takes the robot's line for most of a second."""
+"""Looks per scan: a scan occupies the robot's connection for most of a second."""
 _OLD: Final = 10.0
-"""s after which what was told last is no news; a look that is slow takes less."""
+"""s after which the last state is outdated; even a slow look takes less."""
 _ENDING: Final = 10.0
-"""s for a look that is under way to end."""
+"""s that :meth:`RemoteWatch.end` waits for a look under way."""
 _MOVES: Final = (Phase.CLEANING, Phase.RETURNING)
 
 
@@ -68,7 +68,7 @@ class RemoteWatch:
 
     @property
     def ending(self) -> str:
-        """Why it is not looked at any more; empty while it is, and before :meth:`start`."""
+        """Why the robot is not looked at any more; empty while it is, and before :meth:`start`."""
         if self._failure is not None:
             return f"the robot is not looked at any more: {self._failure!r}"
         has_ended = self._is_over.is_set() and not self._thread.is_alive()
@@ -85,19 +85,19 @@ class RemoteWatch:
 
     @property
     def last(self) -> CleanReport | None:
-        """How its last clean ended; None before one did. It is there when ``state`` tells rest."""
+        """How its last clean ended; None before one did. It is set before ``state`` is."""
         return self._errand.last
 
     @property
     def moves(self) -> bool:
-        """Whether it cleaned or went home when it was seen last."""
+        """Whether the robot was cleaning or returning at the last look."""
         return self.state is not None and self.state.phase in _MOVES
 
     def _watch(self) -> None:
         try:
             while not self._is_over.is_set():
                 self._due.clear()
-                with contextlib.suppress(RoombaError):  # told by the one whose wish that is
+                with contextlib.suppress(RoombaError):  # ``before`` reports its own failures
                     self._before()
                 self._look_or_lose()
                 self._due.wait(_PERIOD)
