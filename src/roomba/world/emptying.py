@@ -11,9 +11,9 @@ from roomba.configuration.simulation import SimulatedStation
 
 
 class EmptyingStation:
-    """``in_bag`` is what its bag holds, g; it works while the robot wants it to, on its contacts.
+    """``in_bag`` is what its bag holds, g; it works while a docked robot wants it to.
 
-    With a full bag it does not begin. What the bag has no room for stays in the bin.
+    With a full bag the station does not begin. What the bag has no room for stays in the bin.
     """
 
     def __init__(self, config: SimulatedStation) -> None:
@@ -52,7 +52,7 @@ class EmptyingStation:
     def pass_time(self, seconds: float, in_bin: float, *, is_docked: bool) -> float:
         """Let time pass; return what was taken out of the bin, in which is ``in_bin`` g.
 
-        It is taken out at the end; a robot that leaves before keeps it.
+        The dirt is taken out at the end; a robot that leaves before then keeps it.
         """
         if not (self.is_wanted and is_docked):
             self._left, self._is_done = None, False

@@ -39,8 +39,8 @@ _WORTH_A_THREAD = 32
 class Fleet:
     """Worlds with their robots; :meth:`step` is the only thing that lets time pass.
 
-    Robots are numbered world by world. What it shows of them, ``robots``, ``poses`` and
-    ``ranges``, is the fleet's own memory, as it is now: copy what is to be kept.
+    Robots are numbered world by world. ``robots``, ``poses`` and ``ranges`` are views of the
+    fleet's own memory, which changes: copy what is to be kept.
     """
 
     def __init__(
@@ -131,7 +131,7 @@ class Fleet:
         self._advance(dt, steps)
 
     def reset_world(self, world: int, seed: int) -> None:
-        """Let a world begin anew, as one of this seed in a new fleet without ``starts`` would.
+        """Let a world begin anew, as a world of this seed begins in a new fleet without ``starts``.
 
         Raises ValueError for a negative seed.
         """
@@ -159,7 +159,7 @@ class Fleet:
         state.dirt.falls[row["falls_at"] : row["falls_end"]] = fresh.dirt.falls
         state.solid.robots[robots], state.ranges[robots] = fresh.solid.robots, fresh.ranges
         state.made[robots], state.underway[robots] = fresh.made, fresh.underway
-        # A seed puts off what moves, but all seeds' tracks are of the same length.
+        # The seed shifts the times of tracks, but tracks have the same length with every seed.
         tracks_at = state.solid.things["last_row"][things.start - 1] + 1 if things.start else 0
         state.tracks[tracks_at : tracks_at + len(fresh.tracks)] = fresh.tracks
         state.solid.things[things] = fresh.solid.things

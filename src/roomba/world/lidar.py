@@ -1,6 +1,6 @@
 """The lidar alone: exact scans of a home's walls and furniture from any poses.
 
-Through glass it sees, and a mirror is told where it stands; only :class:`.simulator.Simulator`
+It sees through glass, and measures a mirror like a wall; only :class:`.simulator.Simulator`
 follows a beam by way of a mirror.
 """
 

@@ -1,6 +1,6 @@
 """The simulated world: one robot in one home, a step at a time.
 
-Places are told in the home's frame: of one that was turned, in the turned one. Its ``dirt`` and
+Poses are told in the home's frame: for a home that was turned, in the turned frame. ``dirt`` and
 ``numbers`` are in the home's own axes, as the world is.
 
 Seeded: the same home, configuration, seed and commands give the same trace, bit for bit. It is a
@@ -34,13 +34,13 @@ _CHAIR: Final = 0.40
 _LEG: Final = 0.02
 """m; radius of a leg."""
 _EMPTYING: Final = "emptying"
-"""What is saved of a station that empties the bin."""
+"""The name under which a station that empties the bin is saved."""
 
 
 class Simulator:
     """A robot in its home; :meth:`step` is the only thing that lets time pass.
 
-    ``emptying`` is its station, if that empties the bin.
+    ``emptying`` is the robot's station if it empties the bin, else None.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""What is really so in a simulated home, and the robot does not know: to be shown for teaching."""
+"""The truth of a simulated home that its robot does not know, to be shown for teaching."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ SUPERSAMPLING = 2
 
 
 _DISC_HEIGHT = 0.25
-"""m; how high round things that were put down are."""
+"""m; height of round things that were put down."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -12,9 +12,9 @@ from roomba.world.camera.kernels.span import SPANS_OF_BOX, SPANS_OF_WALL
 from roomba.world.camera.scene.arrays import STRIP, TILE, Spans, StripRow, ViewTables, Workspace
 
 KNOT_SPACING = 0.05
-"""m; the floor's light and dirt are felt at least so finely near the camera."""
+"""m; the floor's light and dirt are sampled at least so finely near the camera."""
 KNOT_ROWS = 16
-"""Rows of samples; and not more of them apart than this."""
+"""Rows of samples; the knots lie no more rows apart than this."""
 MOST_TAPS = 5
 FINEST_CRUMB = 0.0012
 """m; a sample larger than this begins to miss single crumbs."""
@@ -52,7 +52,7 @@ def view_tables(config: CameraConfig, factor: int) -> ViewTables:
 
 
 def _knots(distance: NDArray[np.float64], rows: int, step: int) -> NDArray[np.int32]:
-    """Return rows of the floor, top to bottom, between which light and dirt hardly bend.
+    """Return rows of the floor, top to bottom, between which light and dirt change evenly.
 
     They lie ``step`` rows apart or a multiple of that.
     """

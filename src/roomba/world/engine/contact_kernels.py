@@ -108,7 +108,7 @@ def near_faces(
 def near_things(
     solid: Solid, world: Row, x: float, y: float, reach: float, touch: float, theta: float
 ) -> tuple[float, int]:
-    """Return the same for a world's moving things."""
+    """Return what :func:`near_faces` does, for a world's moving things."""
     nearest, pressed = reach, 0
     for number in range(world.things_at, world.things_end):
         thing = solid.things[number]
@@ -153,7 +153,7 @@ def near_discs(
     touch: float,
     theta: float,
 ) -> tuple[float, int]:
-    """Return the same for round things, and for all other robots of the world."""
+    """Return what :func:`near_faces` does, for round things and all other robots of the world."""
     nearest, pressed = reach, 0
     for number in range(world.discs_at, world.discs_end):
         dx, dy = solid.discs[number].x - x, solid.discs[number].y - y
@@ -174,7 +174,7 @@ def near_discs(
 
 @inner_part
 def room_at(cells: Rows, home: Row, x: float, y: float) -> float:
-    """Return a distance, m, within which nothing of the home is solid; cheap and too small."""
+    """Return a distance, m, within which nothing of the home is solid: a cheap lower bound."""
     u = (x - home.left) / home.resolution
     v = (y - home.bottom) / home.resolution
     column, row = math.floor(u), math.floor(v)
@@ -218,8 +218,9 @@ def contact_share(
 ) -> float:
     """Return the share of an arc where the gap falls below ``least``, m, never past it.
 
-    ``bounds``: a share before it and one past it, and how much the gap is above ``least`` at both.
-    By false position (the Illinois method): a disc that leans on a wall is there at once.
+    ``bounds``: a share before that place and one past it, and by how much the gap is above
+    ``least`` at both. The share is found by false position (the Illinois method), which ends at
+    once for a disc that leans on a wall.
     """
     body = solid.robots[robot]
     low, high, over_low, over_high = bounds

@@ -44,8 +44,8 @@ def slips(
 ) -> tuple[float, float]:
     """Return which share of its ``way``, m, each wheel loses in this step.
 
-    What varies of it stays about the same over ``slip_length`` (a process of Ornstein and
-    Uhlenbeck), so that the noise of a long way grows as a random walk does, for any step.
+    The varying part of the slip stays about the same over ``slip_length`` (an Ornstein-Uhlenbeck
+    process), so that the noise of a long way grows as a random walk does, for any step.
     """
     left, right = body.slip_left, body.slip_right
     if numbers.noisy > 0.0 and way > 0.0:
@@ -76,8 +76,8 @@ def drive(
 ) -> tuple[float, float]:
     """Move a robot by ``dt`` s; return the way, m, and the turn, rad, of its body.
 
-    Both are those of the ramped velocities' means, driven as one arc. At contact the disc stays
-    there and its forward speed is zero, the wheels' too.
+    The robot drives one arc, by the mean velocities of the ramp, less slip. At contact the disc
+    stops, and its forward speed is zero, and so is that of the wheels.
     """
     body = solid.robots[robot]
     linear, angular = ramped(body, numbers, dt)
@@ -117,7 +117,7 @@ def drive(
     body.ground_linear = 0.0 if is_held else linear + (length - asked) / dt
     body.ground_angular = 0.0 if body.lifted > 0.0 else angular + (turn - asked_turn) / dt
     if is_hit:
-        # Wheels of a body that is held stand still, but for what they slip on the spot.
+        # The wheels of a blocked body stand still, but for what they slip on the spot.
         rolled *= share + (1.0 - share) * numbers.blocked_slip
     left, right = rolled - half * rolled_turn, rolled + half * rolled_turn
     count_wheels(body, numbers, left, right, share, dt)

@@ -32,7 +32,7 @@ def is_drop(
 def feel_ground(cells: Rows, home: Row, body: Row, numbers: Row) -> None:
     """Let cliff sensors and wheel drops feel what is below them."""
     if home.has_drops == 0.0:
-        # Most homes: nothing to look for.
+        # Most homes have no drop: nothing to look for.
         blind = max(body.lifted, body.cliff_dirty)
         body.cliff_left = body.cliff_front_left = blind
         body.cliff_front_right = body.cliff_right = blind

@@ -36,7 +36,7 @@ _SECONDS_PER_HOUR = 3600.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Layout:
-    """What never changes of some homes; see :mod:`.state.arrays`."""
+    """The arrays of some homes that never change; see :mod:`.state.arrays`."""
 
     homes: Rows
     cells: Rows

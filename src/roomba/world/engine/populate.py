@@ -152,8 +152,8 @@ def starts_of(
 ) -> NDArray[np.float64]:
     """Return where robots start, float64 [robots, 3]: the first of each home at the station.
 
-    Others stand at places found at random that are free for such bodies, and of moving things;
-    raises HomeError if there is not so much room.
+    The others stand at random places where such a body fits beside all that moves; raises HomeError
+    if there is not enough room.
     """
     starts, radius = [], body.radius
     for home, seed in zip(homes, seeds, strict=True):

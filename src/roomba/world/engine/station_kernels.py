@@ -46,7 +46,7 @@ def seen_beams(solid: Solid, home: Row, body: Row, numbers: Row) -> int:
     front_x = home.station_x + numbers.station_ahead * cosine
     front_y = home.station_y + numbers.station_ahead * sine
     away_x, away_y = body.x - front_x, body.y - front_y
-    # As the station looks, which is against the docked robot.
+    # In the direction in which the station looks, opposite to the docked robot's.
     ahead, aside = -cosine * away_x - sine * away_y, sine * away_x - cosine * away_y
     away = math.hypot(ahead, aside)
     seen = _HALO if away <= numbers.halo else 0
@@ -65,7 +65,7 @@ def seen_beams(solid: Solid, home: Row, body: Row, numbers: Row) -> int:
 def is_in_sight(solid: Solid, home: Row, from_x: float, from_y: float, x: float, y: float) -> bool:
     """Tell whether nothing of the home stands between the station's front and a point.
 
-    Glass lets the light through, it passes over what is low, and what a mirror shows is too faint.
+    The light passes through glass and over what is low; by way of a mirror it is too faint.
     """
     steps = math.ceil(2.0 * math.hypot(x - from_x, y - from_y) / home.resolution)
     # The front itself may lie in a cell of the station.

@@ -51,7 +51,7 @@ def move_thing(
 def robot_is_there(
     solid: Solid, world: Row, thing: Row, radius: float, x: float, y: float, theta: float
 ) -> bool:
-    """Tell whether a thing would touch a robot at a pose; not if it goes away from it."""
+    """Tell whether a thing that moves to a pose touches a robot there, other than moving away."""
     for number in range(world.robots_at, world.robots_end):
         body = solid.robots[number]
         away = way_to_thing(solid, thing, x, y, theta, body.x, body.y)

@@ -23,7 +23,7 @@ from roomba.world.home.surface import Surface
 ROUND_ERROR: Final = 5e-4
 """m; how far the pieces of a round wall are off the circle, at most."""
 LONGEST_PIECE: Final = 0.06
-"""m; of a round wall: the camera draws an edge between longer ones."""
+"""m; of a round wall: between longer pieces the camera would draw an edge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ class FreeWall:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FreeWalls:
-    """All of a home, and the cells that they touch: bool [rows, columns] over its grid."""
+    """All walls of a home, and the cells that they touch: bool [rows, columns] over its grid."""
 
     walls: tuple[FreeWall, ...]
     touched: Mask

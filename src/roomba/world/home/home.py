@@ -229,11 +229,11 @@ class Home:
     station. What is ``moving`` is not solid and in no other list: not among ``furniture``, and a
     door whose leaf moves is open in ``doors``. ``stairs`` lead down: floor on the map, a drop to
     a robot. A home that was ``turned`` by :mod:`roomba.world.home.turned`, or has ``free_walls``,
-    has slanted walls: its grids show them as well as cells can, and ``exact`` is the home without
-    their steps, in whose ``solid`` and ``walls`` they are not. ``surfaces``, of ``exact`` too, are
-    codes of what the cells' surfaces do to light, uint8 [rows, columns]: see
-    :class:`roomba.world.home.surface.Surface`; None if no material is given. ``station_place`` is
-    who said where the station stands.
+    has slanted walls: its grids show them in steps. ``exact`` is the home without these steps: its
+    free walls are not in its ``walls``, and only cells that lie within one are ``solid``.
+    ``surfaces``, of ``exact`` too, are codes of what the cells' surfaces do to light, uint8
+    [rows, columns]: see :class:`roomba.world.home.surface.Surface`; None if no material is given.
+    ``station_place`` is who said where the station stands.
     """
 
     name: str

@@ -24,14 +24,14 @@ _Row = tuple[float, float, float, float, float]
 
 
 def tracks_of(things: Iterable[MovingThing], random: np.random.Generator) -> list[Track]:
-    """Return the day of each thing; how much its occurrences are put off is drawn in order."""
+    """Return each thing's track of a day; random delays of its occurrences are drawn in order."""
     return [_track(thing, random) for thing in things]
 
 
 def pose_at(track: Track, time: float) -> tuple[float, float, float, bool]:
     """Return (x, y, theta, present) at ``time``, s; theta in (-pi, pi].
 
-    Plain and slow: what a simulator compiles is tested against it.
+    Plain and slow: the simulator's compiled code is tested against this function.
     """
     last = max(0, int(np.searchsorted(track[:, TIME], time, side="right")) - 1)
     start, x, y, theta, present = track[last].tolist()
@@ -60,7 +60,7 @@ def _track(thing: MovingThing, random: np.random.Generator) -> Track:
 
 
 def _starts(script: Script, random: np.random.Generator) -> list[float]:
-    """Return when each occurrence of a script starts, s: its period's start, and then some."""
+    """Return when each occurrence of a script starts, s: its period's start plus a random delay."""
     if not script.moves or script.moves[-1].ends > DAY:
         return []
     first, last = script.moves[0].begins, script.moves[-1].ends

@@ -23,7 +23,7 @@ class Finish(IntEnum):
     GLASS = 2
     """Lets light pass; where it is met squarely a part of the beams comes back."""
     MIRROR = 3
-    """Sends light on: what is told is the way to what the mirror shows."""
+    """Sends light on: the lidar tells the way to what the mirror shows."""
     LOW = 4
     """Lies below the light, which passes over it; a body does not."""
 
@@ -42,7 +42,7 @@ class Surface:
 
     @property
     def code(self) -> int:
-        """The surface as a byte of a cell: percents, more by 100 if it is shiny; 0 is for none."""
+        """The surface as a byte of a cell: percent, plus 100 if it is shiny; 0 is for none."""
         return max(1, round(100.0 * self.reflectivity)) + 100 * int(self.finish)
 
 
@@ -62,7 +62,7 @@ OF_MATERIAL: Final[MappingProxyType[str, Surface]] = MappingProxyType(
 
 
 LOW: Final = Surface(Finish.LOW, 0.0)
-"""Of cables and sills."""
+"""The surface of cables and sills."""
 
 
 def surface_of(material: str | None) -> Surface | None:

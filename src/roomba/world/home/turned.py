@@ -1,8 +1,8 @@
 """A home turned by any angle: slanted walls for the robot, exact ones for the world.
 
 The world goes on in the home's own axes, so lidar, contact and camera stay exact and as fast as
-they are; poses are told in the turned frame. The grids of that frame are what a map of slanted
-walls is: steps. Cells that touch a wall, or floor that is not known, are not free, and tell how
+they are; poses are told in the turned frame. The grids of that frame show slanted walls as a
+map does: in steps. Cells that touch a wall, or floor that is not known, are not free, and tell how
 much of them is solid.
 """
 
@@ -31,9 +31,9 @@ from roomba.world.home.home import (
 )
 
 _SAMPLES: Final = 9
-"""In each direction of a cell."""
+"""Samples of a cell in each direction."""
 _TO_SIDE: Final = 0.499
-"""Cells; from the middle to the outermost samples."""
+"""Cells; from a cell's middle to the outermost samples."""
 
 
 def turned_home(home: Home, angle: float) -> Home:
@@ -63,16 +63,16 @@ def turned_home(home: Home, angle: float) -> Home:
 
 
 def with_steps(home: Home) -> Home:
-    """Return a home as its map shows it: ``home`` is exact, and has walls free of its grid."""
+    """Return a home as its map shows it, in steps; ``home`` is exact, with free walls."""
     turned = TurnedFrom(home, Pose(), home.drop)
     return replace(home, **_grids(home, home.frame, 0.0), turned=turned)
 
 
 def turned_frame(frame: GridFrame, angle: float) -> GridFrame:
-    """Return a grid along the axes, of the same cell size, that holds all of a turned one.
+    """Return a grid along the axes, of the same cell size, that holds all of a turned grid.
 
-    The corner of the turned one's first cell is one of its own, so that after quarter turns cells
-    lie on cells.
+    The corner of the turned grid's first cell is a corner of cells of the new grid, so that after
+    quarter turns cells lie on cells.
     """
     x_min, x_max, y_min, y_max = frame.extent
     corners = Pose(0.0, 0.0, angle).transform(
@@ -87,7 +87,7 @@ def turned_frame(frame: GridFrame, angle: float) -> GridFrame:
 
 
 def _grids(home: Home, frame: GridFrame, angle: float) -> dict[str, Any]:
-    """Return map, solid and walls of an exact home over ``frame``; what is exact alone is None."""
+    """Return map, solid and walls of an exact home over ``frame``; None for what has no steps."""
     own, found = home.frame, home.free_walls
     free = found.walls if found is not None else ()
     mapped = [wall for wall in free if wall.on_map]

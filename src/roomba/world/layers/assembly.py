@@ -45,8 +45,8 @@ DOCKED_CLEARANCE = 0.005
 class FurnishedFloor:
     """The grids of a home: see :class:`roomba.world.home.home.Home`.
 
-    ``moving`` are the cells that what moves covers, at the body's height, before it first moves.
-    The ``free`` walls are in none of the grids.
+    ``moving`` are the cells that moving things cover, at the body's height, before their first
+    move. Of the ``free`` walls, cells that lie within one are ``solid``; no other grid has them.
     """
 
     map: OccupancyMap
@@ -59,12 +59,12 @@ class FurnishedFloor:
 
     @property
     def standing(self) -> Mask:
-        """Cells of which anything stands on a part."""
+        """Cells on which anything stands, if only on a part of the cell."""
         return self.solid if self.free is None else self.solid | self.free.touched
 
     @property
     def bare(self) -> Mask:
-        """Floor on which dirt can lie, under what moves too."""
+        """Floor on which dirt can lie, also under things that move."""
         return ~self.standing & ~self.drop
 
     @property
@@ -126,7 +126,7 @@ def _panes(pieces: Iterable[Furniture], parts: Parts, height: float) -> list[Fre
 
 def _pane(piece: Furniture, box: Box, parts: Parts) -> FreeWall:
     if piece.kind in LOW_KINDS:
-        # No robot has it on its map: it was never seen.
+        # No robot has a low thing on its map: no lidar ever saw it.
         return FreeWall(counter_clockwise(footprint(box)), surface=LOW, on_map=False)
     return pane_of(footprint(box), parts.materials[piece.name], piece.on_map)
 
@@ -160,9 +160,9 @@ def _surfaces(
 
 
 def standing_cells(frame: GridFrame, pieces: Iterable[Furniture], height: float) -> Mask:
-    """Return the cells that furniture covers below ``height`` m: what a body of it runs into.
+    """Return the cells that furniture covers below ``height`` m: a body so high meets them.
 
-    Fixtures of a wall are the wall's own.
+    Fixtures of a wall do not count: they are part of the wall.
     """
     standing = (piece for piece in pieces if piece.kind not in FIXTURES)
     return _covered_below(frame, (box for piece in standing for box in piece.boxes), height)

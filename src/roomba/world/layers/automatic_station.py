@@ -36,11 +36,11 @@ def automatic_station(
 ) -> Pose:
     """Return a docked pose in the largest floor on which the body fits, m and rad in the map frame.
 
-    Wanted is a straight wall before the nose and a metre of free way behind, best along the map's
-    axes; failing that less way, failing that no wall, failing that any place. Among equals the
-    nearest to the map's zero is taken, since that is where mapping robots start, and they start
-    from their station. Floor that reaches the end of the ``paper``, if any, is taken only for want
-    of other (:mod:`roomba.world.layers.paper`). Raises :class:`HomeError` if the body fits nowhere.
+    The best place has a straight wall before the nose and a metre of free way behind, along the
+    map's axes; the next best have less way, then no wall; then any place will do. Of equal places
+    the nearest to the map's zero is taken: mapping robots start there, and they start from their
+    station. Floor that reaches the end of the ``paper``, if any, is taken only if there is no other
+    (:mod:`roomba.world.layers.paper`). Raises :class:`HomeError` if the body fits nowhere.
     """
     frame = occupancy.frame
     end = np.zeros(frame.shape, np.bool_) if paper is None else paper
@@ -109,13 +109,13 @@ def _way_behind(floor: Mask, theta: float, approach: float, resolution: float) -
 
 
 def _cells(theta: float, ahead: int, aside: int) -> tuple[int, int]:
-    """Return how many rows and columns away that is, for a heading, rad."""
+    """Return (rows, columns) to what lies ``ahead`` and ``aside`` cells off, for a heading, rad."""
     cosine, sine = math.cos(theta), math.sin(theta)
     return round(ahead * sine + aside * cosine), round(ahead * cosine - aside * sine)
 
 
 def _shifted(mask: Mask, offset: tuple[int, int]) -> Mask:
-    """Return for every cell what the mask says ``offset`` (rows, columns) away; outside, no."""
+    """Return for every cell what the mask says ``offset`` (rows, columns) away; False outside."""
     result = np.zeros_like(mask)
     rows, columns = mask.shape
     down, right = offset

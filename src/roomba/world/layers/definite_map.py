@@ -1,9 +1,9 @@
-"""What the map of a file says of a floor, for certain: each cell is floor or keeps the body out.
+"""Makes the map of a file definite: each cell is floor or keeps the body out.
 
 Maps of map_server tell how likely a cell is occupied, or how much of it is, leave specks unknown
 that no beam went through, may end in the middle of free floor, and may be pictures many times as
-large as what they show. A world has none of this, and the robot in it is given the very map of
-which its world is made.
+large as what they show. A simulated world has none of this, and its robot is given the very map of
+which the world is made.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.raster.regions import dilated, large_regions, numbered_regions
 
 SPECK: Final = 0.01
-"""m²; no larger unknown spot with free floor all around it is floor as well."""
+"""m²; an unknown spot of up to this size, with free floor all around it, is floor as well."""
 SPOT: Final = 0.3
-"""m²; smaller unknown spots that are no specks are solid on the map as well: such a spot a robot
-takes for floor that no beam happened to pass (:mod:`roomba.perception.matching.surface_field`)."""
+"""m²; smaller unknown spots that are no specks become solid on the map: a robot would take them
+for floor that no beam happened to pass (:mod:`roomba.perception.matching.surface_field`)."""
 FENCE: Final = 0.1
 """m; thickness of a wall where a map ends: what a lidar sees a little too far lies in it."""
 MARGIN: Final = 1.0
-"""m; so much of what is not known is kept around what is: it is as solid as what lies outside."""
+"""m; so wide an unknown border is kept around what is known: it is as solid as all outside."""
 _HARDLY: Final = 10
-"""%; what is less likely solid, or less of it, is as good as not known."""
+"""%; a cell that is less likely solid, or to a smaller part, is as good as unknown."""
 _AROUND: Final = np.ones((3, 3), np.bool_)
 """A cell and those over its sides and corners."""
 
@@ -96,7 +96,7 @@ def _fenced(map: OccupancyMap) -> OccupancyMap:
 def _without_specks(map: OccupancyMap) -> OccupancyMap:
     """Return a map in which small unknown spots in the midst of floor are floor.
 
-    A cell of which something is solid, or may be, is not.
+    A cell that is partly solid, or may be, does not become floor.
     """
     if not (map.values == FREE).any():
         return map

@@ -1,4 +1,4 @@
-"""The paper around a drawn floor plan: floor to the eye of a map, and no part of the home."""
+"""The paper around a drawn floor plan: a map shows it as floor, but it is no part of the home."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from roomba.world.home.raster import largest_component, where_body_fits
 from roomba.world.layers.definite_map import FENCE
 
 LEAST_HOME: Final = 3.0
-"""m² on which the middle of a body fits; in front of the paper around it so much is the home."""
+"""m² where the middle of a body fits; floor of this size that is not paper is the home."""
 LEAST_SHARE: Final = 0.2
-"""0..1; of the largest floor; so much is the home as well, in a plan of little floor."""
+"""0..1; in a plan of little floor, this share of the largest floor is enough for the home."""
 _MOST: Final = 0.5
-"""0..1; where more than this of a picture's end is floor it is paper: a map that was cut off within
-a home has walls and what is not known there as well."""
+"""0..1; if more than this of a picture's end is floor, it is paper: a map that was cut off within a
+home has walls and unknown cells at its end as well."""
 
 _ALONG: Final = 0.5
-"""Times the side of a square as large as a floor; along so much of the end it is paper: what is
-around a home has four times as much and more, a gap in the wall of a home a tenth."""
+"""A floor is paper if it meets the end along this times the side of a square of its area: paper
+around a home has four times that side and more, a gap in a home's wall a tenth."""
 
 
 def paper_end(drawn: OccupancyMap, frame: GridFrame) -> Mask:
@@ -53,7 +53,7 @@ def paper_end(drawn: OccupancyMap, frame: GridFrame) -> Mask:
 def off_paper(floor: Mask, end: Mask, reach: float, resolution: float) -> Mask:
     """Return the largest part of a floor that is no paper: see :func:`is_on_paper`.
 
-    Where none is large enough for a home it is the largest of all.
+    Where no such part is large enough for a home, the largest part of all is returned.
     """
     largest = largest_component(floor)
     if not end.any():
@@ -67,7 +67,7 @@ def off_paper(floor: Mask, end: Mask, reach: float, resolution: float) -> Mask:
 def is_on_paper(frame: GridFrame, solid: Mask, radius: float, pose: Pose, end: Mask) -> bool:
     """Whether a body of ``radius``, m, stands on floor that reaches much of the paper's ``end``.
 
-    A home that has a gap there, as where a corridor is drawn open, is no paper.
+    A home that has a gap at the end, such as a corridor that is drawn open, is no paper.
     """
     if not end.any():
         return False

@@ -68,7 +68,7 @@ def _free_wall(location: Location, entry: WallEntry, check: Checker) -> FreeWall
         assert entry.arc is not None, "an entry has one of its three forms"
         arc = entry.arc
         centre = arc.centre[0], arc.centre[1]
-        # Of one that leaves the map there may be more pieces than there is memory.
+        # An arc that leaves the map may have more pieces than there is memory for.
         for angle in (arc.first, 0.5 * (arc.first + arc.last), arc.last):
             check.point(
                 location,

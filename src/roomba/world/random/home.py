@@ -26,7 +26,7 @@ from roomba.world.random.furniture import random_furniture
 from roomba.world.random.walls import GRID, WALL, random_openings, random_rooms
 
 _STREAM: Final = 20_011
-"""Makes the homes' random numbers others than those of noise for the same seed."""
+"""Makes the random numbers of homes differ from those of noise with the same seed."""
 _OUTER: Final = 0.20
 """m; thickness of the walls around it."""
 _AROUND: Final = 0.30

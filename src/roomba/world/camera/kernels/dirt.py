@@ -18,9 +18,9 @@ CRUMB_MASK = 1023
 DIRT_LEVEL = 40.0
 """A level of dirt is this times the square root of g/m2: 4 at 0.01, 40 at 1, 253 at 40 g/m2."""
 FILM = 14.0
-"""g/m2; the fine dust of so much dirt hides half of what it can of the floor."""
+"""g/m2; with so much dirt the fine dust hides half of the most that it can hide."""
 CRUMB_BLOCK = 3
-"""Texels by the power of two that an entry of ``fewest`` stands for, each way."""
+"""An entry of ``fewest`` stands for 2 to the power of this many texels, each way."""
 
 
 @compiled(**INLINE)
@@ -48,7 +48,7 @@ def dirt_level(dirt: NDArray[np.int32], row: float, column: float, per_unit: flo
 
 @compiled(**INLINE)
 def veil(cover: NDArray[np.float32], level: float, crispness: float) -> float:
-    """Return how much dust, and crumbs too far to be told apart, hide of the floor, 0..256."""
+    """Return the share of the floor hidden by dust and by crumbs that are far away, 0..256."""
     grams = (level / DIRT_LEVEL) ** 2
     film = 0.8 * grams / (grams + FILM)
     hidden = cover[int(level)] * (1.0 - crispness)

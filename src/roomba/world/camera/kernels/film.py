@@ -11,7 +11,7 @@ from roomba.world.camera.kernels.compilation import INLINE, INNER, KERNEL
 from roomba.world.camera.scene.arrays import STRIP
 
 BLOCK = 16
-"""Columns that are turned into rows together: what fits the nearest cache."""
+"""Columns that are turned into rows together: they fit into the nearest cache."""
 TURNED = 8
 """Columns of a strip that are turned into rows together."""
 TWO = np.uint32(2)
@@ -34,13 +34,13 @@ def develop(
 
 @compiled(**INNER)
 def shrink(colours: NDArray[np.uint32], halved: NDArray[np.uint32]) -> None:
-    """Average two painted columns [2, 2 n] by twos into one, [n]."""
+    """Average two painted columns, [2, 2 n], over 2 x 2 samples into one, [n]."""
     for row in range(halved.shape[0]):
         one = np.uint32(colours[0, 2 * row])
         two = np.uint32(colours[0, 2 * row + 1])
         three = np.uint32(colours[1, 2 * row])
         four = np.uint32(colours[1, 2 * row + 1])
-        # Red and blue in one sum: eight bits between them are free for what is carried.
+        # Red and blue are added in one sum: the eight free bits between them take the carry.
         red_blue = (one & RED_BLUE) + (two & RED_BLUE) + (three & RED_BLUE) + (four & RED_BLUE)
         green = (one & GREEN) + (two & GREEN) + (three & GREEN) + (four & GREEN)
         halved[row] = ((red_blue >> TWO) & RED_BLUE) | ((green >> TWO) & GREEN)
@@ -53,9 +53,9 @@ def turn(
     rows: NDArray[np.float32 | np.uint32],
     begin: int,
 ) -> None:
-    """Copy the columns of a strip into rows, from the first to before ``last``.
+    """Copy the columns of a strip into rows, down to before row ``last``.
 
-    ``columns`` is [STRIP, rows]; in ``rows`` they are those from ``begin`` on.
+    ``columns`` is [STRIP, rows]; they become the columns of ``rows`` from ``begin`` on.
     """
     for first in range(0, STRIP, TURNED):
         for at_row in range(last):

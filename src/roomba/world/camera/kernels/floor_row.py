@@ -1,9 +1,8 @@
 """Compiled steps of a row of a strip's floor, of one sample per pixel.
 
-Each goes over all columns before the next one does: what is only reckoned becomes vectors, and
-what is looked up in tables does not wait for each other. No step reads and writes more than a few
-arrays, and none is a view of another: else the compiler does not see that it may work on several
-columns at once.
+Each step goes over all columns before the next one begins: arithmetic is then vectorized, and table
+look-ups do not wait for one another. No step reads and writes more than a few arrays, and no array
+is a view of another: else the compiler does not see that it may work on several columns at once.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ HALF = np.float32(0.5)
 TEXELS = np.float32(CRUMB_TEXELS)
 CRUMB_BITS = CRUMB_MASK.bit_length()
 BLOCK_BITS = CRUMB_BITS - CRUMB_BLOCK
-"""Base 2 logarithms of the widths of the tables of crumbs and of the fewest of them."""
+"""Base 2 logarithms of the widths of the tables ``crumbs`` and ``fewest``."""
 DUST_ROW = 16 * SHADES
 """Where the colours of dust begin among those of crumbs."""
 OF_LIGHT, OF_DIRT, OF_DUST = 0, 1, 2
@@ -73,7 +72,7 @@ def spread(
     of_tile = values[tile : tile + TILE]
     low = between(left, k, what, part)
     gain = (between(right, k, what, part) - low) * PER_COLUMN
-    # Not to TILE: a loop of so few known steps is written out, and then no vectors are made.
+    # Not to TILE: the compiler unrolls a loop of so few known steps, and makes no vectors.
     for i in range(of_tile.shape[0]):
         of_tile[i] = np.int32((np.float32(i) + HALF) * gain + low)
 
@@ -147,7 +146,7 @@ def add_crumbs(
         place[i] = (line << CRUMB_BITS) + column
         block[i] = ((line >> CRUMB_BLOCK) << BLOCK_BITS) + (column >> CRUMB_BLOCK)
     for i in range(STRIP):
-        # Most floor is free of crumbs: a look at a small table spares one at a large one.
+        # Most floor is free of crumbs: looking into the small table spares the large one.
         if floor.fewest[np.uint32(block[i])] <= row.level[i]:
             crumb = np.int64(floor.crumbs[np.uint32(place[i])])
             if (crumb & 255) <= row.level[i]:
@@ -170,6 +169,6 @@ def put_before(
     t: np.float32,
     colour: NDArray[np.uint32],
 ) -> None:
-    """Put what stands nearer than the floor before it."""
+    """Replace the floor's colour where an upright thing is nearer."""
     for i in range(STRIP):
         colour[i] = colour[i] if depths[i] >= t else upright[i]

@@ -1,4 +1,4 @@
-"""Compiled light on what stands."""
+"""Compiled light on upright faces."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Compiled pictures of one sample per pixel, made for speed.
 
-A picture is painted in strips of some columns, so that what is worked on stays in the nearest
-caches: upright things column by column, the floor row by row. Light and dirt on the floor are felt
-at the edges of its tiles, some to a strip.
+A picture is painted in strips of some columns, which stay in the nearest caches: upright things
+column by column, the floor row by row. Light and dirt on the floor are sampled at the edges of
+tiles, of which a strip has several.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def turn_upright(
 ) -> None:
     """Turn a strip's columns into rows: all depths, and the picture above ``first_row``.
 
-    Below that, colours are left in ``work.tile``; from ``lowest`` down is only floor.
+    Below that row, colours are left in ``work.tile``; from ``lowest`` down there is only floor.
     """
     turn(work.colours, lowest, work.tile, 0)
     turn(work.depths, lowest, depths, begin)
@@ -64,7 +64,7 @@ def first_floor_row(hits: NDArray[np.float64], view: ViewTables, begin: int, end
 def feel_edges(
     scene: SceneArrays, view: ViewTables, axis: Ray, dirt: FloorDirt, work: Workspace
 ) -> None:
-    """Feel light and dirt along each edge of a tile, from where its strips' floor may begin."""
+    """Sample light and dirt along each edge of a tile, from the first row that may show floor."""
     for edge in range(work.knots.shape[0]):
         column = edge * TILE
         left, right = (column - 1) // STRIP * STRIP, (column // STRIP + 1) * STRIP

@@ -36,9 +36,9 @@ from roomba.world.camera.scene.arrays import (
 LEAST_LEVEL = 4.0
 """No crumb is seen at less dirt than this; see :func:`roomba.world.home.crumbs.crumbs`."""
 NEARLY_HALF = np.float32(0.4)
-"""Halvings of a texture: it is halved once more where 0.6 of that would suit."""
+"""Added to the ideal number of halvings before that is cut off: a rest of 0.6 is one more."""
 SEVERAL = -1
-"""Instead of a surface: there is more than one."""
+"""In place of a surface's number where a tile has several surfaces."""
 
 
 @compiled(**INLINE)
@@ -51,8 +51,7 @@ def place_in(
 
 @compiled(**INLINE)
 def surface_within(floor: FloorSurfaces, x: np.float32, y: np.float32) -> int:
-    """Return the surface of the floor at a place, m, by numbers of 32 bits; outside the map the
-    nearest one."""
+    """Return the floor's surface at a place, m, in 32 bits; outside the map the nearest one."""
     cell = np.float32(floor.cell)
     row = place_in(y, np.float32(floor.origin_y), cell, floor.surfaces.shape[0])
     column = place_in(x, np.float32(floor.origin_x), cell, floor.surfaces.shape[1])
@@ -61,8 +60,7 @@ def surface_within(floor: FloorSurfaces, x: np.float32, y: np.float32) -> int:
 
 @compiled(**INLINE)
 def surface_below(floor: FloorSurfaces, ray: Ray, t: float) -> int:
-    """Return the surface of the floor below a ray at the depth ``t``; outside the map the nearest
-    one."""
+    """Return the floor's surface below a ray at a depth ``t``; outside the map the nearest."""
     x, y = ray.x + t * ray.dx, ray.y + t * ray.dy
     row = place_in(y, floor.origin_y, floor.cell, floor.surfaces.shape[0])
     column = place_in(x, floor.origin_x, floor.cell, floor.surfaces.shape[1])
@@ -97,8 +95,8 @@ def look_of(
 ) -> tuple[np.float32, int, int, int]:
     """Return how a surface looks in pixels of a size whose base 2 logarithm is given.
 
-    Of the halving of its texture that suits: texels per metre, the first texel, and the width; and
-    the first of the surface's colours.
+    The look is four numbers: texels per metre, first texel and width of the halved texture that
+    suits, and the first of the surface's colours.
     """
     texture = np.uint64(surfaces.texture[np.uint64(surface)])
     bits = int(surfaces.bits[texture])
@@ -145,7 +143,7 @@ def find_even_looks(
     until: int,
     work: Workspace,
 ) -> bool:
-    """Note how tiles of one surface look in rows top..until-1; returns whether all are."""
+    """Note how tiles of one surface look in rows top..until-1; return whether all are such."""
     even = True
     near, far = view.floor_depth[top], view.floor_depth[min(until, view.rows - 1)]
     for tile in range(0, STRIP, TILE):
@@ -187,7 +185,7 @@ def paint_floor(
 ) -> None:
     """Finish the picture of a strip from ``first_row`` down: floor where nothing stands before it.
 
-    From ``lowest`` down there is nothing else.
+    From ``lowest`` down there is nothing but floor.
     """
     surfaces, floor, strip = scene.surfaces, scene.floor, work.row
     x, y = np.float32(axis.x), np.float32(axis.y)

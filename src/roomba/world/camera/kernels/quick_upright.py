@@ -29,9 +29,9 @@ from roomba.world.camera.scene.arrays import (
 
 LIGHT = SHADES - 1.0
 POINT = 16
-"""Bits behind the point of numbers in fixed point."""
+"""Fraction bits of fixed-point numbers."""
 TOGETHER = 16
-"""Rows of a level plane that look at one halving of its texture."""
+"""Rows of a level plane that share one halving of its texture, and one light."""
 
 
 @compiled(**INLINE)
@@ -124,7 +124,7 @@ def paint_columns(
     boxes: int,
     work: Workspace,
 ) -> int:
-    """Paint what stands in a strip's columns into ``work``; returns the row where all has ended."""
+    """Paint what stands in a strip's columns into ``work``; return the first row below it."""
     lowest = 0
     for i in range(STRIP):
         column = begin + i

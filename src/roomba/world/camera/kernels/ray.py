@@ -29,7 +29,7 @@ def column_ray(view: ViewTables, axis: Ray, column: float) -> Ray:
 def cast_wall(walls: WallGrid, ray: Ray) -> tuple[float, int, int, int]:
     """Return depth, m, axis crossed (0: x, 1: y), and the free cell (row, column) before a wall.
 
-    Free space is crossed in jumps that no wall can be within; the last cells are walked exactly.
+    Free space is crossed in jumps that cannot pass a wall; the last cells are walked exactly.
     A camera inside a wall sees it at ``NEAR``. The cells are those of the map with its border.
     """
     skip, dx, dy = walls.skip, ray.dx, ray.dy

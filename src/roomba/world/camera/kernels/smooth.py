@@ -31,7 +31,7 @@ from roomba.world.camera.scene.arrays import (
 )
 
 GROUP = 4
-"""Columns that share one feeling of the floor's light and dirt."""
+"""Columns that share one sampling of the floor's light and dirt."""
 
 
 @compiled(**INLINE)

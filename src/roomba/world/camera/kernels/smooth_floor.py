@@ -39,8 +39,8 @@ def far_grey(
 ) -> int:
     """Return a texture's grey averaged over ``taps`` places along the ray within some rows.
 
-    ``below`` is how many rows under the horizon their upper edge is, ``rise`` what depth times
-    that is. Places in texels.
+    ``below`` is how many rows below the horizon the upper edge of these rows lies, ``rise`` is
+    depth times that number. Places are in texels.
     """
     mask = (1 << bits) - 1
     total = 0
@@ -70,7 +70,7 @@ def with_crumb(
     """Return a colour with the crumb that lies at a place, m, on it, if one does."""
     line = math.floor(y * CRUMB_TEXELS) & CRUMB_MASK
     column = math.floor(x * CRUMB_TEXELS) & CRUMB_MASK
-    # Most floor is free of crumbs: a look at a small table spares one at a large one.
+    # Most floor is free of crumbs: looking into the small table spares the large one.
     if fewest[((line >> CRUMB_BLOCK) << 7) + (column >> CRUMB_BLOCK)] > level:
         return colour
     crumb = int(crumbs[(line << 10) + column])

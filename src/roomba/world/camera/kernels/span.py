@@ -26,7 +26,7 @@ TILED_HEIGHT = 1.35
 LEDGE = 0.006
 """m; the dark line above skirting boards and tiled walls."""
 CEILING_LIGHT = 0.97
-"""The same all over: the light of the walls below would paint stripes on it."""
+"""The ceiling's light, the same all over: that of the walls below would make stripes on it."""
 NONE = np.int64(0)
 SPANS_OF_BOX = 3
 SPANS_OF_WALL = 9

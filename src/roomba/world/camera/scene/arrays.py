@@ -12,22 +12,22 @@ GREYS = 64
 """How many lights and greys a surface's toned colours are kept in."""
 GREY_BITS = GREYS.bit_length() - 1
 GREY_SHIFT = 8 - GREY_BITS
-"""From the greys of a texture, bytes, to these."""
+"""Bits by which a texture's grey, a byte, is shifted right to be one of GREYS."""
 TILE = 16
-"""Columns of a picture between which light and dirt are felt."""
+"""Columns of a picture between two places where light and dirt are sampled."""
 STRIP = 64
 """Columns of a picture that are painted together: a whole number of tiles."""
 
 
 class Surfaces(NamedTuple):
-    """What faces and floors look like, by the number of the surface; textures by their own."""
+    """What faces and floors look like, by surface number; textures have their own numbers."""
 
     texture: NDArray[np.int32]
     """[surfaces]: which texture."""
     palettes: NDArray[np.uint32]
     """[surfaces, 256]: colour of each grey of the texture, 0x00BBGGRR."""
     shaded: NDArray[np.uint32]
-    """[surfaces * SHADES * GREYS]: the same, fewer, in every light, and toned as a picture is."""
+    """[surfaces * SHADES * GREYS]: the palettes, with fewer greys, in every light, and toned."""
     glows: NDArray[np.bool_]
     """[surfaces]: shines by itself, so that no shadow falls on it."""
     texels: NDArray[np.uint8]
@@ -109,7 +109,7 @@ class Boxes(NamedTuple):
 class SceneArrays(NamedTuple):
     """A home, compiled; made by :class:`roomba.world.camera.scene.scene.Scene`.
 
-    In parts: a kernel's arguments are passed one by one, and none should get what it does not read.
+    In parts: a kernel's arguments are passed one by one, and each kernel gets only what it reads.
     """
 
     surfaces: Surfaces
@@ -168,19 +168,19 @@ class StripRow(NamedTuple):
     scale: NDArray[np.float32]
     """Texels per metre, of the halving of the texture that suits."""
     start: NDArray[np.int32]
-    """Its first texel."""
+    """First texel of that halving."""
     width: NDArray[np.int32]
-    """Its width, texels: a power of two."""
+    """Width of that halving, texels: a power of two."""
     base: NDArray[np.int32]
     """First of the surface's ``shaded`` colours."""
     shade: NDArray[np.int32]
     """Light, 0..SHADES - 1."""
     level: NDArray[np.int32]
-    """Of dirt."""
+    """Level of dirt."""
     dust: NDArray[np.int32]
-    """How much it hides, 0..256."""
+    """Share of the floor that dust hides, 0..256."""
     veil: NDArray[np.uint32]
-    """Its colour."""
+    """Colour of the dust."""
     place: NDArray[np.int32]
     """A texel of the floor, or of the pattern of crumbs."""
     block: NDArray[np.int32]
@@ -200,7 +200,7 @@ class Workspace(NamedTuple):
     colours: NDArray[np.uint32]
     """[STRIP, rows]."""
     depths: NDArray[np.float32]
-    """The same."""
+    """[STRIP, rows], m."""
     tile: NDArray[np.uint32]
     """[rows, STRIP]: ``colours`` turned."""
     knots: NDArray[np.float32]
@@ -214,7 +214,7 @@ class ViewTables(NamedTuple):
     """The geometry of a picture of ``rows`` x ``columns`` samples; see the camera's module."""
 
     columns: int
-    """Those that are painted: a whole number of tiles, some of them past the right edge."""
+    """Columns that are painted: a whole number of tiles, some of them past the right edge."""
     middle: float
     """Half the columns of the picture."""
     rows: int

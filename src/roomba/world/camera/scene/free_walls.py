@@ -17,7 +17,7 @@ FRAME = "metal_dark"
 def free_wall_boxes(home: Home) -> list[Box]:
     """Return a block for each piece of a wall, from the floor to the ceiling.
 
-    Of glass only its frame is drawn, and the wall above it: what is behind is seen.
+    Of a pane of glass only its frame and the wall above it are drawn: one sees what is behind it.
     """
     boxes: list[Box] = []
     for wall in home.free_walls.walls if home.free_walls is not None else ():

@@ -1,7 +1,7 @@
 """The light in a home, worked out once: daylight from windows, sun on the floor, soft shadows.
 
-No light is traced. Corners and the floor beside and below furniture are darkened by distance,
-which is what the eye misses first in a picture without it.
+No light is traced. Corners, and the floor beside and below furniture, are darkened by distance: the
+eye misses this first in a picture without it.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ DARKEST_CORNER = 0.82
 SUN = (0.56, 0.83)
 """Direction in which the sun shines, in the plane of the map."""
 SUN_SLOPE = 0.85
-"""What the sun sinks per metre of way in the plane."""
+"""By how many metres a ray of the sun sinks per metre of way in the plane."""
 INDIRECT = 0.82
 """Share of the light on the floor that is there without the sun."""
 WINDOW_KIND = "window"

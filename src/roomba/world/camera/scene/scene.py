@@ -40,7 +40,7 @@ from roomba.world.home.materials import MATERIALS, Material
 
 FLOOR_TEXTURES = {"wood": "planks", "tile": "tiles", "fabric": "pile"}
 FACE_TEXTURES = {"tile": "wall_tiles", "fabric": "weave"}
-"""What a material's texture looks like where it lies and where it stands, if not by its name."""
+"""Textures of floors, and of faces, for materials whose texture is drawn by another name."""
 GLOWING = frozenset({"station_light"})
 UNKNOWN_MATERIAL = Material(170, 168, 165, "plain")
 """For a material that is in no catalogue, such as that of a home made in a test."""
@@ -62,7 +62,7 @@ CARPET_BORDER = 0.06
 
 @dataclass(slots=True)
 class _Looks:
-    """Surfaces by look, numbered as they come: a texture in a palette."""
+    """Numbers the looks of surfaces, a texture in a palette each, as they are first asked for."""
 
     textures: list[str] = field(default_factory=list)
     palettes: list[NDArray[np.uint32]] = field(default_factory=list)
@@ -100,7 +100,7 @@ class Scene:
     """Where the axes of ``arrays`` lie in the frame in which poses are told, if they are turned."""
 
     def boxes(self) -> Boxes:
-        """Return boxes of which some can be placed, as they stand at first."""
+        """Return the boxes as they stand at first, with shapes of their own that may be changed."""
         return self.arrays.boxes._replace(shapes=self.arrays.boxes.shapes.copy())
 
     @staticmethod
@@ -109,7 +109,7 @@ class Scene:
         if home.turned is not None:
             return replace(Scene.of(home.exact), axes=home.axes)
         frame = home.frame
-        # The first surfaces are the floor's, whose grid has bytes for numbers.
+        # The floor's surfaces come first: its grid keeps their numbers in bytes.
         looks = _Looks()
         floor, floor_cell = _floor(home, looks)
         walls = _walls(home)
@@ -206,9 +206,10 @@ def _cells(home: Home, area: Rectangle) -> tuple[slice, slice]:
 
 
 def _skips(walls: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Return for every cell, with a border of wall, how far away in cells all walls are, up to 255.
+    """Return for each cell, with a border of wall, a distance in cells to all walls, up to 255.
 
-    In either axis; where the nearest wall is straight ahead, up to a third less than it could be.
+    No wall is nearer than that along either axis. It is up to a third less than it could be where
+    the nearest wall is straight ahead.
     """
     away = distance_to_nearest(np.pad(walls, 1, constant_values=True))
     # A little less than sqrt(0.5): rounding must not add a cell.

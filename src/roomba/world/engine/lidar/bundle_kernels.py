@@ -42,7 +42,7 @@ BEAMS: Final = np.dtype(
     ],
     align=True,
 )
-"""A bundle, one row. Its numbers stand at places that the compiler knows: none can be another's."""
+"""A bundle, one row. The compiler knows where each number stands, and that no two are the same."""
 
 _STRAIGHT: Final = 1e-9
 """rad; a step that turns by less counts as straight: the middle of its arc is too far away."""

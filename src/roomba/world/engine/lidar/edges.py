@@ -88,8 +88,8 @@ def _boundaries(
 ) -> list[tuple[int, NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]]:
     """Return runs of cell boundaries along the rows: facing 0 (free side at larger row) or 1.
 
-    Each with its line, both ends, and whether it is a portal between two tiles; runs end at the
-    borders of tiles.
+    Each run comes with its line, both ends, and whether it is a portal between two tiles; runs end
+    at the borders of tiles.
     """
     padded = np.pad(solid, 1, constant_values=True)[:, 1:-1]
     below, above = padded[:-1], padded[1:]
@@ -106,7 +106,7 @@ def _boundaries(
 def _runs(
     mask: NDArray[np.bool_], tile: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return row, first and last-but-one column of each run of True, cut at multiples of tile."""
+    """Return row, first column and column after the last of each run of True, cut at tiles."""
     colours = mask * (1 + np.arange(mask.shape[1]) // tile % 2)
     padded = np.pad(colours, ((0, 0), (1, 1)))
     changes = padded[:, 1:] != padded[:, :-1]

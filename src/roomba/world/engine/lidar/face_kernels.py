@@ -1,7 +1,7 @@
 """Compiled faces of walls that are free of the grid: the way to one, and what rays meet of them.
 
-A face is straight and upright. Its outside is where its right end is to the right; rays that come
-from the other side pass. Metres, map frame; double precision.
+A face is straight and upright. Seen from its outside, its right end is on the right; rays that come
+from the other side pass through it. Metres, map frame; double precision.
 """
 
 from __future__ import annotations

@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from roomba.compilation import entry
 
 LARGEST: Final = 255
-"""Cells; larger squares are told as this: a byte for each."""
+"""Cells; larger squares count as this, so that a byte is enough for each."""
 QUADRANTS: Final = 4
 RIGHT: Final = 1
 UP: Final = 2
-"""A quadrant's number is the sum of those of them that it extends to: larger x, larger y."""
+"""A quadrant's number: RIGHT if it extends to larger x, plus UP if it extends to larger y."""
 MARGIN: Final = 1
-"""Cells around the grid that are told as well; they are solid."""
+"""Cells around the grid for which squares are kept as well; they are solid."""
 
 
 def free_squares(solid: NDArray[np.bool_]) -> NDArray[np.uint8]:
@@ -36,9 +36,9 @@ def free_squares(solid: NDArray[np.bool_]) -> NDArray[np.uint8]:
 
 @entry
 def _note_squares(solid: NDArray[np.bool_], squares: NDArray[np.uint8]) -> None:
-    """Fill in all squares: one is a cell longer than the least of the three that begin next to it.
+    """Fill in all squares: each is one cell larger than the least of three squares next to it.
 
-    Those are the squares of the next cell along either axis, and of the one diagonally ahead.
+    Those are the squares of the next cell along either axis, and of the cell diagonally ahead.
     """
     rows, columns = solid.shape
     for quadrant in range(QUADRANTS):

@@ -1,7 +1,7 @@
 """Compiled light of one beam: what it meets first, on the way through glass and by mirrors.
 
-What it meets is a cell of the home, a face of a wall that is free of the grid, or something that
-moves; and that gives enough light back to be told, or does not. Metres, map frame.
+A beam meets a cell of the home, a face of a wall that is free of the grid, or something that moves;
+that gives back enough light for a range, or does not. Metres, map frame.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _INTO: Final = 0.01
 """m; a little inside of what was met: its face may lie on the border of two patches."""
 _UNIT_20: Final = 1.0 / (1 << 20)
 _NEVER: Final = -1e-12
-"""Reflectivity of what is shiny and nothing else."""
+"""Reflectivity of a shiny surface without a matt share; below 0, as that of all shiny ones."""
 _SHINY, _GLASS, _MIRROR = float(Finish.SHINY), float(Finish.GLASS), float(Finish.MIRROR)
 _LOW = float(Finish.LOW)
 
@@ -65,9 +65,9 @@ class Met(NamedTuple):
 
 @inner_part
 def reflectivity(x: float, y: float, numbers: Row) -> float:
-    """Return the share of light that the home gives back at a place, 0..1, as :func:`is_seen`.
+    """Return the share of light that the home gives back at a place, as :func:`is_seen` takes it.
 
-    The same for each robot and run: the place alone decides, m from the grid's corner.
+    It is the same for each robot and run: the place alone decides, m from the grid's corner.
     """
     column, row = math.floor(x / numbers.patch), math.floor(y / numbers.patch)
     bits = hashed(np.uint32(column * 73856093 + row * 19349663 + 12345))
@@ -82,10 +82,10 @@ def reflectivity(x: float, y: float, numbers: Row) -> float:
 
 @inner_part
 def is_seen(found: float, facing: float, reflected: float, numbers: Row, fading: float) -> bool:
-    """Tell whether enough light comes back: as reflectivity times cosine over squared range.
+    """Tell whether enough light comes back: reflectivity times cosine over squared range decides.
 
     White paint met squarely is seen from ``white_reach``; ``fading`` is a normal random number.
-    What is shiny has its matt share below 0, and is always seen where it is met squarely.
+    A shiny surface has its matt share as a number below 0, and is always seen when met squarely.
     """
     if reflected < 0.0:
         if facing > numbers.shiny_cosine:
@@ -99,7 +99,7 @@ def is_seen(found: float, facing: float, reflected: float, numbers: Row, fading:
 def ray_at(around: Surroundings, x: float, y: float, angle: float, chance: float) -> Met:
     """Return what a ray meets, through glass and by mirrors; ``chance`` of 0..1 is the beam's own.
 
-    By a mirror the robot itself is seen.
+    A ray that a mirror sent on can meet the robot itself.
     """
     sine, cosine = sine_cosine(angle)
     reach = around.numbers.max_range
@@ -117,7 +117,7 @@ def ray_with_cell(
     chance: float,
     cell: tuple[float, float],
 ) -> Met:
-    """Return the same by the ray's direction, and the way, m, and facing of the nearest cell."""
+    """Return what :func:`ray_at` does; ``cell``: way, m, to the nearest solid cell, and facing."""
     home = around.home
     if home.faces_end > home.faces_at:
         return ray_among_faces(around, x, y, cosine, sine, chance, cell)
@@ -136,9 +136,10 @@ def meet(
     cell: tuple[float, float],
     viewer: int,
 ) -> tuple[float, float, int]:
-    """Return the way to what is nearest, how squarely it is met, and whether that is the cell.
+    """Return way, m, facing and kind, CELL or MOVABLE, of what a ray meets first.
 
-    Of the nearest solid cell, a way, m, and its facing, and of all that moves but for the viewer.
+    ``cell`` is the way to the nearest solid cell, m, and its facing. All that moves can be met but
+    the robot ``viewer``.
     """
     solid, numbers = around.solid, around.numbers
     found, facing = cell
@@ -219,7 +220,7 @@ def given_back(around: Surroundings, met: Met) -> float:
 
 @inner_part
 def is_echo(around: Surroundings, met: Met, fading: float) -> bool:
-    """Tell whether enough light comes back of what a ray met (see :func:`ray_at`)."""
+    """Tell whether enough light comes back from what a ray met (see :func:`ray_at`)."""
     if met.what >= 0 and around.solid.faces[met.what].finish == _GLASS:
         return True
     shared = given_back(around, met) * met.light
@@ -228,7 +229,7 @@ def is_echo(around: Surroundings, met: Met, fading: float) -> bool:
 
 @part
 def lidar_at(body: Row, numbers: Row, x: float, y: float, theta: float) -> Eye:
-    """Return where the lidar of a body at a pose is."""
+    """Return the pose of the lidar of a body that is at a pose."""
     if numbers.worn == 0.0 and numbers.lidar_ahead == 0.0:
         return x, y, theta
     cosine, sine = math.cos(theta), math.sin(theta)
@@ -242,7 +243,7 @@ def lidar_at(body: Row, numbers: Row, x: float, y: float, theta: float) -> Eye:
 
 @inner_part
 def look_through(around: Surroundings, ranges: Floats32, key: np.uint32) -> None:
-    """Measure those beams of a scan anew that met glass or a mirror before anything else.
+    """Measure anew those beams of a scan that meet glass, a mirror or a low face first.
 
     ``key`` decides by chance which of them glass sends back.
     """

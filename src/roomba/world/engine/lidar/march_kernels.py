@@ -1,6 +1,6 @@
 """Compiled ways of a bundle of beams to the nearest solid cells, by free squares.
 
-The same as :func:`.ray_kernels.ray_to_cells` for each beam, to the last bit. Nothing of a step
+Each beam has the result of :func:`.ray_kernels.ray_to_cells`, to the last bit. Nothing of a step
 branches, so that the compiler works on eight beams together: beams go on in step, and one that has
 arrived waits for the others. Counted in cells, from the lower left corner of the grid.
 """
@@ -23,14 +23,14 @@ from roomba.world.engine.state.arrays import Row
 def march(beams: Row, squares: NDArray[np.uint8], home: Row, reach: float) -> None:
     """Find the way of each beam, m, and the cosine of the angle to the normal of what it meets.
 
-    Of a bundle that is aimed: they are its ``way`` and ``facing``, (inf, 1) for what is farther
-    than ``reach``, m. All outside of the grid is solid.
+    The bundle must be aimed; the results are its ``way`` and ``facing``, (inf, 1) if nothing is
+    within ``reach``, m. All outside of the grid is solid.
     """
     farthest = reach / home.resolution
     set_off(beams, home)
     while True:
         for number in range(BUNDLE):
-            # Unsigned: it is not asked whether a number counts from the end.
+            # Unsigned: numba then does not check whether an index counts from the end.
             quadrant, place = np.uint64(beams.quadrant[number]), np.uint64(beams.place[number])
             beams.side[number] = float(squares[quadrant, place])
         if not go_on(beams, home, farthest):
@@ -68,7 +68,7 @@ def place_of(home: Row, column: float, row: float) -> np.int32:
 def go_on(beams: Row, home: Row, farthest: float) -> int:
     """Let each beam cross its free square; return how many did.
 
-    Never back to a column or row before, as rounding at a corner would have it.
+    A beam never goes back to an earlier column or row, as rounding at a corner might make it.
     """
     going = 0
     for number in range(BUNDLE):

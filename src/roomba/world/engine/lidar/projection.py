@@ -41,8 +41,8 @@ _SLACK: Final = np.float32(1e-4)
 """Beams; ends of edges are widened by this, so that no beam slips between two that meet."""
 _TINY: Final = np.float32(1e-12)
 _OFF_LINE: Final = 3e-7
-"""Share of its place (and one metre) that a scan keeps off a line between cells, two steps of
-float32: edges there would be edge-on."""
+"""A scan keeps off lines between cells by this share of its coordinate plus one metre, two steps
+of float32: on a line it would see edges edge-on."""
 
 # atan(x) on [0, 1] = x (c0 + c1 x^2 + ...), fitted for the least largest error: 6e-9 rad.
 _C0, _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8 = (
@@ -72,7 +72,7 @@ class ScanBuffers(NamedTuple):
     ends: Floats32
     """[7, edges of a tile]: the edges that look at the robot."""
     items: NDArray[np.int64]
-    """[edges of a tile]: which they are."""
+    """[edges of a tile]: the numbers of these edges."""
     tiles: NDArray[np.int64]
     """[2, tiles]: the number of the last scan that looked at each, and the tiles in a queue."""
     scans: NDArray[np.int64]
@@ -89,7 +89,7 @@ def buffers_for(edges: Edges, beams: int) -> ScanBuffers:
     return ScanBuffers(
         rays=np.stack([np.cos(angles), np.sin(angles)]).astype(np.float32),
         fan=np.zeros((3, size), np.float32),
-        # Not zero: what is left over at the end of a block is computed too.
+        # Not zero: unused places at the end of a block are computed too.
         ends=np.ones((7, (most // LANES + 2) * LANES), np.float32),
         items=np.zeros(most + 1, np.int64),
         tiles=np.zeros((2, len(edges.starts)), np.int64),
@@ -197,7 +197,7 @@ def span_of(ends: Floats32, index: int, beams: np.float32) -> tuple[int, int]:
 
 @any_order_part
 def fold(fan: Floats32, beams: int) -> None:
-    """Bring together what is known of beams that come twice."""
+    """Merge the depths of beams that come twice."""
     for beam in range(beams // 2 + LANES):
         both = max(fan[NEAREST, beam], fan[NEAREST, beams + beam])
         fan[NEAREST, beam] = both
@@ -315,9 +315,9 @@ def span_between(
 def scan_segment(
     fan: Floats32, beams: int, x0: float, y0: float, x1: float, y1: float, theta: np.float32
 ) -> None:
-    """Put one straight segment, as seen from the robot, into the depth buffer, from its right side.
+    """Put one straight segment, as seen from the robot, into the depth buffer.
 
-    That is with its first end to the right; the other side is not seen.
+    The robot sees the segment only if its first end is on the right.
     """
     turned = x0 * y1 - x1 * y0
     if turned < 1e-9:
@@ -333,7 +333,7 @@ def scan_segment(
 def scan_disc(
     fan: Floats32, beams: int, x: float, y: float, radius: float, theta: np.float32
 ) -> None:
-    """Put a disc, its middle as seen from the robot, into the depth buffer; not from inside."""
+    """Put a disc, its middle as seen from the robot, into the depth buffer; not from inside it."""
     square = x * x + y * y - radius * radius
     if square <= 0.0:
         return

@@ -19,7 +19,7 @@ from roomba.world.engine.state.arrays import Row, Solid
 _TINY: Final = 1e-12
 """A direction with a smaller component never comes to a line across it."""
 _NEVER: Final = 1e30
-"""Cells of a ray for each cell along an axis that it goes across."""
+"""Length of a ray, cells, per cell along an axis, if it never moves along that axis."""
 
 
 @inner_part
@@ -35,15 +35,15 @@ def ray_to_cells(
     """Return the way to the nearest solid cell, m, and the cosine of the angle to its normal.
 
     All outside of the grid is solid; what is farther than ``reach`` is (inf, 1). The ray goes from
-    free square to free square (:mod:`.free_squares`), counted in cells; never back to a column or
-    row before, as rounding at a corner would have it.
+    free square to free square (:mod:`.free_squares`), counted in cells. It never goes back to
+    an earlier column or row, as rounding at a corner might make it.
     """
     x, y = (x - home.left) / home.resolution, (y - home.bottom) / home.resolution
     column, row = math.floor(x), math.floor(y)
     if not (0 <= column < home.columns and 0 <= row < home.rows):
         return 0.0, 1.0
     goes_right, goes_up = cosine >= 0.0, sine >= 0.0
-    # Unsigned: it is not asked at each cell whether a number counts from the end.
+    # Unsigned: numba then does not check at each cell whether an index counts from the end.
     quadrant = np.uint64((RIGHT if goes_right else 0) + (UP if goes_up else 0))
     width = home.columns + 2 * MARGIN
     first = home.squares_at + MARGIN * width + MARGIN
@@ -82,7 +82,7 @@ def inverse_of(component: float) -> float:
 def ray_to_disc(
     x: float, y: float, cosine: float, sine: float, radius: float
 ) -> tuple[float, float]:
-    """Return the same for a disc, its middle as seen from the ray's start; inf from inside."""
+    """Return way and cosine for a disc, its middle as seen from the start; inf from inside."""
     ahead, aside = x * cosine + y * sine, y * cosine - x * sine
     depth = radius * radius - aside * aside
     if ahead <= 0.0 or depth <= 0.0 or x * x + y * y <= radius * radius:
@@ -94,7 +94,7 @@ def ray_to_disc(
 def ray_to_box(
     box: Row, x: float, y: float, turn: float, cosine: float, sine: float
 ) -> tuple[float, float]:
-    """Return the same for a box turned by ``turn``, its middle as seen from the ray's start."""
+    """Return way and cosine for a box turned by ``turn``, its middle as seen from the start."""
     cos_turn, sin_turn = math.cos(turn), math.sin(turn)
     # The ray in the frame of the box.
     start_x, start_y = -(cos_turn * x + sin_turn * y), sin_turn * x - cos_turn * y
@@ -131,9 +131,9 @@ def ray_to_movable(
     height: float,
     radius: float,
 ) -> tuple[float, float]:
-    """Return the same for all that is no part of the home: things, round things, other robots.
+    """Return way and cosine for what is no part of the home: things, round things, other robots.
 
-    Boxes count that reach ``height``, m; robots are discs of ``radius`` m.
+    Only boxes that reach ``height``, m, count; robots are discs of ``radius`` m.
     """
     nearest, facing = math.inf, 1.0
     for number in range(world.things_at, world.things_end):

@@ -27,7 +27,7 @@ _SLACK: Final = 1e-9
 
 @inner_part
 def is_scan_due(world: Row, body: Row, period: float) -> bool:
-    """Tell whether it is time for a scan, and set the next time; what was missed stays so."""
+    """Tell whether it is time for a scan, and set the next time; missed scans are left out."""
     late = world.time - body.next_scan + _SLACK
     if late < 0.0:
         return False

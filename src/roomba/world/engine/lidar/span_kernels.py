@@ -28,8 +28,9 @@ COSINE, SINE, NEAREST = range(3)
 def _block(typing_context: Any, fan: Any, target: Any, source: Any, count: Any, factor: Any) -> Any:
     """Raise LANES numbers of a fan from ``target`` on to ``factor`` times those from ``source`` on.
 
-    Only the first ``count`` of them. Written as vectors: spans of some ten beams are too short for
-    LLVM to see that it pays, and one by one they take three times as long as all else in a scan.
+    Only the first ``count`` of them are raised. This is written as vector code: LLVM does not
+    vectorize spans of some ten beams, and one by one they take three times as long as all else in a
+    scan.
     """
     signature = types.void(fan, types.int64, types.int64, types.int64, types.float32)
 

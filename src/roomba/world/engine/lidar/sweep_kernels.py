@@ -1,8 +1,8 @@
 """Compiled lidar that turns while it measures: each beam from its own pose, with its own errors.
 
 A sweep begins at the lidar's rhythm; in each step of the world those beams are measured that are
-due by then. A whole sweep waits for the line's delay, and is then the newest scan; its stamp is the
-time of its first beam.
+due by then. A whole sweep waits for the delay of the line, and then becomes the newest scan; its
+stamp is the time of its first beam.
 """
 
 from __future__ import annotations
@@ -75,8 +75,8 @@ def sweep(
 def begin_sweep(world: Row, body: Row, numbers: Row, dt: float) -> bool:
     """Begin a sweep if it is time for one.
 
-    Left out are sweeps from before this step and, in a long step, those that a newer one overtakes
-    before it ends: nothing sees them.
+    Sweeps that should have begun before this step are left out; so are, in a long step, those that
+    a newer one replaces before the step ends: nothing sees them.
     """
     period = numbers.scan_period
     since = min(dt, numbers.sweep_time + numbers.scan_delay + period)
@@ -108,7 +108,7 @@ def measure_beams(
 ) -> None:
     """Measure the beams from the next one to before ``due``, each where the lidar was at its time.
 
-    Between its poses before and after the step it goes along an arc.
+    Between its poses before and after the step the lidar goes along an arc.
     """
     world, numbers = around.world, around.numbers
     body = around.solid.robots[around.robot]
@@ -129,7 +129,7 @@ def measure_beams(
 
 @inner_part
 def with_noise(found: float, facing: float, numbers: Row, chance: float) -> float:
-    """Return a range, m, as it is told: ``chance`` is a normal random number."""
+    """Return a range, m, with noise and rounding: ``chance`` is a normal random number."""
     sigma = numbers.range_noise + numbers.noise_growth * found * found
     sigma *= 1.0 + numbers.grazing_noise * (1.0 / max(facing, _FLATTEST) - 1.0)
     found += sigma * chance
@@ -158,7 +158,7 @@ def measure(around: Surroundings, beams: Row, number: int) -> float:
         right = ray_at(around, x, y, angle - numbers.spot, chance).way
         left = ray_at(around, x, y, angle + numbers.spot, chance).way
         if abs(left - right) > numbers.edge and left + right < math.inf:
-            # The spot lies on both sides of an edge: as much of either as chance has it.
+            # The spot lies on both sides of an edge: chance decides how much of either counts.
             share = float(second >> np.uint32(16)) * _UNIT_16
             found = share * left + (1.0 - share) * right
             farther = found - met.way

@@ -49,7 +49,7 @@ HOME: Final = np.dtype(
         ("tile_size", "f8"),
         ("has_drops", "f8"),  # 1 if there is a DROP anywhere
         ("faces_at", "i8"),  # of walls free of the grid
-        ("clear_at", "i8"),  # the first of them that is glass or a mirror
+        ("clear_at", "i8"),  # the first of them that is glass, a mirror or low
         ("faces_end", "i8"),
     ]
 )
@@ -129,7 +129,7 @@ THING: Final = np.dtype(
         ("y", "f8"),
         ("theta", "f8"),
         ("present", "f8"),
-        ("time", "f8"),  # of its own: it stands still while it waits for a robot
+        ("time", "f8"),  # its own, which stands still while it waits for a robot
         ("row", "i8"),  # of its track, where it is now
         ("last_row", "i8"),
         ("boxes_at", "i8"),
@@ -208,15 +208,15 @@ ROBOT: Final = np.dtype(
         ("random", "u8"),
         ("wheel_left_size", "f8"),  # 1 without error
         ("wheel_right_size", "f8"),
-        ("roll_left", "f8"),  # way of the wheel for one of the size that is told
+        ("roll_left", "f8"),  # real way of the wheel per metre by its told size
         ("roll_right", "f8"),
         ("track", "f8"),  # between the wheels
-        ("lidar_x", "f8"),  # where the lidar is beside where it should be, body's frame
+        ("lidar_x", "f8"),  # how far the lidar is off its place, body's frame
         ("lidar_y", "f8"),
         ("lidar_turn", "f8"),
         ("gyro_scale", "f8"),
         ("gyro_bias", "f8"),
-        ("varying_left", "f8"),  # what varies of the wheel's slip
+        ("varying_left", "f8"),  # the varying part of the wheel's slip
         ("varying_right", "f8"),
         # what is wrong with it, see Fault
         ("slip_left", "f8"),

@@ -118,7 +118,7 @@ def numbers_of(config: SimulatedRobotConfig) -> Rows:
 
 
 def charge_power(capacity: float, battery: SimulatedBattery) -> float:
-    """Return the power, W, that fills ``capacity`` Wh in ``charge_hours``, its end ever slower.
+    """Return the power, W, that fills ``capacity`` Wh in ``charge_hours``, ever slower at the end.
 
     From ``taper_from`` on the power falls evenly with the charge; that part takes
     ln(1 / taper_to) / (1 - taper_to) times as long as it would at full power.
