@@ -21,10 +21,10 @@ from roomba.geometry import Pose
 from roomba.vocabulary import FanLevel
 
 FASTEST_SPEED: Final = 3.0
-"""m/s; a speed above this is a slip of the finger, not a robot for a home."""
+"""m/s; a higher speed is taken for a typing mistake: no robot for a home is as fast."""
 Speed = Annotated[float, Field(ge=0.001, le=FASTEST_SPEED)]
 BinCapacity = Annotated[float, Field(ge=0.01, le=100_000.0)]
-"""g; with less each pass over a floor fills it."""
+"""g; a smaller bin would be filled by each pass over a floor."""
 Angles = Annotated[
     tuple[Annotated[float, Field(ge=-math.pi, le=math.pi)], ...], Field(min_length=1)
 ]
@@ -67,7 +67,7 @@ class BodyConfig(Frozen):
         return self.diameter / 2.0
 
     def pressed(self, left: bool, right: bool) -> tuple[float, float]:
-        """Return between which bearings of the rim something presses halves of the bumper, rad."""
+        """Return the least and greatest bearing, rad, at which something may press these halves."""
         if left and right:
             farthest = max(abs(angle) for angle in self.bumper_middle)
             return -farthest, farthest
@@ -142,7 +142,7 @@ class BatteryConfig(Frozen):
 
 
 class HealthConfig(Frozen):
-    """From when on a part is in need, as ``/diagnostics`` tells it: shares 0..1."""
+    """Limits beyond which ``/diagnostics`` tells that a part is in need: shares 0..1."""
 
     low_battery: Ratio = 0.10
     """Of the charge; with less the robot should go home."""
@@ -152,6 +152,6 @@ class HealthConfig(Frozen):
     """Degrees Celsius; lithium cells should not be charged much warmer."""
     full_bin: Ratio = 0.95
     most_misses: Ratio = 0.5
-    """Of the beams without a range; a home with walls explains no more."""
+    """Share of beams without a range; walls around the robot explain no larger one."""
 
     in_order: ClassVar[tuple[str, ...]] = ("empty_battery <= low_battery",)

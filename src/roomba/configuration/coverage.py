@@ -18,7 +18,7 @@ from roomba.configuration.frozen import (
 
 
 class CoverageConfig(Frozen):
-    """Where it is swept along, in which order, and what is left; lengths in cells of ``cell`` m."""
+    """How a plan sweeps, in which order, and what it leaves; lengths in cells of ``cell`` m."""
 
     cell: Annotated[float, Field(ge=0.005, le=0.05)] = 0.01
     """m; approximate side of the cells on which floor is counted: finer is exacter, and slower."""
@@ -39,7 +39,7 @@ class CoverageConfig(Frozen):
     swath_cost: NotNegative = 30.0
     """Cells of way that getting to another swath costs, when the rows are chosen."""
     swath_gap: Count = 30
-    """Cells; over swept floor that is narrower a swath goes on."""
+    """Cells; a swath goes on across swept floor that is narrower."""
     turning: NotNegative = 1.0
     """Cells of way that a radian costs in the order of edges and swaths."""
     polish_turning: NotNegative = 3.0
@@ -47,12 +47,12 @@ class CoverageConfig(Frozen):
     unswept: Positive = 1.0
     """Cells of way that a cell of floor is worth when the way is polished."""
     spare: Ratio = 0.0015
-    """Share of the floor that polishing may leave at most, and as much again that bends may."""
+    """Largest share of the floor that polishing may leave; bends may leave as much again."""
     bend_worth: NotNegative = 12.0
     """Cells of way that a sharp corner is worth: a bend in place of it costs no more."""
     bend_unswept: Positive = 10.0
     """Cells of way that a cell of floor is worth when corners become bends."""
     search_rounds: AtLeastOne = 5000
-    """Exchanges in the search for an order, after which it goes on only if they paid."""
+    """Exchanges after which the search for an order goes on only if they paid."""
     search_pays: Ratio = 0.005
     """Share of the cost that so many exchanges must gain, or the search ends."""

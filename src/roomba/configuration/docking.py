@@ -34,11 +34,11 @@ class DockingConfig(Frozen):
     speed: Speed = 0.2
     """While it is not near."""
     creep_speed: Speed = 0.05
-    """Over the last of the way: it stops within the contacts' tolerance, senses being late."""
+    """Over the last of the way: late senses still stop it within the contacts' tolerance."""
     feeling_speed: Speed = 0.02
     """Past the docked place, where the contacts should have touched: current may be told late."""
     creep_distance: Length = 0.08
-    """Of the way; as sure as the believed place and the halo's edge are."""
+    """Last part of the way; the believed place and the halo's edge may be off by so much."""
     braking: Positive = 0.8
     """1/s; how much faster it is for each metre that is left before it creeps."""
     turning_speed: TurningSpeed = 1.0
@@ -52,9 +52,9 @@ class DockingConfig(Frozen):
     contact_wait: Wait = 2.0
     """For the charging current after contact."""
     settle_time: Wait = 0.4
-    """The current must last so long before the robot is docked."""
+    """The current must last so long before the robot counts as docked."""
     nudge: Length = 0.05
-    """So far it creeps when it backs off: where it was pressed too far in, current comes."""
+    """Way that it first creeps when it backs off: current comes if it was pressed in too far."""
     back_distance: Length = 0.4
     back_turn: Ratio = 0.2
     """rad; it turns as it backs off, and so crosses the edge of the beams on the next try."""
@@ -63,13 +63,13 @@ class DockingConfig(Frozen):
 
     max_attempts: AtLeastOne = 4
     beam_wait: Wait = 0.5
-    """Without a beam it goes on for so long."""
+    """How long it goes on without a beam."""
     lost_timeout: Wait = 10.0
-    """Not knowing where it is and seeing no beam, it waits so long."""
+    """How long it waits while its place is not known and no beam is seen."""
     stuck_timeout: Wait = 3.0
-    """So long it may drive without moving."""
+    """How long it may drive without moving."""
     left_standing: Length = 0.2
-    """One that failed for want of beams and was moved farther does not try again by itself."""
+    """A robot that failed for want of beams waits for them until it is moved farther."""
     emptying_timeout: Wait = 5.0
     """For a station to begin to empty the bin."""
     time_limit: Wait = 150.0
@@ -79,7 +79,7 @@ class DockingConfig(Frozen):
     undocked_distance: Length = 0.25
     """From the station; a robot that is farther away is undocked already."""
     undocked_turn: Acute = 0.5
-    """rad; one whose nose is turned away from the station by more is so, too: nothing holds it."""
+    """rad; a robot turned away from the station by more is undocked, too: nothing holds it."""
     undock_time_limit: Wait = 10.0
 
     place_tolerance: Length = 0.08
@@ -97,7 +97,7 @@ class DockingConfig(Frozen):
     shortest_way: Length = 0.2
     """With less way left it cannot get straight any more."""
     side_step: Length = 0.15
-    """So far it backs off from what it meets while it looks for beams."""
+    """How far it backs off from what it meets while it looks for beams."""
     standstill_way: Length = 0.02
     """A robot that moved less stands still."""
     standstill_turn: Angle = 0.1
@@ -105,9 +105,9 @@ class DockingConfig(Frozen):
     longest_step: Length = 0.3
     """A larger change of the believed place in a tick is a new belief."""
     farthest_off: Length = 0.5
-    """Beams that say that the belief is wrong by more are of another place, or another time."""
+    """If beams say that the belief is wrong by more, they are from another place or time."""
     heading_doubt: Angle = 0.1
-    """rad; possible error of the heading: a robot that long sees one beam alone is farther
-    aside."""
+    """rad; possible error of the heading: the longer a robot sees one beam alone, the farther aside
+    it is."""
     late_beams: Wait = 0.3
     """s; after a new belief, beams may still be those that were seen before it."""

@@ -27,7 +27,7 @@ from roomba.files.strict_yaml import repeated_key
 _LARGEST: Final = 1e9
 
 Positive = Annotated[float, Field(ge=1.0 / _LARGEST, le=_LARGEST)]
-"""What has no type of its own: areas, gains, worths."""
+"""Positive numbers that have no type of their own: areas, gains, worths."""
 NotNegative = Annotated[float, Field(ge=0.0, le=_LARGEST)]
 Ratio = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 Degrees = Annotated[float, Field(ge=-180.0, le=180.0)]
@@ -37,8 +37,8 @@ Length = Annotated[float, Field(ge=1e-9, le=10_000.0)]
 Clearance = Annotated[float, Field(ge=1e-4, le=1.0)]
 """m; between the body and what stands: a home has no more room."""
 ShortWay = Annotated[float, Field(ge=1e-4, le=1.0)]
-"""m of a path, around one place of it: a longer one reaches across a room, so that what stands
-anywhere in it is in the way, and bends are no more where they were planned."""
+"""m of a path, around one place of it: a longer one would reach across a room: things anywhere
+in it would be in the way, and bends would not be where they were planned."""
 Side = Annotated[float, Field(ge=0.01, le=2.0)]
 """m; of the robot and its parts."""
 Cell = Annotated[float, Field(ge=0.01, le=0.5)]
@@ -48,7 +48,7 @@ Duration = Annotated[float, Field(ge=0.001, le=86_400.0)]
 Wait = Annotated[float, Field(ge=0.001, le=600.0)]
 """s that the robot may stand still for."""
 Patience = Annotated[float, Field(ge=1.0, le=86_400.0)]
-"""s; in less a robot that speeds up comes no farther, and would count as held."""
+"""s; in less time a robot that speeds up makes no progress, and would count as held."""
 WaitOrNone = Annotated[float, Field(ge=0.0, le=600.0)]
 Period = Annotated[float, Field(ge=0.001, le=10.0)]
 """s; of what is done again and again."""
@@ -68,9 +68,9 @@ _Model = TypeVar("_Model", bound=BaseModel)
 
 
 class Frozen(BaseModel):
-    """A part of a configuration: what it does not know it refuses.
+    """A part of a configuration; it refuses keys that it does not know.
 
-    ``in_order`` has relations that its fields must keep, such as ``low <= middle < high``.
+    ``in_order`` lists relations that its fields must keep, such as ``low <= middle < high``.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
@@ -143,7 +143,7 @@ def validated(
 
 
 def truths_as_numbers(raw: Any, made: Any, name: str = "") -> Iterator[str]:
-    """Yield what is wrong with numbers that were ``made`` of truths: pydantic takes them so."""
+    """Yield a fault for each number that pydantic ``made`` of a truth value, which it permits."""
     if isinstance(raw, bool) and isinstance(made, int | float) and not isinstance(made, bool):
         got = "true, which yes and on are too" if raw else "false, which no and off are too"
         yield f"{name}: expected a number, got {got}"

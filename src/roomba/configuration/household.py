@@ -13,7 +13,7 @@ class UpkeepConfig(Frozen):
     filter: Positive = 150.0
     sensors: Positive = 30.0
     bin: Positive = 10.0
-    """At most; one that fills sooner is due sooner."""
+    """At most; a bin that fills sooner is due sooner."""
     soon: Ratio = 0.1
     """Share of a part's time that is left when it is told that it is due soon."""
 
@@ -26,38 +26,38 @@ class PlansConfig(Frozen):
     retry_after: Duration = 1800.0
     """Before a clean that ended too early is tried again."""
     most_tries: AtLeastOne = 3
-    """Of the same time of a plan."""
+    """Tries of one time of a plan."""
     longest_pause: Duration = 1800.0
     """On the floor while a person is at home; then the robot goes home to its station."""
     on_time: Duration = 120.0
-    """What begins later than this was missed."""
+    """A clean that begins later than this after its plan's time was missed."""
 
 
 class DueConfig(Frozen):
     """Which rooms are due by their dirt: shares 0..1, days."""
 
     least_share: Ratio = 0.8
-    """Of a room that was swept, with which it counts as cleaned."""
+    """Share of a room that must be swept for the room to count as cleaned."""
     learning: Ratio = 0.4
     """Weight of the newest clean in how fast a room becomes dirty."""
     shortest: Positive = 0.2
-    """Between two cleans of a room of which the second tells how fast it becomes dirty."""
+    """Least time between two cleans of a room for the second to tell how fast it becomes dirty."""
     longest: Positive = 7.0
-    """Between two cleans of any room."""
+    """Longest time between two cleans of any room."""
     spare: Ratio = 0.2
-    """By so much a room may be told to become dirtier than the dirtiest one does between two times:
-    of that the sensor counts too few grains."""
+    """Share by which a room may become dirtier than the dirtiest room does between two times of a
+    plan: of the dirtiest room the sensor counts too few grains."""
 
 
 class EmptyingConfig(Frozen):
     """When a station that empties the bin is let do so on its own."""
 
     least: Positive = 1.0
-    """g; with less it is not worth the noise."""
+    """g; with less in the bin, emptying it is not worth the noise."""
     level: Ratio = 0.7
-    """Of what the bin takes, after a run, if it is emptied by level."""
+    """Share of the bin's capacity with which it is emptied after a run, if by level."""
     nearly_full: Ratio = 0.9
-    """Of the station's bag, from which on it is told that an empty one is wanted."""
+    """Share of the station's bag from which on the owner is told that an empty bag is wanted."""
 
 
 class HouseholdConfig(Frozen):

@@ -30,10 +30,10 @@ class ReckoningConfig(Frozen):
     jolt: NotNegative = 0.05
     """Tolerance of a step that seems faster than any robot: its time is not exact."""
     longest_step: Duration = 1.0
-    """Between two samples over which the gyro is integrated."""
+    """The longest time between two samples over which the gyro is integrated."""
     same_way: Length = 1.0
     same_turn: Angle = 1.0
-    """Motion after which the map's errors of what is seen are others than before."""
+    """Motion after which the robot sees other parts of the map, with other errors."""
 
 
 class FitConfig(Frozen):
@@ -47,7 +47,7 @@ class FitConfig(Frozen):
     """The same of a pose with more evidence than a report. On its station a robot has 0.98 and 0.02
     or better on the map of its home, and at most 0.57 on those of 15 other homes."""
     told_agree: Ratio = 0.5
-    """With this a pose that was told is gone by until the comparison is done."""
+    """With this the robot goes by a pose that was told until the comparison is done."""
     doubt_worse: Ratio = 0.45
     doubt_through: Ratio = 0.15
     """A pose that fits worse than usual by so much is doubted."""
@@ -55,10 +55,10 @@ class FitConfig(Frozen):
     """A pose with less than this is doubted, even where less is usual."""
     near_worse: Ratio = 0.2
     near_through: Ratio = 0.06
-    """Worse than usual by so much at most at a place that is found near by."""
+    """At a place that is found near by, a scan fits worse than usual by so much at most."""
     found_agree: Ratio = 0.7
     found_through: Ratio = 0.15
-    """The least and the most of a place that is found on the whole map."""
+    """The least ``agree`` and the most ``through`` of a place that is found on the whole map."""
     carried_agree: Ratio = 0.75
     carried_through: Ratio = 0.08
     """The same of a place where the robot is not expected: it was carried there unnoticed."""
@@ -76,15 +76,15 @@ class ExpectingConfig(Frozen):
 
     told_radius: Length = 0.5
     told_turn: HalfTurn = 0.5
-    """So near to a pose that was told the robot is expected."""
+    """The robot is expected as near as this to a pose that was told."""
     here_radius: Length = 0.04
     here_turn: HalfTurn = 0.04
-    """So near to a pose that was known the robot is expected."""
+    """The robot is expected as near as this to a pose that was known."""
     drift: NotNegative = 0.01
     """Both ranges grow by so much for each s of a search, as dead reckoning errs."""
     here_evidence: NotNegative = 14.0
-    """For where it is expected, beside what believing a place needs: it stays unless another one is
-    likelier."""
+    """Evidence for where the robot is expected, beside what believing a place needs: it stays there
+    unless another place is likelier."""
     still_evidence: NotNegative = 60.0
     """The same of a robot that sees what it saw before: it was not carried."""
 
@@ -93,7 +93,7 @@ class SearchingConfig(Frozen):
     """Looking for the robot, near by and on the whole map: m, rad, s; evidence is a logarithm."""
 
     wait_before_moving: WaitOrNone = 0.5
-    """For a scan that tells places apart, before it moves to get one."""
+    """How long it waits for a scan that tells places apart, before it moves to get one."""
     again_after: WaitOrNone = 1.0
     """s after which a search that found nothing is tried anew."""
     compare_after: WaitOrNone = 1.0
@@ -127,7 +127,7 @@ class RecentSightConfig(Frozen):
     least_same: Ratio = 0.4
     """Share of all beams that must end where something was seen."""
     most_other: Ratio = 0.2
-    """Share, of these and those that end where nothing was, that the latter may have."""
+    """Of beams that end where something or nothing was seen: the largest share of the latter."""
 
     in_order: ClassVar[tuple[str, ...]] = ("newest < oldest",)
 
@@ -139,8 +139,8 @@ class CalibrationConfig(Frozen):
     and of the gyro, shares; ``drift`` of the heading by unequal wheels, rad/m; the lidar's
     ``shift``, m, and ``turn``, degrees. What is off by less than ``least_...``, in the same units,
     is left alone. A correction is applied when it is ``sure`` times as large as its deviation.
-    Measured is over ``window_way``, m, or ``window_turn``, rad, as soon as either is driven. After
-    ``forgetting_way``, m, what was measured counts no more than what was expected. In
+    It is measured over ``window_way``, m, or ``window_turn``, rad, as soon as either is driven.
+    After ``forgetting_way``, m, what was measured counts no more than what was expected. In
     ``bias_time``, s, the gyro's bias may change by as much as it is unsure at the start.
     """
 

@@ -47,7 +47,7 @@ class WalkConfig(Frozen):
     careful_speed: Speed = 0.15
     astray_timeout: Duration = 60.0
     search_wait: Duration = 2.0
-    """s; so long a robot that stood lost waits, told to drive, for a search to begin anew."""
+    """s; how long a robot that stood lost and is told to drive waits for a search to begin anew."""
     arrival_tolerance: Length = 0.03
     bump_radius: Length = 0.06
     progress_timeout: Patience = 6.0
@@ -65,8 +65,8 @@ class WalkConfig(Frozen):
     """s; one wheel may hang in the air for so long, as at a sill, until an errand fails; when both
     do it fails at once."""
     tipping: Duration = 1.0
-    """s; where the floor ended so shortly before both wheels hang is no edge: the robot was picked
-    up nose first. Cleans use it, too."""
+    """s; if the floor ended so shortly before both wheels hang, that was no edge: the robot was
+    picked up nose first. Cleans use it, too."""
     least_progress: Length = 0.05
     """m; coming nearer to the goal by less is no progress."""
     least_turn: Angle = 0.2
@@ -76,7 +76,7 @@ class WalkConfig(Frozen):
     sharp_corner: Acute = 0.3
     """rad; at a sharper corner the setpoint waits for the robot; softer ones are cut."""
     corner_cut: Length = 0.005
-    """m; by so much the straight way to the setpoint leaves the path at most."""
+    """m; the straight way to the setpoint leaves the path by this at most."""
     corner_reached: Length = 0.04
     """m; the setpoint goes on when the robot is as near to a sharp corner."""
     braking: Acceleration = 0.4
@@ -103,7 +103,7 @@ class LookingAroundConfig(Frozen):
     shortest_leg: Length = 0.15
     """Shorter legs are driven only where there is no longer one."""
     arrival_tolerance: Length = 0.02
-    """So near to where it goes, or to what is in its way, a leg has ended."""
+    """A leg ends as near as this to its goal, or to what is in the way."""
     aimed: Angle = 0.08
     """Tolerance of the heading before it drives."""
 
@@ -119,7 +119,7 @@ class TrackingConfig(Frozen):
     sharp_corner: Acute = 0.5
     """Sharper corners of a path are turned on the spot."""
     off_corner: Length = 0.002
-    """m; by so much the curve that rounds off a path leaves it at most."""
+    """m; the curve that rounds off a path leaves the path by this at most."""
     braking: Acceleration = 1.8
     reach: Length = 0.06
     """Length of path over which a slow robot corrects an offset to the side."""
@@ -140,7 +140,7 @@ class TrackingConfig(Frozen):
     longest_blend: ShortWay = 0.05
     """m; each point of the curve is a mean over at most this way to each side."""
     aimed: Angle = 0.02
-    """rad; what is left of a turn on the spot as it begins to drive."""
+    """rad; what is left of a turn on the spot when the robot begins to drive."""
     arrival_tolerance: Length = 0.003
     turn_in_place_angle: Acute = 0.6
     """rad; with a larger error of the heading it turns on the spot first."""

@@ -35,21 +35,21 @@ class MapChangesConfig(Frozen):
     sure: Annotated[int, Field(ge=1, le=5)] = 4
     """Looks that show a change of a cell, minus those that show none, for the change to count."""
     blur: Length = 0.12
-    """Nearer to what stands as mapped a cell tells no change."""
+    """A cell that is nearer to what stands as mapped tells no change."""
     least_area: Positive = 0.06
     """A change with less area, and with less extent than ``least_length``, is no furniture."""
     least_length: Length = 0.4
     behind: Length = 0.8
     """Depth of unknown cells behind vanished furniture that become known."""
     movable: Length = 0.7
-    """What is no larger is moved about by people; a chair that was moved is no change."""
+    """People move things about that are no larger; a chair that was moved is no change."""
     moved: Length = 1.0
-    """So far a thing is moved at most; farther off another one appeared."""
+    """The farthest that a thing counts as moved; farther off, another thing appeared."""
     new_way: Length = 0.05
     new_turn: Angle = 0.2
     """m, rad; a scan from nearer to the last one says nothing new."""
     least_beams: AtLeastOne = 2
-    """In a cell, for a look to count there."""
+    """Beams in a cell, for a look to count there."""
     solid_share: Ratio = 0.25
     """Share of a cell's beams that must end in it: with noise many end in the next cell."""
     open_share: Ratio = 0.1
@@ -65,7 +65,7 @@ class FloorsConfig(Frozen):
     station_turn: Angle = 0.3
     """Around its station, where a robot is expected to wake."""
     station_evidence: NotNegative = 6.0
-    """For that; less than believing a place needs, so that it never decides alone."""
+    """Evidence for such a place; less than believing it needs, so that it never decides alone."""
     new_evidence: Annotated[float, Field(le=0.0, allow_inf_nan=False)] = -0.11
     """Of each beam, for a floor that is new: as if 7 of 10 beams agreed with a map and 3 did not at
     all. In homes that are known, with noise, a beam has -0.001 to -0.013; with some furniture
@@ -86,12 +86,12 @@ class FollowingConfig(Frozen):
 
     least_points: AtLeastOne = 30
     fewest_points: AtLeastOne = 10
-    """Of a scan that counts: a quarter of the beams, but no fewer than these, no more than those.
-    """
+    """Points of a scan that counts: a quarter of the beams, but at least ``fewest_points``; never
+    more than ``least_points`` are needed."""
     many_misses: AtLeastOne = 5
     """Scans without a match, after which the next is matched from farther away."""
     doubtful: Ratio = 0.85
-    """Of the usual agreement; a scan that agrees less is searched for around the robot."""
+    """Share of the usual agreement; a scan that agrees less is searched for around the robot."""
     searched_way: Window = 0.5
     searched_turn: Angle = 0.8
     """The window to each side, before anything was driven unconfirmed."""
@@ -100,23 +100,23 @@ class FollowingConfig(Frozen):
     searched_farthest: Annotated[float, Field(ge=0.0, le=50.0)] = 4.0
     """The most by which the window grows for what it drives unconfirmed at its pace."""
     pace_fades: Duration = 10.0
-    """After so long the fastest pace counts a third."""
+    """s after which the fastest pace counts a third."""
     likelihood: Ratio = 0.5
-    """Mean of points, from which a pose is looked at closely."""
+    """Mean likelihood of points from which a pose is looked at closely."""
     far_apart: Length = 0.5
-    """Scans that are so far apart show much that none before them did."""
+    """Scans so far apart show much that no scan before them showed."""
     likelihood_apart: Ratio = 0.3
     """The same mean between such scans, up to half as far off as wheels may have slipped."""
     better: Annotated[float, Field(ge=1.0, le=10.0)] = 1.2
-    """Times that a place found must agree better than the one that is thought to be right."""
+    """Factor by which a found place must agree better than the one that is thought to be right."""
     leap_way: Length = 0.5
     leap_turn: Angle = 0.35
     """A place that is farther off than this and ``searched_share`` of what was driven and turned
     unconfirmed is of a piece of its own, until more than one scan shows it."""
     carried_way: Length = 0.3
     carried_turn: Angle = 0.3
-    """From a scan that fitted to one that does not; after less the robot was carried: what it saw
-    before must be in sight still."""
+    """From a scan that fitted to one that does not: if less was driven and turned, the robot was
+    carried, since what it saw before must still be in sight."""
     given_up_after: AtLeastOne = 7
     """Scans that show enough and confirm nothing, before the map goes on in a piece of its own."""
     piece_way: NotNegative = 0.6
@@ -129,7 +129,7 @@ class FollowingConfig(Frozen):
     sure_heading: Angle = 0.005
     unsure_deviation: Length = 0.1
     unsure_heading: Angle = 0.05
-    """What is told of the pose, against what was seen just now, with a match and without one."""
+    """Standard deviations that are told of the pose: with a match of the scan, and without one."""
 
     in_order: ClassVar[tuple[str, ...]] = ("fewest_points <= least_points",)
 
@@ -151,7 +151,8 @@ class WindowsConfig(Frozen):
     """rad, and rad/m of the window; how much submaps may be turned, the second at most this."""
     most_far: Count = 6
     far_apart: AtLeastOne = 3
-    """Of submaps that are near only if much is wrong so many are looked at, so many apart."""
+    """Of submaps that are near only if much is wrong, at most ``most_far`` are looked at, whose
+    numbers are at least ``far_apart`` apart."""
     likely: Ratio = 0.45
     """Mean likelihood of points from which a pose of a wide window is looked at closely."""
     hardly: Length = 0.3
@@ -165,10 +166,10 @@ class BackingConfig(Frozen):
 
     far: Length = 2.0
     neighbours: AtLeastOne = 3
-    """Submaps; the other loop is of one that is so few away."""
+    """Submaps; the other loop must belong to a submap at most so many away."""
     same_place: Length = 0.4
     same_heading: Angle = 0.08
-    """Two loops agree that place a submap so nearly alike."""
+    """Two loops agree if they place a submap as nearly alike as this."""
 
 
 class PiecesConfig(Frozen):
@@ -192,9 +193,9 @@ class PartsConfig(Frozen):
     keyframes: AtLeastOne = 5
     """The fewest keyframes of a sample."""
     backed: AtLeastOne = 3
-    """The fewest samples that must be found where the part lies then."""
+    """The fewest samples that must agree on where the part lies."""
     clearer: Annotated[float, Field(ge=1.0, le=10.0)] = 2.0
-    """There this many times as many must be found as elsewhere."""
+    """So many times as many samples must be found there as at any other place."""
     seen_through: Ratio = 0.05
     """Share of a part's beams that go through surfaces seen before: with more it does not lie where
     it is thought to lie, and its robot was carried."""
@@ -208,9 +209,9 @@ class RelocationConfig(Frozen):
     window: Window = 3.0
     """Around each submap's beginning."""
     likelihood: Ratio = 0.85
-    """Mean of points, that a place must have."""
+    """Mean likelihood of points that a place must have."""
     clearly: Ratio = 0.85
-    """Of the best place's likelihood, that others may have."""
+    """Share of the best place's likelihood that other places may have."""
     elsewhere_way: Length = 0.5
     elsewhere_turn: Angle = 0.3
     """Poses that are farther apart are of two places."""
@@ -219,16 +220,16 @@ class RelocationConfig(Frozen):
     """Driven or turned between two scans that are searched for."""
     same_place: Length = 0.2
     same_heading: Angle = 0.1
-    """Two scans agree that were found so near to where they lie to each other."""
+    """Two scans agree if they are found as near as this to where they lie to each other."""
 
 
 class OpenWaysConfig(Frozen):
     """Floor that beams without an echo show to be free: m."""
 
     farthest: Length = 1.0
-    """From the lidar: so near it sees black things as well."""
+    """From the lidar: within this it sees black things as well."""
     margin: Length = 0.1
-    """So much nearer than what the beams beside them met."""
+    """By how much nearer than what the beams beside them met."""
 
 
 class MappingConfig(Frozen):
@@ -255,7 +256,7 @@ class MappingConfig(Frozen):
     """m2; smaller patches of free cells, cut off from the others, lie behind surfaces."""
     redrawn_shift: Positive = 0.01
     farthest: Length = 30.0
-    """What is farther is drawn, but nothing is matched to it."""
+    """Points that are farther are drawn, but nothing is matched to them."""
     spare: Length = 4.0
     """The farthest that a robot gets from the beginning of a submap."""
     search_reach: Length = 12.0

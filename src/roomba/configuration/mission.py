@@ -59,9 +59,9 @@ class GivingWayConfig(Frozen):
     """Making room for a person who waits for the robot to go: m."""
 
     beside: Length = 1.2
-    """What stands nearer to the robot may want to pass."""
+    """A person or thing nearer to the robot than this may want to pass."""
     room: Length = 1.2
-    """The distance to it at which the robot goes no farther aside."""
+    """The distance to that person or thing at which the robot goes no farther aside."""
     least_room: Length = 0.5
     """The least distance that lets others pass; with less the robot stays."""
     per_way: NotNegative = 0.25
@@ -183,15 +183,15 @@ class CleaningConfig(Frozen):
     usual_floor: Positive = 4.0
     """m2; with less of it swept it is not known how dirty floor usually is."""
     usual_period: Duration = 30.0
-    """s; so often that is measured for looks close by."""
+    """s; from one measurement of that, for looks close by, to the next."""
     little_gain: Ratio = 0.05
     """Share of what was missed; a round that gains less of it ends the retries."""
     least_area_to_retry: Positive = 0.5
     """m2; smaller floor out of reach is not tried again."""
     least_for_round: Positive = 0.02
-    """m2; a patch as large as this is worth another round, though ``enough`` is clean."""
+    """m2; a patch as large as this is worth another round, even if ``enough`` is clean."""
     worth_way: Positive = 100.0
-    """m of way for each m2; a round that takes more is not driven though ``enough`` is clean, and a
+    """m of way for each m2; once ``enough`` is clean, a round that takes more is not driven, and a
     new plan leaves slivers that take more: polishing a plan leaves floor by the same measure."""
     worth_way_to_enough: Positive = 500.0
     """The same of a round while less than ``enough`` is clean."""
@@ -223,7 +223,7 @@ class ExploringConfig(Frozen):
     """rad/s; where the map shows no way, it turns once to see more: scans should be as sharp."""
     clearance: Clearance = 0.12
     careful_clearance: Clearance = 0.025
-    """m; kept wherever any way does: the map may have a surface 0.4 of a cell too far back."""
+    """m; kept wherever a way can keep it: the map may have a surface 0.4 of a cell too far back."""
     tight_clearance: Clearance = 0.005
     cleaning_clearance: Clearance = 0.015
     """The same as ``driving.clearance``, for a clean while the map is being made."""
@@ -245,7 +245,7 @@ class ExploringConfig(Frozen):
     """m; a shorter frontier comes later: it costs ``small_cost``, m of way, more."""
     small_cost: NotNegative = 1.0
     open_edge: Length = 0.7
-    """m; from this length on, hardly a doorway's, a frontier that stays unseen is told."""
+    """m; a frontier that stays unseen is told if it is at least as long: hardly a doorway."""
     tight_cost: NotNegative = 0.5
     """m of way that a viewpoint nearer to walls than ``clearance`` costs more."""
     least_cells: AtLeastOne = 3
@@ -257,7 +257,7 @@ class ExploringConfig(Frozen):
     most_returns: Annotated[int, Field(ge=0, le=100)] = 3
     """Times that a frontier may come back where one vanished, as glass and mirrors make it do."""
     patience: Duration = 120.0
-    """s; a frontier that it has not come to by then, and twice its way's time, is given up."""
+    """s; a frontier is given up if it is not reached within this plus twice the time of the way."""
     map_wait: Duration = 120.0
     """s; how long a clean waits for the whole map when all is seen."""
 
@@ -281,9 +281,9 @@ class EnergyConfig(Frozen):
     ample: Ratio = 0.35
     """With so much of the capacity besides the reserve no way home is too far in most homes."""
     least_gain: Positive = 0.05
-    """m2; a charge that brings a job less brings it nothing."""
+    """m2; a charge after which a job gains less floor counts as in vain."""
     most_in_vain: AtLeastOne = 2
-    """Charges one after the other; what is left is too far from the station then."""
+    """Charges in vain in a row, after which the rest counts as too far from the station."""
 
     in_order: ClassVar[tuple[str, ...]] = ("reserve < full_enough",)
 
@@ -295,13 +295,13 @@ class BinConfig(Frozen):
     nearly_full: Ratio = 0.80
     silent: Duration = 2.0
     least_grains: Positive = 1.0
-    """Grains/s; with fewer none comes in."""
+    """Grains/s; with fewer, none counts as coming in."""
     fading_way: Length = 0.6
     """m; driven while the dirt sensor's rate fades away after the last grain."""
     dusty: Positive = 500.0
-    """Grains/m2; where less is usual floor without a grain tells nothing."""
+    """Grains/m2; where fewer are usual, floor without a grain tells nothing."""
     emptied: Ratio = 0.5
-    """Times the level at which it was full; below that it was emptied."""
+    """Share of the level at which the bin was full; below that it was emptied."""
 
 
 class MissionConfig(Frozen):
@@ -344,7 +344,7 @@ class MissionConfig(Frozen):
 def load_mission_config(path: Path, body: BodyConfig) -> MissionConfig:
     """Read ``configuration/mission.yaml`` or a file like it; raises ConfigError with the reason.
 
-    One of them is a speed that the ``body`` cannot do.
+    A speed that the ``body`` cannot do is such a reason.
     """
     config = load_config(MissionConfig, path)
     try:

@@ -27,7 +27,7 @@ Unsure = tuple[Positive, Positive]
 
 
 class HearingConfig(Frozen):
-    """When the place is not told any more; both, as a fast clock runs on while all nodes work."""
+    """When the pose is no longer told: after both, as a fast clock runs on while all nodes work."""
 
     oldest_pose: Duration = 0.5
     """s of the robot's clock; the newest pose still counts until it is older than this."""
@@ -36,10 +36,10 @@ class HearingConfig(Frozen):
 
 
 class DeadlinesConfig(Frozen):
-    """How long is waited for others: s of wall time."""
+    """How long a node waits for others: s of wall time."""
 
     senses: Duration = 6.0
-    """Then goals are taken, and rejected, though map, pose or senses are not there."""
+    """After this, goals are taken, and rejected, even if map, pose or senses are missing."""
     answer: Duration = 5.0
     """For the tick that answers a service; a long plan may hold one up."""
     mapping: Duration = 3.0
@@ -49,9 +49,9 @@ class DeadlinesConfig(Frozen):
     floor: Duration = 20.0
     """s of the robot's clock; a floor that was not recognised by then is a new one."""
     ending: Duration = 2.5
-    """s of the robot's clock; so long a cancelled walk, or looking around, may still drive."""
+    """s of the robot's clock; how long a cancelled walk, or look around, may still drive."""
     emptying: Duration = 0.5
-    """s of the robot's clock; so long a simulated station empties the bin without being told to."""
+    """s of the robot's clock; how long a simulated station goes on emptying untold."""
 
 
 class WalkEndConfig(Frozen):
@@ -112,10 +112,10 @@ class MemoryConfig(Frozen):
     map_wall_per_byte: Positive = 1e-6
     """s of wall time between two such writings for each byte: 1 MB/s is enough for any disk."""
     most_taken_up: AtLeastOne = 5
-    """What a node ended with so often, each time within ``goes_well``, is dropped: it may be the
-    reason."""
+    """Kept state with which a node ended so often, each time within ``goes_well``, is dropped: it
+    may be the cause."""
     goes_well: Duration = 20.0
-    """s of wall time after which what was taken up is no danger."""
+    """s of wall time after which kept state that was taken up counts as harmless."""
     free_space: Bytes = 2e6
     """Bytes; with less on the disk of the errand it is told that the disk is full."""
     free_space_period: Duration = 1.0
@@ -141,9 +141,9 @@ class PaceConfig(Frozen):
     latest: Duration = 0.5
     """Farther behind, the simulation goes on slower than asked for."""
     most_behind: Duration = 0.07
-    """s of the robot's clock; a robot that thinks of longer ago is waited for. One that keeps up is
-    a tick behind at most. So much later than promised a robot may stand; at 0.3 s a turn on the
-    spot ends no more: it swings to and fro."""
+    """s of the robot's clock; the simulation waits for a robot that is farther behind. A robot that
+    keeps up is a tick behind at most. A robot may stand so much later than promised; with 0.3 s a
+    turn on the spot would not end: the robot would swing to and fro."""
     longest_hold: Duration = 2.0
     """A node that is silent for longer is not waited for any more."""
     longest_absence: Duration = 60.0
@@ -164,14 +164,14 @@ class PicturesConfig(Frozen):
 
 
 class SupervisionConfig(Frozen):
-    """When a process of the robot is told of, ended, started anew or given up: s of wall time."""
+    """When a process of the robot is reported, ended, started anew or given up: s of wall time."""
 
     busy: Duration = 2.0
-    """A node whose last sign of life is older is told of: it hangs, or works for long."""
+    """A node whose last sign of life is older is reported: it hangs, or works for long."""
     hung: Duration = 20.0
-    """It is ended and started anew: a plan over a large home takes some seconds."""
+    """A node silent for longer is ended and started anew: plans of large homes take seconds."""
     stopped: Duration = 2.0
-    """So is a process that was stopped for so long, by a signal or a debugger."""
+    """So is a process that a signal or a debugger has stopped for so long."""
     back_after: Duration = 0.2
     """From the end of a process until it is started anew."""
     short_life: Duration = 20.0

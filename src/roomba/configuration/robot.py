@@ -39,9 +39,9 @@ from roomba.configuration.sensors import (
 )
 
 UNKNOWN: Final = "unknown; what is true of the simulated robot alone stands under simulation:"
-"""What is said of a key that the robot's file does not have."""
+"""What is said of a key that a robot's file must not have."""
 STANDSTILL_WITHIN: Final = 0.5
-"""s; the robot stands so soon after its commands end, for any reason."""
+"""s; the robot must stand within this after its commands end, for any reason."""
 
 
 class TimingConfig(Frozen):

@@ -25,9 +25,9 @@ from roomba.configuration.frozen import (
 from roomba.errors import ConfigError
 
 LIDARS: Final = Path(__file__).resolve().parent.parent / "data" / "configuration" / "lidars"
-"""A YAML file for each."""
+"""The folder with a YAML file for each lidar."""
 EXACT_LIDAR: Final = "ideal_12m"
-"""The one for figures that must not stand on a lidar: exact but for some mm, all beams at once."""
+"""The lidar for figures that must not depend on one: exact to some mm, all beams at once."""
 LIDAR: Final = "lidar"
 """The part of a robot's file, of a lidar's file and of the simulation that is the lidar's."""
 Range = Annotated[float, Field(ge=1e-6, le=1000.0)]
@@ -41,10 +41,10 @@ SIMULATION: Final = "simulation"
 class LidarConfig(Frozen):
     """The lidar: beams evenly spaced, counter-clockwise; ranges in m, times in s.
 
-    One that looks all around, ``field`` 360 degrees, has beam 0 ahead; another one's middle is
-    ahead. It takes ``sweep_time`` from its first beam to where a next one would be; with 0 all are
-    measured at once. It sits ``mount_ahead`` of the middle between the wheels. ``model`` is the
-    file of ``data/configuration/lidars`` whose numbers stand for what is not given.
+    With a ``field`` of 360 degrees beam 0 points ahead, with a smaller one the middle of the field
+    does. The lidar takes ``sweep_time`` from its first beam to where a next one would be; with 0
+    all are measured at once. It sits ``mount_ahead`` of the middle between the wheels. ``model`` is
+    the file of ``data/configuration/lidars`` whose numbers stand for what is not given.
     """
 
     model: str = "lds_02"
@@ -111,7 +111,7 @@ class CliffConfig(Frozen):
 class StationConfig(Frozen):
     """What the charging station sends out: a halo, and two beams that overlap; m and degrees.
 
-    One that sends out nothing is found by its place on the map alone.
+    A station that sends out nothing is found by its place on the map alone.
     """
 
     has_beams: bool = True
@@ -151,7 +151,7 @@ def lidar_models() -> list[str]:
 
 
 def lidar_file(model: object) -> dict[str, dict[str, Any]]:
-    """Return both parts of a lidar's file; raises ConfigError for a model that there is not."""
+    """Return both parts of a lidar's file; raises ConfigError for an unknown model."""
     if model not in lidar_models():
         raise ConfigError(
             f"lidar.model: expected one of {', '.join(lidar_models())}, got {model!r}"

@@ -90,14 +90,14 @@ class SimulatedLidar(Frozen):
         Standard deviation of a range r that meets a surface squarely: m, and m for r = 1 m; it is
         noise + noise_growth r^2, as of a lidar that triangulates.
     ``grazing_noise``
-        By how much of it that grows with 1 / cos(angle to the normal) - 1.
+        Share by which that deviation grows per unit of 1 / cos(angle to the normal) - 1.
     ``misses``
         Share of the beams that have no range, near or far.
     ``range_step``, ``angle_rounding``
-        Ranges are rounded to such steps, m; a beam points so much, degrees in all, beside the angle
-        that is told.
+        Ranges are rounded to such steps, m; a beam points up to half of so much, degrees, to either
+        side of the angle that is told.
     ``spot``
-        Width of a beam, degrees: at an edge it has a range between two.
+        Width of a beam, degrees: at an edge its range lies between those of both sides.
     ``white_reach``
         How far white paint is seen, m, if met squarely; others by reflectivity and angle; 0: all.
     ``dark``, ``shiny``
@@ -156,9 +156,10 @@ class SimulatedWear(Frozen):
     """By how much worn parts are off at most, either way; a seed draws evenly within that.
 
     ``wheel`` and ``base`` are shares of each wheel's radius and of the distance between both,
-    ``gyro`` one of what it tells; the lidar sits up to ``lidar_shift``, m, along either axis and
-    ``lidar_turn``, degrees, off. ``carpet_pull`` is how far carpets carry the robot along their
-    pile, m for each metre that its wheels roll there; all of a home have theirs alike.
+    ``gyro`` a share of what the gyro tells; the lidar sits up to ``lidar_shift``, m, along either
+    axis and ``lidar_turn``, degrees, off. ``carpet_pull`` is how far carpets carry the robot along
+    their pile, m for each metre that its wheels roll there; the pile of all carpets of a home lies
+    alike.
     """
 
     wheel: Annotated[float, Field(ge=0.0, le=0.1)] = 0.02
@@ -170,14 +171,14 @@ class SimulatedWear(Frozen):
 
 
 class SimulatedStation(Frozen):
-    """Within what of the docked pose the contacts touch: m and degrees."""
+    """How near to the docked pose the contacts touch, m and degrees; and how the bin is emptied."""
 
     position_tolerance: Length = 0.015
     angle_tolerance: Positive = 8.0
     emptying_time: Wait = 8.0
-    """s; that one which empties the bin takes."""
+    """s; how long a station that empties the bin takes for that."""
     emptying_noise: NotNegative = 76.0
-    """dB(A), 1 m away, meanwhile."""
+    """dB(A) at 1 m, while it empties the bin."""
     bag: Positive = 2500.0
     """g; what its bag takes."""
 
@@ -261,7 +262,7 @@ class SimulatedRobotConfig(RobotConfig):
         return self.model_copy(update={"station": station})
 
     def with_lidar(self, model: str) -> SimulatedRobotConfig:
-        """Return the same robot with a lidar as sold, mounted as high; ConfigError for others."""
+        """Return the same robot with a lidar as sold, mounted as high; ConfigError if unknown."""
         found = lidar_file(model)
         mount = {"mount_height": self.lidar.mount_height, "mount_ahead": self.lidar.mount_ahead}
         known = {**found[LIDAR], "model": model, **mount}

@@ -19,31 +19,31 @@ class ThingConfig(Frozen):
         ``map_error`` of its cells, and an edge or the heading (0.7 degrees) by ``margin_share`` of
         the range. The deviation of the place and noise of the range come beside that.
     ``sure``
-        A range is off by no more than so many times the standard deviation of its noise, which is
+        A range is wrong by no more than so many times the standard deviation of its noise, which is
         measured from the scans.
     ``farthest``
         What is farther away is looked at when it is nearer: there beams are a cell apart.
     ``clearly``
-        So much farther than a cell a beam has to go to have passed it.
+        How much farther than a cell a beam has to go to have passed it.
     ``gain``, ``most_gain``
         What a scan in which a beam ends in a cell adds to it. One that stands for several scans
         adds as many times as much, up to ``most_gain``, so that one alone is never enough.
     ``behind``
-        What a scan of which more beams end just behind the cell than in it takes, or which passed
-        it closely: they met what is there, and noise alone made some shorter.
+        What a scan takes from a cell if more beams end just behind it than in it, or pass it
+        closely: they met what is behind, and noise alone made some shorter.
     ``loss``
         What a scan that passes through the cell takes: more than ``gain``, for people walk on.
     ``most``
-        More it does not become: seen through, it is gone within ``most / loss`` scans.
+        The most evidence of a cell: once seen through, it is gone within ``most / loss`` scans.
     ``enough``
-        With so much it is a thing.
+        Evidence with which a cell is a thing.
     ``spot_radius``
         A thing's cell counts as a disc of this size around where the beams end in it: as thick as a
         leg of a chair, and those of neighbouring cells leave no gap for any body.
     ``newest``
-        Share of each new beam in that place.
+        Share of each new beam in the place where beams end.
     ``next_to``
-        As near to a surface of the map a point is mapped: about a cell.
+        A point as near to a surface of the map as this is mapped: about a cell.
     """
 
     map_error: Positive = 0.5

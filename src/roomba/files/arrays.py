@@ -1,7 +1,7 @@
 """Archives of numpy arrays, read within bounds: what a header claims is not believed.
 
-numpy itself makes room for an array before it looks whether the file has so much, and unpacks
-all that an archive holds.
+numpy itself allocates an array before it checks that the file holds so much, and unpacks all that
+an archive holds.
 """
 
 from __future__ import annotations

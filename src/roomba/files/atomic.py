@@ -101,7 +101,7 @@ def _write_new(folder: int, name: str, content: bytes) -> None:
 
 
 def _remove_left_behind(folder: int, name: str) -> None:
-    """Remove what writers of this file left behind that were killed."""
+    """Remove what killed writers of this file left behind."""
     oldest = time.time() - _LEFT_BEHIND
     for entry in os.listdir(folder):
         if entry.startswith(_prefix(name)):

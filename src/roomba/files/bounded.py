@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import Final
 
 MOST_BYTES: Final = 100_000_000
-"""Of a file that is read whole; the picture of the largest map has a fifth of that."""
+"""Most bytes of a file that is read whole; the picture of the largest map has a fifth of that."""
 
 _FLAGS: Final = os.O_RDONLY | sum(
     getattr(os, name, 0) for name in ("O_NONBLOCK", "O_CLOEXEC", "O_BINARY")
 )
-"""Without the first the opening of a pipe waits for a writer; Windows has the last one alone."""
+"""Without the first flag, opening a pipe waits for a writer; Windows has only the last flag."""
 
 
 def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
-    """Return what a file holds; raises OSError for none, for a larger one, for a pipe or device.
+    """Return what a file holds; raises OSError if there is none, it is larger, a pipe or a device.
 
     ``/dev/null`` is an empty file.
     """
@@ -29,7 +29,7 @@ def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
             kind = _KINDS.get(stat.S_IFMT(found.st_mode), "something else")
             raise OSError(errno.EINVAL, f"expected a regular file, got {kind}", str(path))
         size = found.st_size
-        # One of /proc says 0, and one that grows says too little.
+        # A file of /proc says 0, and a file that grows says too little.
         if size <= most:
             content = file.read(most + 1)
             if len(content) <= most:

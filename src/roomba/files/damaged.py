@@ -11,9 +11,9 @@ _NO_FILE: Final = (errno.EFBIG, errno.EINVAL, errno.EISDIR, errno.ELOOP)
 
 
 def is_no_file(error: OSError) -> bool:
-    """Whether the disk tells of something else in a file's place, or of one that is too large.
+    """Whether an error tells of something else in a file's place, or of a file that is too large.
 
-    What it refuses otherwise may be whole, and be read later.
+    After any other error the file may be whole, and be read later.
     """
     return error.errno in _NO_FILE
 

@@ -68,7 +68,7 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 Length = Annotated[float, Field(ge=0.001, le=10_000.0)]
 """m; also m/s of a person and s of a move: no home has any that is shorter or longer."""
 Side = Annotated[float, Field(ge=0.001, le=20.0)]
-"""m; of a piece of furniture, and the height of a wall: a shelf that is filled has books by it."""
+"""m; of a piece of furniture, and the height of a wall: a shelf gets books by its size."""
 Amount = Annotated[float, Field(ge=0.0, le=1_000_000.0)]
 """g; what the floor can hold is less: see :mod:`roomba.world.layers.layer`."""
 Direction = Annotated[Number, BeforeValidator(_direction)]

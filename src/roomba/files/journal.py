@@ -30,7 +30,7 @@ def append_line(path: Path, values: dict[str, Any]) -> None:
     flags = os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | os.O_NOFOLLOW
     with open(os.open(path, flags, _MODE), "r+b", buffering=0) as file:
         size = file.seek(0, os.SEEK_END)
-        # What was cut short ends here, so that this line is one of its own.
+        # End a line that was cut short, so that the new line stands by itself.
         is_cut = size > 0 and os.pread(file.fileno(), 1, size - 1) != b"\n"
         file.write((b"\n" if is_cut else b"") + line)
         os.fsync(file.fileno())

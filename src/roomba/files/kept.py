@@ -106,7 +106,7 @@ def write_kept(path: Path, content: bytes, version: int = 1, *, most: int = MOST
 
 
 def _keep_now(path: Path, version: int, most: int) -> None:
-    """Let what is at a path now not be lost when another file takes its place."""
+    """Keep the file that is at a path now, before another file takes its place."""
     try:
         content, seal = _parted(read_bytes(path, most))
     except FileNotFoundError:
@@ -174,7 +174,7 @@ def _content(path: Path, parse: Callable[[bytes], Content], version: int, most: 
 def _generation_before(
     path: Path, parse: Callable[[bytes], Content], damage: str, version: int, most: int
 ) -> Content:
-    """Return that of a damaged file; where there is none that can be used, both are set aside."""
+    """Return the content before that of a damaged file; if it is unusable, set both files aside."""
     before = before_of(path)
     try:
         return _content(before, parse, version, most)
@@ -188,9 +188,9 @@ def _generation_before(
 
 
 def _put_back(path: Path, most: int) -> str:
-    """Put the generation before in a damaged file's place; return what became of that one.
+    """Put the generation before in a damaged file's place; return what became of the latter.
 
-    A reader that comes between the two steps finds the damaged one still, and never none.
+    A reader that comes between the two steps still finds the damaged file, and never none.
     """
     aside = aside_of(path)
     try:
@@ -209,7 +209,7 @@ def _put_back(path: Path, most: int) -> str:
 
 def _parted(content: bytes) -> tuple[bytes, re.Match[bytes] | None]:
     """Return a file's content without its seal, and the seal; None without one."""
-    # In all of its places: the bytes that tell which one it is may be those that are damaged.
+    # Look in all places of a seal: the bytes that tell the right one may be damaged.
     last = content.rfind(b"# kept ", max(0, len(content) - _LONGEST_SEAL))
     for at in (0, len(_PGM), last):
         seal = _SEAL.match(content, at) if at >= 0 else None
@@ -227,14 +227,14 @@ def _place(content: bytes) -> int:
 
 
 def _is_whole(content: bytes, seal: re.Match[bytes] | None, before: Path) -> bool:
-    """Whether a file is as it was sealed; one without a seal counts while there is none before."""
+    """Whether a file is as it was sealed; without a seal it counts if none is before it."""
     if seal is None:
         return bool(content) and not before.exists()
     return hashlib.sha256(content).hexdigest() == seal.group(2).decode()
 
 
 def _link(path: Path, other: Path, name: str, most: int) -> None:
-    """Let ``other``, beside the file ``name``, be the same; the content is not written again.
+    """Make ``other`` the same file as ``path``, without writing its content again.
 
     What a killed program leaves behind is removed when the file ``name`` is written.
     """

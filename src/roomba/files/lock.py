@@ -1,4 +1,4 @@
-"""A file that one program at a time holds, while it does what no other may do meanwhile."""
+"""Lock files: one program at a time holds one, while it does what no other may do meanwhile."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ _PAUSE: Final = 0.01
 def locked(path: Path, within: float) -> Iterator[None]:
     """Hold the lock of a file, which is made if it is not there; threads exclude each other, too.
 
-    Raises TimeoutError if others hold it for ``within`` s of wall time, OSError when the disk
-    refuses.
+    Raises TimeoutError if another program or thread holds it for ``within`` s of wall time, OSError
+    when the disk refuses.
     """
     flags = os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW
     with open(os.open(path, flags, _MODE), "r+b") as lock:

@@ -40,7 +40,7 @@ _NEARLY_ALL: Final = 0.95
 _TURNED: Final = 1e-6
 """rad; less is what a program's rounding makes of 0: a map of 1 km is off by a millimetre."""
 _SQUARE: Final = 5e-3
-"""rad; a quarter turn is meant within this, as by 1.57 and 4.71."""
+"""rad; a yaw as near as this to quarter turns, such as 1.57 or 4.71, means them."""
 
 
 class MapDescription(BaseModel):
@@ -186,7 +186,7 @@ def _occupancy(image: Image, description: MapDescription) -> NDArray[np.int8]:
 def _is_of_map_saver(grey: NDArray[np.float64]) -> bool:
     """Whether nearly all of a picture has greys that map_saver writes; a person may edit some.
 
-    Programs for pictures make white of its 254.
+    Picture editors turn its grey of 254 into white.
     """
     return bool(np.isin(grey, [*MAP_SAVER_PIXELS.values(), 255]).mean() >= _NEARLY_ALL)
 

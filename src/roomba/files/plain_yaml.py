@@ -38,7 +38,7 @@ _Parser: Any = vars(yaml.cyaml)["CParser"] if yaml.__with_libyaml__ else _PurePy
 
 
 class _Loader(_Parser, SafeConstructor, Resolver):  # type: ignore[misc]
-    """Made of the parts of ``yaml.SafeLoader``: ROS adds constructors to that which run code."""
+    """Made of the parts of ``yaml.SafeLoader``, to which ROS adds constructors that run code."""
 
     def __init__(self, text: str) -> None:
         _Parser.__init__(self, text)

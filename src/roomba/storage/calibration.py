@@ -51,7 +51,7 @@ def save_calibration(calibration: Calibration, path: Path) -> None:
 def load_calibration(path: Path, tell: Callable[[str], object]) -> Calibration | None:
     """Return the calibration that was kept; None if there is none.
 
-    A damaged file is set aside, and the one before is used, of which ``tell`` is told. Raises
+    A damaged file is set aside, the one before it is used, and ``tell`` is told so. Raises
     CalibrationError if there is none that can be used, so that the robot measures anew.
     """
     try:

@@ -52,7 +52,7 @@ def save_carpets(carpets: FeltCarpets, occupancy: OccupancyMap, path: Path) -> N
 def load_carpets(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) -> FeltCarpets:
     """Return the carpets that were saved for a map; none if there is no such file.
 
-    With ``tell`` a damaged file is set aside, and the one before is used, of which that is told.
+    With ``tell`` a damaged file is set aside, the one before it is used, and ``tell`` is told so.
     Raises CarpetsError, which names the file and the reason, for a file that cannot be read or is
     of another map.
     """

@@ -22,7 +22,7 @@ from roomba.files.plain_json import load_json
 
 Values = dict[str, Any]
 Goal = tuple[str, str, int, int]
-"""Of a client: its action, its id, and its time, s and ns."""
+"""A client's goal: its action, its id, and its time, s and ns."""
 
 
 class CheckpointFileError(RoombaError):
@@ -54,7 +54,7 @@ def load_checkpoint(path: Path, run: str, tell: Callable[[str], object]) -> Chec
     """Return what was saved in this run; None without a file.
 
     A checkpoint of another run is ignored: after a launch the robot must not begin to drive by
-    itself. A damaged file is set aside, and the one before is used, of which ``tell`` is told.
+    itself. A damaged file is set aside, the one before it is used, and ``tell`` is told so.
     Raises CheckpointFileError if there is none that can be used.
     """
     try:
@@ -100,8 +100,8 @@ def save_dirt(learned: Floats32, path: Path) -> None:
 def load_dirt(path: Path, shape: tuple[int, int], tell: Callable[[str], object]) -> Floats32 | None:
     """Return where it was dirty, or None if that was never saved.
 
-    A file that is damaged, or of another grid, is set aside, and the one before is used, of which
-    ``tell`` is told. Raises CheckpointFileError if there is none that can be used.
+    A file that is damaged, or of another grid, is set aside, the one before it is used, and
+    ``tell`` is told so. Raises CheckpointFileError if there is none that can be used.
     """
 
     def parse(content: bytes) -> Floats32:

@@ -11,7 +11,7 @@ def require_free_space(folder: Path, least: float) -> None:
     """Raise OSError (ENOSPC) when less than ``least`` bytes are free for files in ``folder``.
 
     The folder need not be there yet. A full disk may take small files for a long time, in the place
-    of those that they replace, and refuse larger ones: what is free tells it at once.
+    of those that they replace, and refuse larger ones: the free space shows that at once.
     """
     there = next(place for place in (folder, *folder.parents) if place.exists())
     disk = os.statvfs(there)

@@ -1,7 +1,7 @@
 """Why the emergency stop holds the drive, kept on the disk: it holds until a person releases it.
 
-So it outlives a robot whose programs are killed. The file is there while the drive is held; one
-that cannot be read, or is damaged, counts as one that holds.
+So it outlives a robot whose programs are killed. The file is there while the drive is held; a
+file that cannot be read, or is damaged, counts as a hold.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ FOLDER: Final = "emergency_stop"
 NO_REASON: Final = "no reason was given"
 """What is kept where none was given."""
 _LONGEST: Final = 500
-"""Characters of a reason that are kept."""
+"""Most characters of a reason that are kept."""
 _MOST_BYTES: Final = 10_000
-"""Of the file: of such a reason, and its seal."""
+"""Most bytes of the file: such a reason, and its seal."""
 
 
 class KeptStop:
@@ -48,9 +48,9 @@ class KeptStop:
     def keep(self, newest: Callable[[], str]) -> str:
         """Keep why the drive is held, or that it is free; return what the disk refused, in words.
 
-        ``newest`` returns the reason, empty if it is free. It is asked when what others keep is
-        kept: of several changes at once the newest one is kept. What is refused changes nothing of
-        what holds now.
+        ``newest`` returns the reason, empty if the drive is free. It is called when earlier changes
+        are on the disk: of several changes at once the newest one is kept. A refusal of the disk
+        changes nothing of what holds now.
         """
         with self._turn:
             reason = newest()

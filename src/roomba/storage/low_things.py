@@ -53,7 +53,7 @@ def save_low_things(things: LowThings, occupancy: OccupancyMap, path: Path) -> N
 def load_low_things(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) -> LowThings:
     """Return the low things that were saved for a map; none if there is no such file.
 
-    With ``tell`` a damaged file is set aside, and the one before is used, of which that is told.
+    With ``tell`` a damaged file is set aside, the one before it is used, and ``tell`` is told so.
     Raises LowThingsError, which names the file and the reason, for a file that cannot be read or is
     of another map.
     """

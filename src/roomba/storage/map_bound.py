@@ -20,7 +20,7 @@ from roomba.geometry import FARTHEST
 from roomba.grid import OccupancyMap
 
 Tell = Callable[[str], object]
-"""Is told in a sentence when a damaged file was set aside."""
+"""A callback that is told in a sentence when a damaged file was set aside."""
 Number = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
 """m."""
 
@@ -86,9 +86,9 @@ def load_map_bound(
 ) -> _File | None:
     """Return the file of the map of a ``digest``, None if there is none.
 
-    ``what`` is in it, in the plural, for people.
+    ``what`` names for people, in the plural, what the file holds.
 
-    With ``tell`` a damaged file is set aside, and the one before is used, of which that is told.
+    With ``tell`` a damaged file is set aside, the one before it is used, and ``tell`` is told so.
     Raises ``error``, which names the file and the reason, for one that cannot be read or is of
     another map.
     """

@@ -85,7 +85,7 @@ class StoredMap:
 def write_map(stored: StoredMap, folder: Path) -> None:
     """Write a map's files into an existing folder, read them back, and compare.
 
-    What the map does not have, an earlier one there may have had: that goes. Raises MapStoreError
+    Files of an earlier map there, of kinds that this map lacks, are removed. Raises MapStoreError
     for a map that files cannot hold, and OSError when the disk refuses.
     """
     try:

@@ -42,7 +42,8 @@ class MapStore:
     def __init__(self, folder: Path, tell: Callable[[str], object] | None = None) -> None:
         """``folder`` need not be there yet: it is made when the first map is saved.
 
-        ``tell`` is told in a sentence when a damaged map was set aside; without it none is.
+        ``tell`` is told in a sentence when a damaged map was set aside; without ``tell`` no map is
+        set aside.
         """
         self.folder, self._tell = folder, tell
 
@@ -72,7 +73,7 @@ class MapStore:
         if place.is_symlink():
             place.unlink()
         if place.exists():
-            # From here to the next line the old one is found by its other name.
+            # Until the next line is done, the old map is found under its other name.
             place.rename(self._beside(name, _OLD))
         unfinished.rename(place)
         _wait_for_disk(self.folder)
@@ -85,7 +86,8 @@ class MapStore:
     def load(self, name: str) -> StoredMap:
         """Return a map. Raises MapStoreError, which names the file, for one that is broken.
 
-        In a store with ``tell`` the map that it replaced takes its place then, if there is one.
+        If the store has ``tell``, the map that the broken one replaced takes its place, if there is
+        one.
         """
         folder = self._folder_of(name)
         try:

@@ -23,12 +23,12 @@ from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe
 from roomba.storage.array_fields import ArrayFields
 
 FORMAT: Final = 1
-"""Of the file; another number is another format."""
+"""Number of the file's format; another number is another format."""
 _LINK_KINDS: Final = (LinkKind.MATCHED, LinkKind.DRIVEN, LinkKind.GUESSED, LinkKind.TOLD)
-"""In a file each has its number here."""
+"""A file stores a kind as its index here."""
 _MOST_BEAMS: Final = 100_000
 _MOST_BYTES: Final = 1_000_000_000
-"""Of the file; the points of a drive of hours have a tenth."""
+"""Most bytes of the file; the points of a drive of hours have a tenth."""
 
 
 class MapperFileError(RoombaError):
@@ -61,8 +61,8 @@ def save_mapper(kept: KeptMap, path: Path) -> None:
 def load_mapper(path: Path, tell: Callable[[str], object]) -> KeptMap | None:
     """Return what was saved, bit for bit; None if nothing was.
 
-    A file that is broken, of something else, or of another format is set aside, and the one before
-    is used, of which ``tell`` is told. Raises MapperFileError if there is none that can be used.
+    A file that is broken, of something else, or of another format is set aside, the one before it
+    is used, and ``tell`` is told so. Raises MapperFileError if there is none that can be used.
     """
     try:
         return read_kept(path, _parsed, tell, version=FORMAT, most=_MOST_BYTES)
@@ -223,7 +223,7 @@ def _mirrors_of(fields: ArrayFields, submaps: int) -> tuple[KeptMirror, ...]:
     reaches = fields.floats("mirror_reaches", len(numbers), 2)
     if reaches.size and reaches.min() <= 0.0:
         raise ValueError(f"expected mirrors that reach farther than 0, got {reaches.min()}")
-    # A file of an older program does not tell how each was found: as if it was touched.
+    # A file of an older program lacks this distance: 0, as if the mirror was touched.
     is_told = fields.has("mirror_seen_from")
     seen_from = (
         fields.floats("mirror_seen_from", len(numbers)) if is_told else np.zeros(len(numbers))

@@ -50,7 +50,7 @@ def save_rooms(rooms: Rooms, occupancy: OccupancyMap, path: Path) -> None:
 def load_rooms(path: Path, occupancy: OccupancyMap, tell: Tell | None = None) -> Rooms | None:
     """Return the rooms that were saved for a map; None if there is no such file.
 
-    With ``tell`` a damaged file is set aside, and the one before is used, of which that is told.
+    With ``tell`` a damaged file is set aside, the one before it is used, and ``tell`` is told so.
     Raises RoomsError, which names the file and the reason, for a file that cannot be read or is of
     another map.
     """

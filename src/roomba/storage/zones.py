@@ -41,7 +41,7 @@ def save_zones(zones: Zones, digest: str, path: Path) -> None:
 def load_zones(path: Path, digest: str, tell: Tell | None = None) -> Zones:
     """Return the zones that were saved for the map of a ``digest``; none if there is no such file.
 
-    With ``tell`` a damaged file is set aside, and the one before is used, of which that is told.
+    With ``tell`` a damaged file is set aside, the one before it is used, and ``tell`` is told so.
     Raises ZonesError, which names the file and the reason, for a file that cannot be read, now or
     before, or is of another map: without its zones a robot may go where it must not.
     """

@@ -11,7 +11,7 @@ from roomba.geometry import Point, Pose
 from roomba.grid import OccupancyMap
 
 VERSION: Final = 2
-"""Of the format, as it is written."""
+"""Version of the format that is written."""
 CM: Final = 0.01
 """m; the format's unit."""
 

@@ -26,7 +26,7 @@ _MOST_LAYERS: Final = 100
 _FARTHEST: Final = 1_000_000
 """cm, and pixels; no home has a place farther from its corner."""
 _OFF: Final = 500
-"""cm; so far off the map a place may be."""
+"""cm; the farthest that a place may be off the map."""
 
 
 class _Part(BaseModel):
@@ -172,7 +172,7 @@ def _runs(layer: _Layer) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[
 
 
 def _named(layers: list[tuple[_Layer, Mask]]) -> list[tuple[str, Mask]]:
-    """Return rooms by names that differ, as names are here; those without one are numbered."""
+    """Return rooms with valid names that all differ; rooms without a name are numbered."""
     rooms: list[tuple[str, Mask]] = []
     for number, (layer, mask) in enumerate(
         ((layer, mask) for layer, mask in layers if layer.type == "segment"), start=1

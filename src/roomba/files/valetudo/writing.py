@@ -19,7 +19,7 @@ _NAMES: Final = uuid.UUID("6f1c1a3e-2f0a-4f57-9d52-6a1f5d0b7c11")
 
 
 def compose(home: ValetudoHome) -> dict[str, Any]:
-    """Return a home as plain values of the format; raises ValetudoError for cells of half a cm.
+    """Return a home as plain values of the format; raises ValetudoError for cells not of whole cm.
 
     Places are rounded to whole cm, the station's heading to whole degrees.
     """
@@ -81,7 +81,7 @@ def _layer(kind: str, mask: Mask, pixel: int, meta: dict[str, Any]) -> dict[str,
 
 
 def _bounds(told: NDArray[np.bool_]) -> tuple[int, int]:
-    """Return where the first is that is told, and where the last one has ended; 0 without any."""
+    """Return the index of the first True and the one after the last; (0, 0) if there is none."""
     found = np.flatnonzero(told)
     return (int(found[0]), int(found[-1]) + 1) if found.size else (0, 0)
 
