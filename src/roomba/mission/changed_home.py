@@ -1,4 +1,4 @@
-"""A home that changed under a mission: other zones or rooms, or more of the map."""
+"""Changes of the home during a mission: other zones or rooms, or more of the map."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class ChangedHome:
     ) -> None:
         """Go on with a map that has grown, or with the whole one, from the next tick on.
 
-        ``things`` and ``dirt`` are new ones of that map; the frame of the one before lies at
+        ``things`` and ``dirt`` are new and belong to that map; the frame of the map before lies at
         ``moved`` in its frame.
         """
         job = self._job
@@ -58,10 +58,10 @@ class ChangedHome:
         self.use_context(context)
 
     def wants_map(self, occupancy: OccupancyMap) -> bool:
-        """Whether a map that has grown to this makes a difference to what the robot does."""
+        """Whether the grown map ``occupancy`` makes a difference to what the robot does."""
         phase, exploration = self._transitions.state.phase, self._job.exploration
         if self._drives.driver is None:
-            # By its station it goes by beams, and a new map would make it late.
+            # Near its station the robot goes by beams, and taking up a new map would make it late.
             return phase not in (Phase.UNDOCKING, Phase.DOCKING)
         if phase is Phase.RETURNING:
             # Its way leads over known floor; a path planned anew each time begins with a turn.
@@ -71,9 +71,9 @@ class ChangedHome:
         return exploration.wants_another(occupancy) or self._is_walled(occupancy)
 
     def _is_walled(self, occupancy: OccupancyMap) -> bool:
-        """Whether it is on its way to a frontier, and a map shows something new that stands on it.
+        """Whether the robot is on its way to a frontier, and a map shows something new on that way.
 
-        What stands close to the walls of the map that it goes by no look ahead tells from them.
+        No look ahead can tell what stands close to a wall of the present map from that wall.
         """
         exploration, drives = self._job.exploration, self._drives
         if drives.driver is None or drives.is_round or exploration is None:
@@ -83,7 +83,7 @@ class ChangedHome:
         )
 
     def _goes_on_looking(self) -> bool:
-        """Whether it is on its way to a frontier that still is one, and nothing stands between."""
+        """Whether the robot is on its way to a frontier that still is one, and that way is free."""
         exploration, driver = self._job.exploration, self._drives.driver
         if self._transitions.state.phase not in _LOOKING or driver is None or exploration is None:
             return False

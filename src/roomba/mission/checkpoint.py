@@ -71,9 +71,9 @@ def checkpoint_of(state: MissionState, reason: Reason, job: Job, now: float) -> 
 def remembered(
     values: Values, begin: Callable[[CleanRequest], Cleaning], config: ExploringConfig
 ) -> Remembered:
-    """Return what such values tell; ``begin`` makes the clean of a request in the present map.
+    """Return the content of a checkpoint; ``begin`` makes a request's clean in the present map.
 
-    Raises CheckpointError for values that are none, or of another map.
+    Raises CheckpointError for values that are no checkpoint, or one of another map.
     """
     try:
         return _remembered(values, begin, config)
@@ -135,7 +135,7 @@ def _remembered(
 
 
 def take_up(found: Remembered, job: Job, senses: Senses) -> None:
-    """Let the job be the one that was remembered."""
+    """Let ``job`` go on as the one that was remembered."""
     job.cleaning, job.exploration, job.outcome = found.cleaning, found.exploration, found.outcome
     job.goes_on_after(found.duration, senses)
     job.times.restore(found.times)

@@ -1,9 +1,9 @@
-"""The mission: what others may ask of the robot's behaviour, and know of it.
+"""The mission: the interface by which callers command the robot's behaviour and look at it.
 
 No clock and no I/O: it gets commands and, 20 times a second, the senses; it returns the wanted
-twist. It is put together from its parts: :mod:`.phases.machine` is the state machine and
-:mod:`.transitions` goes by it, :mod:`.commands` obeys, :mod:`.ticks` is what is done at each tick,
-and :mod:`.phases.job` is the present errand.
+twist. It is put together from its parts: :mod:`.phases.machine` is the state machine,
+:mod:`.transitions` changes the state by it, :mod:`.commands` obeys commands, :mod:`.ticks` does the
+work of each tick, and :mod:`.phases.job` is the present errand.
 """
 
 from __future__ import annotations
@@ -108,10 +108,11 @@ class Mission:
         self._commands.clean(request, senses)
 
     def change_rooms(self, names: Sequence[str], each: Sequence[RoomWay] = ()) -> None:
-        """Let the clean of rooms under way go on with these, in this order, the first at once.
+        """Let the clean of rooms under way go on with ``names``, in this order, the first at once.
 
-        ``each`` is how each is cleaned; without it as before, and new ones as all are. Raises
-        CleanRefusedError or CommandRefusedError with the reason.
+        ``each`` is how each room is cleaned. Without it, rooms of before stay as they were, and new
+        ones are cleaned as the request says for all. Raises CleanRefusedError or
+        CommandRefusedError with the reason.
         """
         self._commands.change_rooms(names, each)
 
@@ -137,14 +138,14 @@ class Mission:
     def use_map(self, context: PlanningContext, things: ThingLayer, dirt: DirtMap) -> None:
         """Go on with a map that has grown, or with the whole one, from the next tick on.
 
-        ``things`` and ``dirt`` are new ones of that map.
+        ``things`` and ``dirt`` are new and belong to that map.
         """
         moved = old_in_new(self.context.station, context.station)
         self._ticks.carpets = self.carpets.carried_to(context.occupancy, moved)
         self._home.use_map(context, things, dirt, moved)
 
     def wants_map(self, occupancy: OccupancyMap) -> bool:
-        """Whether a map that has grown to this makes a difference to what it does."""
+        """Whether the grown map ``occupancy`` makes a difference to what the robot does."""
         return self._home.wants_map(occupancy)
 
     def take_exploration(self) -> ExploreResult | None:
@@ -197,7 +198,7 @@ class Mission:
 
     @property
     def message(self) -> str:
-        """The same as a sentence."""
+        """The :attr:`reason` as a sentence."""
         return self.reason.text
 
     @message.setter
@@ -211,12 +212,12 @@ class Mission:
 
     @property
     def context(self) -> PlanningContext:
-        """The home as it plans in it."""
+        """The planning context: the home as the mission plans in it."""
         return self._drives.context
 
     @property
     def dirt(self) -> DirtMap:
-        """Where it is dirty."""
+        """The dirt map: where the floor is dirty."""
         return self._job.dirt
 
     @property
@@ -231,7 +232,7 @@ class Mission:
 
     @property
     def queue_ways(self) -> tuple[RoomWay, ...]:
-        """How each of them is cleaned."""
+        """How each room of the :attr:`queue` is cleaned."""
         return () if self.cleaning is None else self.cleaning.ledger.queue_ways
 
     @property
@@ -294,8 +295,8 @@ class Mission:
     def seconds_to_go(self) -> float:
         """Return about how long the clean still takes, s of robot time; charging left out.
 
-        While it charges, waits or is paused that is what comes afterwards. Once the floor is done,
-        on its way home, it is 0.
+        While the robot charges, waits or is paused, that is the time for what comes afterwards.
+        Once the floor is done and the robot is on its way home, it is 0.
         """
         if self.cleaning is None or self.state.errand is Errand.HOME:
             return 0.0
@@ -310,7 +311,7 @@ class Mission:
         return self._ticks.tick(senses)
 
     def steady(self, senses: Senses) -> Steady | None:
-        """Return what it does until something comes up; None: a tick decides."""
+        """Return the steady ticks that come next; None if a usual tick must decide."""
         return self._ticks.steady(senses)
 
     def caught_up(self, senses: Senses, places: NDArray[np.float64], way: float) -> None:

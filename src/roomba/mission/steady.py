@@ -1,7 +1,7 @@
-"""Steady ticks: those of which it is known what they do, as long as nothing comes up.
+"""Steady ticks: ticks whose work is known in advance, as long as nothing comes up.
 
-A program that lets time pass may do them in compiled code, with the same result: the mission's own
-tick has its turn at the first one at which a bound given here does not hold any more.
+A program that lets time pass may do them in compiled code, with the same result. The mission's own
+tick takes over at the first tick at which a bound given here does not hold any more.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ _ALONG_PATHS: Final = (Phase.CLEANING, Phase.EXPLORING, Phase.RETURNING)
 
 @dataclass(frozen=True, slots=True)
 class Steady:
-    """What ends steady ticks, looked at before each of them.
+    """The bounds that end steady ticks; they are checked before each tick.
 
     ``driver`` is tracked along its path, at up to ``limit`` m/s; None: it stands and charges.
     ``until``
-        s of the robot's clock; from then on it looks at something.
+        s of the robot's clock, at which the mission has something to check.
     ``least_level``, ``most_energy``
-        0..1 and Wh; with less, or with as much, in the battery.
+        0..1 and Wh; steady ticks end with less, or with as much, in the battery.
     ``most_in_bin``, ``most_silent``
         g in the dust bin, and m2 of floor that became clean without a grain that came in.
     ``goal``, ``near``
-        m; where it wants to get, and so near it is there.
+        m; where the robot is to get, and how near to it the robot is there.
     ``watches_dirt``
-        Dirty floor close by is swept once more before it goes on.
+        Dirty floor close by is swept once more before the robot goes on.
     """
 
     driver: PathDriver | None

@@ -2,7 +2,7 @@
 
 :mod:`.phases.cleaning`, :mod:`.phases.exploring`, :mod:`.phases.returning` and
 :mod:`.phases.at_station` do the work of a phase, and :mod:`.phases.monitor` notices what comes up
-in any phase. Ticks of which it is known what they do are those of :mod:`.steady`.
+in any phase. Ticks whose work is known in advance are those of :mod:`.steady`.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class MissionStep:
 class MissionTicks:
     """Lets the parts of a mission go on, tick by tick.
 
-    ``last`` is what was sensed at the last one, ``max_speed`` the robot's top speed, m/s;
+    ``last`` is what was sensed at the last tick, ``max_speed`` the robot's top speed, m/s;
     ``carpet`` tells whether the brush is on carpet, and ``carpets`` where it felt some, over all
     runs.
     """
@@ -100,7 +100,7 @@ class MissionTicks:
         return step
 
     def steady(self, senses: Senses) -> Steady | None:
-        """Return what is done until something comes up; None: a tick decides."""
+        """Return the steady ticks that come next; None if a usual tick must decide."""
         if not 0.0 <= senses.now - self.last.now <= LONGEST_TICK:
             # A clock that was set changes when all this began.
             return None
@@ -154,16 +154,19 @@ class MissionTicks:
         return self._transitions.state.drives
 
     def _note_carpet(self, senses: Senses, places: NDArray[np.float64]) -> None:
-        """Note what floor the brush feels at places, float64 [n, 2], m; one that is not told of
-        feels nothing."""
+        """Note what floor the brush feels at ``places``, float64 [n, 2], m.
+
+        A brush whose current is not told feels nothing.
+        """
         if self.sweeps and senses.brush_current > 0.0:
             self.carpets.note(places, is_on=self.carpet.is_on)
 
     def _count_time(self, senses: Senses, ways: NDArray[np.float64]) -> None:
-        """Count what the time since the last tick went into; ``ways``, float64 [ticks], m, were
-        driven from each tick to the next.
+        """Count what the time since the last tick went into.
 
-        A clock that was set tells nothing.
+        ``ways``, float64 [ticks], m, were driven from each tick to the next.
+
+        When the clock was set, nothing is counted.
         """
         each = (senses.now - self.last.now) / len(ways)
         if not 0.0 <= each <= LONGEST_TICK:

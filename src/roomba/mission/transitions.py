@@ -22,7 +22,7 @@ RELEASED: Final = Reason(
     "the emergency stop was released: it waits to be told to go on, or to stop",
     Hindrance.STOP_RELEASED,
 )
-"""Why a job that it interrupted does not go on."""
+"""Why a job that an emergency stop interrupted does not go on."""
 
 
 class Transitions:
@@ -49,7 +49,7 @@ class Transitions:
 
     @property
     def told(self) -> Reason:
-        """What is told of why; empty when all is well."""
+        """The reason that is told; empty when all is well."""
         if not self._job.bin.is_full:
             return self.reason
         if self.reason.hindrance is Hindrance.STOP_RELEASED:
@@ -104,7 +104,7 @@ class Transitions:
         self.end_job(self._job.outcome or CleanOutcome.STOPPED, "", senses)
 
     def drop_driver(self) -> None:
-        """Drive there no more; what was not driven of a round is planned again."""
+        """Drop the present path; what was not driven of a round is planned again."""
         drives, cleaning = self._drives, self._job.cleaning
         if drives.driver is not None and cleaning is not None and drives.is_round:
             cleaning.interrupted(drives.driver.rest)

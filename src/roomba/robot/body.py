@@ -12,8 +12,8 @@ from roomba.vocabulary import Reason
 class Body(Protocol):
     """A robot's sensors, drive and tools.
 
-    Its clock, by which readings are timed, goes on by a tick with each command. While it cannot be
-    reached the clock may stand: then what is read has an old time.
+    The body's clock, which times the readings, goes on by a tick with each command. While the body
+    cannot be reached the clock may stand: then readings have an old time.
     """
 
     @property
@@ -21,13 +21,13 @@ class Body(Protocol):
         """Why the body cannot be reached, and what helps; empty while it can."""
 
     def read(self) -> Readings:
-        """Return what the sensors tell now; a scan once."""
+        """Return what the sensors tell now; each scan is returned once."""
 
     def newest_scan(self) -> ScanReading | None:
         """Return the newest scan; None before the first one."""
 
     def act(self, command: Command) -> None:
-        """Carry out a command for one tick; returns when that has passed."""
+        """Carry out a command for one tick; return when the tick has passed."""
 
     def locate(self) -> None:
         """Beep, if the body can."""

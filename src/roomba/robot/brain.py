@@ -46,7 +46,7 @@ from roomba.robot.walking import Walking
 from roomba.vocabulary import Phase
 
 _BESIDE_SURFACES: Final = 0.3
-"""m; what is farther from all that a growing map shows is a thing wherever it is seen."""
+"""m; what is seen farther than this from all surfaces of a growing map is a thing."""
 
 
 class Brain:
@@ -95,7 +95,7 @@ class Brain:
         self._readings: Readings | None = None
 
     def _place(self, start: Pose) -> Place:
-        """Return what knows the robot's place, which begins at ``start``."""
+        """Return the localizer or mapper that knows the robot's place, beginning at ``start``."""
         robot, belief = self.robot_config, (self.robot_config.localization, self.robot_config.gyro)
         if isinstance(self._known, MappingConfig):
             self.mapper = Mapper(self._known, *belief, start)
@@ -128,7 +128,7 @@ class Brain:
         if step.wants_whole_map:
             self.finish_map()
         if mission.state.drives or mission.state.phase is Phase.EMERGENCY:
-            # What was commanded later counts.
+            # The newer command counts: it ends the walk.
             self.walking.end()
         is_driving = mission.state.drives or step.twist != STANDSTILL
         wanted = step.twist if is_driving else None
@@ -214,13 +214,14 @@ class Brain:
         self._mapped.go_on(context, self._surfaces(context))
 
     def finish_map(self) -> None:
-        """Take the map that is made for whole, and go on with it, by a localizer."""
+        """Finish the map that is being made, and go on with it, by a localizer."""
         growing, mapper = self.growing, self.mapper
         if growing is None or mapper is None or growing.is_whole:
             return
         growing.is_whole = True
         occupancy = mapper.finish()
-        # To be whole the map was turned a little; it began docked.
+        # Finishing turned the map a little; the robot began docked, so the map's start is the
+        # station.
         before, self._station = self._station, self.robot_config.body.docked_at(mapper.start)
         self._zones = moved(self.zones, old_in_new(before, self._station))
         self._localize_on(occupancy, mapper.pose)
@@ -240,7 +241,8 @@ class Brain:
         """Return what the wheels get when a twist is wanted, at ``cruise`` m/s at most.
 
         Without a wanted twist (None), and under the emergency stop, the wheels stand still. The
-        speed loop then backs away from no cliff: a dirty sensor must not move a docked robot.
+        speed loop then does not back away from a cliff: a dirty sensor must not move a docked
+        robot.
         """
         now, mission = self.readings.time, self._mapped.mission
         self._drive.emergency = mission is not None and mission.state.phase is Phase.EMERGENCY
@@ -254,7 +256,7 @@ class Brain:
 
     @property
     def mission(self) -> Mission:
-        """What the robot is at; raises RoombaError while there is no map yet."""
+        """The robot's mission; raises RoombaError while there is no map yet."""
         if self._mapped.mission is None:
             raise RoombaError("the robot has no map yet: let it stand until its first scan came")
         return self._mapped.mission
@@ -311,7 +313,7 @@ class Brain:
         self._mapped.limit_speed(max_speed)
 
     def told(self, readings: Readings) -> None:
-        """Take readings without acting on them, after which no time passed."""
+        """Take readings without acting on them, when no time has passed since."""
         self._readings = readings
 
     def drove_on(self, readings: Readings) -> None:
@@ -323,7 +325,7 @@ class Brain:
         self._readings = readings
 
     def beams_of(self, lidar: LidarModel) -> LidarBeams:
-        """Return a lidar as kernels know it."""
+        """Return a lidar in the form that compiled kernels take."""
         return self._mapped.lookout.beams_of(lidar)
 
     def _context(self, occupancy: OccupancyMap) -> PlanningContext:

@@ -1,4 +1,4 @@
-"""The map that a mission goes by while it is being made."""
+"""The map in the making, as the mission gets it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from roomba.perception.slam.map_drawing import MapDrawing, MapSource
 
 
 class GrowingMap:
-    """Keeps what was drawn last, until it makes a difference to the mission.
+    """Keeps the map that was drawn last, until it makes a difference to the mission.
 
     ``is_whole``: it grows no more.
     """
@@ -30,7 +30,7 @@ class GrowingMap:
     def newer(self, now: float, mission: Mission | None) -> OccupancyMap | None:
         """Return the newest map at ``now``, s, once, if it makes a difference to the mission.
 
-        Without a mission the first one does.
+        Without a mission the first map does.
         """
         if self.is_whole:
             return None

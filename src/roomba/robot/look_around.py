@@ -1,7 +1,7 @@
 """Looking around: driving a little, by what is in sight, while the robot's place is not known.
 
-It needs no map and no place: it goes where the lidar shows room and where it has not been yet, so
-that each scan shows something new.
+Looking around needs no map and no place: the robot goes where the lidar shows room and where it has
+not been yet, so that each scan shows something new.
 """
 
 from __future__ import annotations
@@ -106,8 +106,9 @@ class LookAround:
 class SearchDrive:
     """Lets the robot look around whenever more must be seen to find its place.
 
-    It is ticked while the robot may drive for that. A search has its whole time from then on: one
-    that stood where it was set down, for however long, was not found because it saw no more.
+    It is ticked while the robot may drive for that. A search has its whole time from then on: a
+    robot that stands where it was set down, for however long, sees nothing new by which it could be
+    found.
     """
 
     def __init__(self, body: BodyConfig, config: LookingAroundConfig) -> None:
@@ -117,7 +118,7 @@ class SearchDrive:
         self._ticked = -math.inf
 
     def tick(self, now: float, place: Place, touches: bool) -> Twist | None:
-        """Return the wanted twist while it looks around, else None; ``touches`` as LookAround."""
+        """Return the twist while the robot looks around, else None; ``touches``: see LookAround."""
         if not 0.0 <= now - self._ticked <= LONGEST_TICK:
             place.look_anew()
         self._ticked = now

@@ -22,12 +22,12 @@ class Lookout:
         self._beams: tuple[LidarModel, LidarBeams] | None = None
 
     def look_beside(self, field: SurfaceField) -> ThingLayer:
-        """Look from now on for what the map of a field does not show; return the new layer."""
+        """Look from now on for what the map of ``field`` does not show; return the new layer."""
         self.things = ThingLayer(field, self._config)
         return self.things
 
     def look(self, scan: PlacedScan | None, knowledge: Knowledge, unsure: float) -> None:
-        """Look in a scan, if there is one where it was taken; only if the place is well known.
+        """Look for things in ``scan``, if there is one, and only if the place is well known.
 
         ``unsure`` is the deviation of the place, m. A place that is ROUGH because the home changed
         is still known that well, and what changed is what is to be seen.
@@ -40,7 +40,7 @@ class Lookout:
             self.things.see(scan.ranges, beams, scan.pose, self._stride, scan.measured, unsure)
 
     def beams_of(self, lidar: LidarModel) -> LidarBeams:
-        """Return a lidar as kernels know it, made anew only when it is another one."""
+        """Return a lidar in the form that compiled kernels take, made once for each lidar."""
         if self._beams is None or self._beams[0] is not lidar:
             self._beams = lidar, lidar.arrays()
         return self._beams[1]

@@ -34,7 +34,7 @@ class Place(Protocol):
     """The way that it reckoned."""
 
     placed: PlacedScan | None
-    """The newest scan where it was taken, if that is known."""
+    """The newest scan with the pose where it was taken, if that is known."""
 
     @property
     def estimate(self) -> Estimate:
@@ -46,9 +46,9 @@ class Place(Protocol):
 
     @property
     def sight_to_look_around(self) -> tuple[Pose, Floats] | None:
-        """Where it is reckoned to be and what it sees, if driving a little helps to find its place.
+        """The reckoned pose and what is in sight, if driving a little helps to find the place.
 
-        What it sees are the ends of beams, float64 [n, 2 or more], m, robot's frame.
+        In sight are the ends of beams, float64 [n, 2 or more], m, robot's frame.
         """
 
     def look_anew(self) -> None:
@@ -70,14 +70,15 @@ class Place(Protocol):
         """
 
     def go_by_lidar(self) -> None:
-        """Take the lidar for where it is, if that is known better by now and it can be moved."""
+        """Use the lidar's mounting as it is known better by now; a mapper keeps it as it was."""
 
 
 class ScanSelection:
     """Selects the scans that are looked at: one each ``scan_period``, not those between.
 
-    ``apart`` is how long after a scan the next one is selected, s: ticks do not fall on scans.
-    ``seen_at`` is when the last one was taken that was selected, s.
+    ``apart`` is the least time from one selected scan to the next, s: half a tick less than the
+    period, as ticks do not fall on scans. ``seen_at`` is when the last one was taken that was
+    selected, s.
     """
 
     def __init__(self, timing: TimingConfig) -> None:
@@ -100,7 +101,7 @@ class ScanSelection:
 class PlaceKeeper:
     """Passes readings on: all motion, and the scans that are selected.
 
-    ``place`` may be another one at any time.
+    ``place`` may be replaced at any time.
     """
 
     def __init__(self, place: Place, robot: RobotConfig) -> None:
@@ -130,7 +131,7 @@ class PlaceKeeper:
             self.place.feel(self._body.radius, *self._body.pressed(left, right))
 
     def lidar(self, told: LidarModel) -> LidarModel:
-        """Return a lidar as it is mounted, by what the robot measured of that."""
+        """Return a lidar with its mounting as the robot measured it."""
         self._lidars.correction = lidar_correction(self.place.belief)
         return self._lidars.of(told)
 
@@ -141,7 +142,7 @@ class PlaceKeeper:
         return float(belief["bias"] + belief["calibration"]["gyro_bias"])
 
     def recalibrated(self, scan: ScanReading) -> ScanReading:
-        """Go by the lidar's pose if it is known better by now; return a scan as the lidar is."""
+        """Use the lidar's mounting as it is known by now; return the scan with that lidar."""
         self.place.go_by_lidar()
         return replace(scan, lidar=self.lidar(scan.lidar))
 

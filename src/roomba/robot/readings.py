@@ -40,7 +40,7 @@ class CliffReading:
 
     @property
     def any(self) -> bool:
-        """Whether one of them does."""
+        """Whether any cliff sensor sees no floor."""
         return self.left or self.front_left or self.front_right or self.right
 
 

@@ -1,6 +1,7 @@
 """A robot that cleans by its own brain: what it tells of itself, and what it can be told to do.
 
-Nothing of it is driven from here. Once told, it goes on by itself, whether it is heard or not.
+Nothing of it is driven from here. Once told, it goes on by itself, even when it cannot be reached
+any more.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ class RemoteWish(Enum):
 
 @dataclass(frozen=True, slots=True)
 class RemoteState:
-    """What it does, how full its battery is (0..1), and whether current comes into it.
+    """What the robot does, how full its battery is (0..1), and whether it charges.
 
     ``trouble`` is why it needs help, in its own words; empty if it does not. ``is_taken`` says that
     another program drives it by hand.

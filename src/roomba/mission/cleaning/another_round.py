@@ -1,4 +1,4 @@
-"""Another round over a stage: which of the floor that the last one left it is made for."""
+"""Another round over a stage: which of the floor that the last round left is worth it."""
 
 from __future__ import annotations
 
@@ -32,8 +32,11 @@ def floor_in_reach(context: PlanningContext, here: Point, obstacles: list[RoundO
 def may_be_opened(
     floor: Mask, context: PlanningContext, obstacles: list[RoundObstacle], least: float
 ) -> bool:
-    """Whether a person may open the way to floor that is out of reach, in patches of ``least`` m2
-    or more: it is not behind or below what stands in the way."""
+    """Whether a person may open the way to a ``floor`` that is out of reach.
+
+    That is so if at least one of its patches of ``least`` m2 or more is not just hidden by what
+    stands on it.
+    """
     patches = patches_of(floor, context.frame, least)
     return not all(is_hidden(patch, context, obstacles) for patch in patches)
 
@@ -49,11 +52,10 @@ def rounded_off(context: PlanningContext, here: Point, obstacles: list[RoundObst
 def worth_another_round(
     left: Mask, wanted: int, frame: GridFrame, plan_over: PlanOver, config: CleaningConfig
 ) -> Mask:
-    """Return the patches of what is ``left``, bool over ``frame``, that are worth a way of their
-    own, all or none.
+    """Return the patches of what is ``left`` if they are worth a way of their own, else none.
 
-    ``wanted`` is how many cells of the stage can be reached. Once enough of them is clean smaller
-    patches are left, and less way is worth it.
+    Masks are bool over ``frame``. ``wanted`` is how many cells of the stage can be reached. Once
+    enough of them are clean, smaller patches are left out, and less way is worth it.
     """
     is_enough = 1.0 - np.count_nonzero(left) / max(wanted, 1) >= config.enough
     least = config.least_for_round if is_enough else config.least_patch

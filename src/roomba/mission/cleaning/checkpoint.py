@@ -35,7 +35,7 @@ def unpacked(text: str, shape: tuple[int, int]) -> Mask:
     """Return the mask of a text; raises CheckpointError if it is none of that shape."""
     cells = shape[0] * shape[1]
     try:
-        # A few bytes more than expected: no text can unpack to what takes the memory.
+        # The limit is above what is expected, and keeps a text from unpacking to all of the memory.
         content = zlib.decompressobj().decompress(base64.b64decode(text, validate=True), cells)
     except (binascii.Error, zlib.error, ValueError) as error:
         raise CheckpointError(f"expected a packed mask: {error}") from error

@@ -44,7 +44,7 @@ class Cleaning:
     """Plans piece by piece; ``ledger`` tells what is wanted, and what of it is clean.
 
     ``is_again``: the present path is one of a later round, over what the first one left.
-    ``mean_passes`` is how often the floor is asked for, in the mean.
+    ``mean_passes`` is the number of passes over the floor that are asked for, in the mean.
     """
 
     def __init__(
@@ -71,11 +71,11 @@ class Cleaning:
         self._scrubbed = False
         self._rest: Floats | None = None
         self.broken_off = 0.0
-        """m; of the last path that was not driven to its end, what was left then."""
+        """m that were left of the last path that was not driven to its end."""
 
     @property
     def explores(self) -> bool:
-        """Whether it goes to see, for more floor, what the map does not show yet."""
+        """Whether the clean also explores, to find floor that the map does not show yet."""
         may_be_more = self.ledger.request.mode in (CleanMode.WHOLE, CleanMode.EDGES)
         return self._context.is_growing and may_be_more
 
@@ -96,7 +96,7 @@ class Cleaning:
     def next_path(self, here: Pose, obstacles: list[RoundObstacle]) -> Floats | None:
         """Return the next points to drive, float64 [n, 2], m, or None when all is done.
 
-        Raises NoPathError while it is shut in, so that it has to get out first.
+        Raises NoPathError while the robot is shut in, so that it has to get out first.
         """
         obstacles = self._context.with_closed_gaps(obstacles)
         if self._context.is_growing:
@@ -124,9 +124,9 @@ class Cleaning:
         return self._second_pass.at_hand(self._context, (here.x, here.y), rest, obstacles, now)
 
     def wants_another_look(self, lasting: list[RoundObstacle]) -> bool:
-        """Whether floor was out of reach: once, before the end, it is to be looked for again.
+        """Whether floor that was out of reach is to be tried again, once, before the end.
 
-        What is out of reach because of ``lasting`` things alone, which stay, is left out.
+        Floor that is out of reach because of ``lasting`` things alone is left out: they stay.
         """
         if self._looked_again or not self._unreachable or self.ledger.stage is not None:
             return False
@@ -152,17 +152,16 @@ class Cleaning:
     def interrupted(self, rest: Floats) -> None:
         """Tell that the last path was not driven to its end; ``rest``, float64 [n, 2], m, is left.
 
-        So it says nothing of what was missed; what is worth a round is planned first.
+        So that path does not count as a round; what is large enough for a round is planned first.
         """
         self._begin_anew(rest)
         self.broken_off = Path(rest).length
 
     def plans_anew(self, now: float, rest: Floats) -> bool:
-        """Whether the ``rest``, float64 [n, 2], m, of a path on which something stands is to be
-        planned anew.
+        """Whether to plan anew the ``rest``, float64 [n, 2], m, of a path that something blocks.
 
-        With all that is known by now that takes less way than to go around it and to come back for
-        what is next to it.
+        A plan with all that is known by now takes less way than to go around the thing and to come
+        back for the floor next to it.
         """
         if not self._rounds.begin_replan(now, Path(rest).length):
             return False
@@ -197,9 +196,9 @@ class Cleaning:
         }
 
     def restore(self, values: Values) -> None:
-        """Go on from such values, of this map or of less of it.
+        """Go on from such values, which are of this map or of a smaller part of it.
 
-        Raises CheckpointError, and others for junk.
+        Raises CheckpointError, and other errors for junk.
         """
         self.ledger.restore(values)
         self._looked_again = bool(values["looked_again"])
@@ -213,7 +212,7 @@ class Cleaning:
     ) -> tuple[Missed, ...]:
         """Return what is not clean, the largest first, with the reason.
 
-        ``is_over``: it went on to the end; ``edges`` are ``obstacles`` where the floor ends.
+        ``is_over``: the clean went on to its end; ``edges`` are ``obstacles`` where the floor ends.
         """
         left, least = self.ledger.coverage.wanted & ~self.ledger.clean, self._config.least_patch
         return missed_floor(left, least, self._context, obstacles, edges, is_over=is_over)
@@ -223,7 +222,7 @@ class Cleaning:
         at = (here.x, here.y)
         planner = self._context.growing_coverage
         floor = planner.floor.with_obstacles(obstacles).coverable(at)
-        # Edges are driven along on the whole map, by which the place is known better.
+        # Edges wait for the whole map, by which the robot knows its place better.
         todo = self.ledger.untried & floor & ~edges_of(floor, self._context)
         todo = self._large(todo, self._config.least_while_growing)
         if not todo.any():
@@ -262,8 +261,8 @@ class Cleaning:
     ) -> Mask:
         """Return what is planned of the floor that is ``left`` of a stage, ``missed`` m2.
 
-        All of it in the first round, what is large in a plan that is made anew, and what is worth a
-        way of its own later.
+        In the first round that is all of it, in a plan that is made anew its large patches, and
+        later what is worth a way of its own.
         """
         ledger, config, at = self.ledger, self._config, (here.x, here.y)
         if self._rounds.take_anew():
@@ -284,7 +283,7 @@ class Cleaning:
     def _dirty_at_the_end(
         self, stage: Stage, here: Pose, obstacles: list[RoundObstacle], plan_over: PlanOver
     ) -> Mask:
-        """Return the dirty floor of a stage that is swept again at its end; once there is some."""
+        """Return the dirty floor of a stage that is swept again, once, at the stage's end."""
         if self._rounds.is_first or self._scrubbed:
             return np.zeros(stage.floor.shape, np.bool_)
         self._scrubbed = True
@@ -294,10 +293,11 @@ class Cleaning:
     def _plan_where_it_can(
         self, todo: Mask, here: Pose, obstacles: list[RoundObstacle], plan_over: PlanOver
     ) -> CoveragePlan | None:
-        """Plan a round; where no way leads on, over what of it can be reached; None if that is
-        little.
+        """Plan a round over ``todo``, or over its part in reach if no way leads on.
 
-        Raises NoPathError while it tries to get out first.
+        None if that part is small.
+
+        Raises NoPathError while the robot is to try to get out first.
         """
         at = (here.x, here.y)
         try:
@@ -318,7 +318,7 @@ class Cleaning:
     def _planned(
         self, todo: Mask, here: Pose, obstacles: list[RoundObstacle], plan_over: PlanOver
     ) -> CoveragePlan:
-        """Plan over what is to do; beside the rest of a path slivers may be left.
+        """Plan over ``todo``; slivers beside the rest of the path before may be left out.
 
         Raises NoPathError.
         """

@@ -37,7 +37,7 @@ from roomba.vocabulary import CleanMode, RoomWay
 
 _ALL: Final = 0xFF
 _AS_NEAR: Final = 1.5
-"""Cells; what is farther by less is as near."""
+"""Cells; a place that is farther than the nearest one by no more than this is as near."""
 
 
 class CoverageLedger:
@@ -64,7 +64,7 @@ class CoverageLedger:
 
     @property
     def stage(self) -> Stage | None:
-        """The one that it is at, or None at the end."""
+        """The stage that the clean is at, or None at the end."""
         return self.stages[self.stage_number] if self.stage_number < len(self.stages) else None
 
     @property
@@ -94,7 +94,7 @@ class CoverageLedger:
         return untried
 
     def note_tried(self, floor: Mask) -> None:
-        """A path over this floor was planned."""
+        """Note that a path over this floor was planned."""
         self.coverage.cells[floor] |= np.uint8(TRIED)
 
     def try_again(self) -> None:
@@ -154,8 +154,9 @@ class CoverageLedger:
     def way_out_of(self, stage: Stage) -> tuple[float, float] | None:
         """Return where the next part begins, m, seen from this one; None if it is the last.
 
-        That is in the middle of where it is nearest: at the side of a door the robot would touch
-        the frame. Of another pass over the same floor it is anywhere, and not told.
+        That is the middle of the places where it is nearest: at the side of a door the robot would
+        touch the frame. None also if the next part is another pass over the same floor, which may
+        begin anywhere.
         """
         following = self.stages[self.stage_number + 1 : self.stage_number + 2]
         if not following or (following[0].floor & stage.floor).any():
@@ -199,7 +200,7 @@ class CoverageLedger:
         self._want((self.coverage.wanted & coverable & wanted) | freed)
 
     def _use_more_map(self, context: PlanningContext) -> None:
-        """Bring what is swept to the new map, and want all that this one shows."""
+        """Bring what is swept to the new map, and want all that the new map shows."""
         moved = old_in_new(self._context.station, context.station)
         self._carry(self._context.frame, context.frame, moved)
         self._began_at = moved.compose(self._began_at)
@@ -234,9 +235,9 @@ class CoverageLedger:
         }
 
     def restore(self, values: Values) -> None:
-        """Go on from such values, of this map or of less of it.
+        """Go on from such values, which are of this map or of a smaller part of it.
 
-        Raises CheckpointError, and others for junk.
+        Raises CheckpointError, and other errors for junk.
         """
         frame, station = self._place_of(values)
         moved = old_in_new(station, self._context.station)

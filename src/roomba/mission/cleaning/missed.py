@@ -41,9 +41,9 @@ def missed_floor(
 ) -> tuple[Missed, ...]:
     """Return the patches of ``least`` m2 or more of what is ``left``, the largest first.
 
-    ``left`` is bool over the context's frame. A strip of single cells along a swath is no place
-    that was missed: a fraction of a cell decides about it. ``edges`` are those of the ``obstacles``
-    where the floor ends. ``is_over``: the clean went on to its end.
+    ``left`` is bool over the context's frame. A strip that is one cell wide, along a swath, does
+    not count as missed: a fraction of a cell decides about it. ``edges`` are those of the
+    ``obstacles`` where the floor ends. ``is_over``: the clean went on to its end.
     """
     patches = [
         part
@@ -91,7 +91,7 @@ def is_broad(cells: Mask) -> bool:
 
 
 def is_hidden(patch: Patch, context: PlanningContext, things: Sequence[RoundObstacle]) -> bool:
-    """Whether a patch is what things stand on and hide, and not a room behind them."""
+    """Whether a patch is floor that things stand on or hide, and not a room behind them."""
     rows, columns = np.nonzero(patch.cells)
     frame: GridFrame = context.frame
     x, y = frame.centres(rows, columns)
@@ -130,7 +130,7 @@ def _why_hardly_any(covered: float, missed: Sequence[Missed]) -> str:
 
 
 def _reachable(context: PlanningContext, obstacles: Sequence[RoundObstacle]) -> Mask:
-    """Return what can be cleaned from the station among what the map does not show."""
+    """Return the floor that can be reached from the station, among ``obstacles``."""
     staging = (context.staging.x, context.staging.y)
     return context.reachable(staging, context.with_closed_gaps(obstacles))
 

@@ -52,7 +52,7 @@ class Missed:
 
 @dataclass(frozen=True, slots=True)
 class CleanResult:
-    """What a clean achieved: areas in m2, dirt in g, m, s of robot time, Wh.
+    """What a clean achieved: areas m2, dirt g, distance m, duration s of robot time, energy Wh.
 
     ``open_edges`` are where the map that it made on the way still ended when nothing was left to
     look for, the longest first.

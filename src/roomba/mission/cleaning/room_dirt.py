@@ -11,7 +11,7 @@ from roomba.vocabulary import RoomDirt
 
 
 def dirt_of_rooms(clean: Mask, context: PlanningContext, dirt: DirtMap) -> tuple[RoomDirt, ...]:
-    """Return what the present run of ``dirt`` counted, room by room; of rooms alone it swept.
+    """Return what the present run of ``dirt`` counted, room by room, for rooms that were swept.
 
     ``clean`` is what is swept, bool over the context's grid.
     """

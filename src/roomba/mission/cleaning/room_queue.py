@@ -25,10 +25,10 @@ def queue_of(request: CleanRequest, left: Sequence[Stage]) -> tuple[str, ...]:
 def changed_request(
     request: CleanRequest, done: Collection[str], names: Sequence[str], each: Sequence[RoomWay]
 ) -> CleanRequest:
-    """Return a request of which rooms are ``done``, and ``names`` are still to be cleaned.
+    """Return the request changed so that, beside rooms that are ``done``, it cleans ``names``.
 
-    ``each`` is how each of those is cleaned; without it those of before stay as they were, and new
-    ones are cleaned as all are. Raises CleanRefusedError.
+    ``each`` is how each of ``names`` is cleaned. Without it, rooms of the request stay as they
+    were, and new ones are cleaned as the request says for all. Raises CleanRefusedError.
     """
     if request.mode is not CleanMode.ROOMS:
         raise CleanRefusedError(
@@ -60,12 +60,12 @@ def changed_stages(
     swept: Mask,
     parts_of: Callable[[str], Sequence[Stage]],
 ) -> tuple[list[Stage], int]:
-    """Return the stages with other rooms from the present one on, and the number of that.
+    """Return the stages with other rooms from the present stage on, and the present one's number.
 
     ``before`` is the request of the ``stages``, of which ``number`` is under way, and ``request``
-    the changed one; ``parts_of`` tells the parts in which one pass over a room is swept. A present
-    room that is no more wanted leaves what was ``swept`` of it. Each room has its first pass before
-    any has its second.
+    the changed one; ``parts_of`` tells the parts in which one pass over a room is swept. Of a
+    present room that is not wanted any more, what was ``swept`` of it stays as a stage. Each room
+    has its first pass before any has its second.
     """
     done, present, later = list(stages[:number]), stages[number], stages[number + 1 :]
     finished = Counter(stage.name for stage in done)
@@ -91,9 +91,9 @@ def changed_stages(
 
 
 def renamed_rooms(before: Rooms | None, after: Rooms | None) -> dict[str, str]:
-    """Return the new names of rooms, by their old ones, whose cells are what they were.
+    """Return the new names, by old ones, of rooms whose cells did not change.
 
-    A room that goes by its old name is left out, and one of which cells came or went.
+    A room that keeps its name is left out, and so is one that gained or lost cells.
     """
     if before is None or after is None or before.frame != after.frame:
         return {}
@@ -112,9 +112,10 @@ def with_renamed(request: CleanRequest, names: Mapping[str, str]) -> CleanReques
 
 
 def _passes_left(parts: Sequence[Stage], passes: int, finished: int) -> list[list[Stage]]:
-    """Return the passes over a room that are left, each as its parts, of which some are finished.
+    """Return the passes over a room that are left, each as its parts.
 
-    When all are finished, all are left: it is wanted once more.
+    ``finished`` counts the parts, of all passes, that are done. When all are done, all are left:
+    the room is wanted once more.
     """
     begun, first = divmod(finished % (passes * len(parts)), len(parts))
     is_swept = finished >= len(parts)

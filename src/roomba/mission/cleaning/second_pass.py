@@ -56,8 +56,8 @@ class SecondPass:
     def at_the_end(self, floor: Mask, reachable: Mask, plan_over: PlanOver) -> Mask:
         """Return what of a floor, and of what is ``reachable``, is swept again at its end.
 
-        All masks are bool over the coverage map. A patch that a plan over it alone makes too long a
-        way for is left out.
+        All masks are bool over the coverage map. A patch is left out if a plan over it alone takes
+        too long a way for its area.
         """
         coverage, worth = self._ledger.coverage, self._config.worth_way_again
         again = np.zeros(coverage.frame.shape, np.bool_)

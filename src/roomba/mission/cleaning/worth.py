@@ -17,7 +17,7 @@ PlanOver = Callable[[Mask], CoveragePlan]
 
 
 def made_once(plan_over: PlanOver) -> PlanOver:
-    """Return the same, which makes the plan over each floor once."""
+    """Return ``plan_over`` with a cache, which plans over each floor once."""
     plans: dict[bytes, CoveragePlan] = {}
 
     def over(floor: Mask) -> CoveragePlan:
@@ -32,9 +32,9 @@ def made_once(plan_over: PlanOver) -> PlanOver:
 def slivers_of(floor: Mask, ahead: Mask, frame: GridFrame, least: float) -> Mask:
     """Return what of a floor is not ``ahead`` and in patches of less than ``least`` m2.
 
-    All bool over ``frame``; ``ahead`` is what the rest of a path sweeps. Beside swaths that were
-    driven slivers are left, a cell wide. What is ahead is as wide as the swaths over it: with a
-    sliver beside it it takes one more.
+    All bool over ``frame``; ``ahead`` is what the rest of a path sweeps. Swaths that were driven
+    leave slivers beside them, a cell wide. Floor ahead is as wide as the swaths that are planned
+    over it: with a sliver beside it, it would take one swath more.
     """
     behind = floor & ~ahead
     return behind & ~large_regions(behind, frame.resolution, least)
@@ -48,11 +48,11 @@ def plan_worth_its_way(
     worth: float,
     planned: float,
 ) -> CoveragePlan:
-    """Return a plan over a floor, bool over ``frame``, or over it but for ``slivers``.
+    """Return a plan over a floor, bool over ``frame``, with or without its ``slivers``.
 
-    These are left where they take more way than ``worth`` m for each m2, unless they are all.
-    ``planned`` is how long the way was that the plan takes the place of, m: by one that is longer
-    by no more than the slivers are worth nothing is lost, and no other one is made. Raises
+    The slivers are left out where they take more way than ``worth`` m for each m2, unless they are
+    all there is. ``planned`` is the length, m, of the plan that this one replaces: a plan that is
+    longer by no more than the slivers are worth is kept, and none without them is made. Raises
     NoPathError.
     """
     plan, rest = plan_over(floor), floor & ~slivers
@@ -66,8 +66,10 @@ def plan_worth_its_way(
 
 
 def is_worth_its_way(plan_over: PlanOver, floor: Mask, frame: GridFrame, worth: float) -> bool:
-    """Whether a way over a floor, bool over ``frame``, is longer than the way on alone by no more
-    than ``worth`` m for each m2; also where no way is known."""
+    """Whether a floor, bool over ``frame``, adds no more way than ``worth`` m for each m2.
+
+    The way over it is compared with the way on alone. True also where no way is known.
+    """
     try:
         way = plan_over(floor).length - plan_over(np.zeros_like(floor)).length
     except NoPathError:

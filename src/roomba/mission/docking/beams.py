@@ -8,10 +8,10 @@ from typing import Final
 
 @dataclass(frozen=True, slots=True)
 class StationBeams:
-    """What the receiver sees of the station, which looks at the robot that comes.
+    """What the robot's receiver sees of the station's light.
 
-    ``red`` is the beam to the station's left as it looks out, so to the right of a robot that
-    looks at it; ``green`` is the other one. In the middle both are seen.
+    ``red`` is the beam to the station's left as it looks out, so to the right of a robot that looks
+    at it; ``green`` is the other one. In the middle both are seen.
     """
 
     halo: bool = False

@@ -22,9 +22,9 @@ _DOCKED_BLIND: Final = "docked without its beams: wipe the robot's infrared rece
 
 
 def staging_pose(station: Pose, distance: float) -> Pose:
-    """Return where path planning should bring the robot, so far, m, before the station; map frame.
+    """Return the pose, map frame, that path planning should bring the robot to before it docks.
 
-    It faces the station.
+    It is ``distance`` m before the station, and faces it.
     """
     return station.compose(Pose(-distance, 0.0, 0.0))
 
@@ -91,7 +91,7 @@ class Docking:
         self._follow_motion(is_known)
 
     def _is_led(self, senses: DockSenses) -> bool:
-        """Whether it sees the station's beams, or there are none and its place is all it has."""
+        """Whether the robot sees the station's beams, or must go by its pose as there are none."""
         return senses.beams.leads or not self._has_beams
 
     def _follow_motion(self, is_known: bool) -> None:
@@ -152,7 +152,10 @@ class Docking:
         return self._begin_attempt(is_blind=True) if wanted is None else wanted
 
     def _begin_attempt(self, *, is_blind: bool) -> Twist:
-        """Drive at the station; blind, by the believed place alone, only to find out what is."""
+        """Begin to drive at the station.
+
+        A blind attempt goes by the believed pose alone, and only finds out what is wrong.
+        """
         config = self._config
         if self._attempts >= config.max_attempts:
             self._fail(self._trouble or Trouble.BEAMS_LOST)
@@ -203,9 +206,10 @@ class Docking:
         return STANDSTILL if self._awaits_current() else self._drive_at_station()
 
     def _awaits_current(self) -> bool:
-        """Whether it stands for now where it should be docked: current may be told late.
+        """Whether the robot waits where it should be docked, since current may be told late.
 
-        On a slow line it would be past the contacts by then, and press against the station.
+        Without the wait, on a slow line, it would be past the contacts by the time that current is
+        told, and press against the station.
         """
         now = self._time.elapsed
         if self._arrived is None and self._track.left <= 0.0:

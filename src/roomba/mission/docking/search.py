@@ -31,7 +31,7 @@ class BeamSearch:
         del self._places[:1]
 
     def tick(self, track: StationTrack, dt: float) -> Twist | None:
-        """Return the wanted twist; None when it has been everywhere. ``dt``: s since the last."""
+        """Return the wanted twist, or None after the last place. ``dt``: s since the last tick."""
         while self._places:
             place = self._places[0]
             if place is not None and track.pose.distance_to(*place) > self._config.place_tolerance:

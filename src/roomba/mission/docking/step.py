@@ -10,7 +10,7 @@ from roomba.mission.docking.beams import StationBeams
 
 
 class DockState(Enum):
-    """How docking stands."""
+    """The state of docking."""
 
     SEARCHING = "searching"
     """It sees no beam, and looks for them."""
@@ -64,7 +64,7 @@ class Trouble(Enum):
 
     @property
     def may_end_with_beams(self) -> bool:
-        """Whether beams that are seen again may be all it takes; a lost robot is to be brought."""
+        """Whether docking may succeed once beams are seen again; a lost robot must be brought."""
         return self in (Trouble.NO_POWER, Trouble.NOT_THERE, Trouble.HIDDEN)
 
 

@@ -98,7 +98,7 @@ class StationTrack:
         return min(ahead, edge) if halo else max(ahead, edge)
 
     def _aside(self, ahead: float, before: StationBeams, beams: StationBeams) -> float:
-        """Return y, so far before the station's front: by the beams, or by one that just ended."""
+        """Return y, ``ahead`` m before the station's front, by the beams seen now or just lost."""
         y, inner, outer = self.pose.y, self._slope * ahead, self._wide * ahead
         if beams.green and beams.red:
             return min(max(y, -inner), inner)
@@ -107,7 +107,7 @@ class StationTrack:
             inner = min(inner + self._config.heading_doubt * self._way_aside, outer)
             return side * min(max(side * y, inner), outer)
         if before.red != before.green:
-            # Had it left to the middle, both would be seen.
+            # It left the beam on the outer side: towards the middle it would see both.
             return outer if before.green else -outer
         return y
 

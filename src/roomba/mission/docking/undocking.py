@@ -1,4 +1,4 @@
-"""Undocking: backing straight out of the charging station, whose nose the docked robot faces.
+"""Undocking: the robot, which faces its charging station, backs straight out of it.
 
 No clock and no I/O: it is ticked with what the robot senses and answers with what it wants.
 """
@@ -15,7 +15,7 @@ from roomba.mission.docking.step import DockSenses
 
 
 class UndockState(Enum):
-    """How undocking stands."""
+    """The state of undocking."""
 
     BACKING_OUT = "backing out"
     OUT = "out"
@@ -99,7 +99,7 @@ class Undocking:
 
 
 def stands_in(station: Pose, senses: DockSenses, config: DockingConfig) -> bool:
-    """Whether a robot that gets no current stands in the station all the same, as is believed."""
+    """Whether the robot, by its believed pose, stands in the station though it gets no current."""
     pose = _believed(senses)
     if pose is None or pose.distance_to(station.x, station.y) >= config.undocked_distance:
         return False

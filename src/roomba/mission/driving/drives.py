@@ -18,7 +18,7 @@ from roomba.planning.path.planner import NoPathError, NoPathReason
 
 
 class Drives:
-    """``driver`` is on the present path, if there is one; ``context`` is where it plans.
+    """``driver`` drives the present path, None without one; ``context`` is what it plans on.
 
     ``is_round``: the path is one over the floor that a clean planned.
     """
@@ -65,7 +65,7 @@ class Drives:
         )
 
     def caught_up(self, senses: Senses, places: Floats) -> None:
-        """Go on after ticks that were the tracker's alone, begun at places, float64 [n, 2], m."""
+        """Go on after ticks that only the tracker ran, begun at ``places``, float64 [n, 2], m."""
         if self.driver is not None:
             self.trail.add_all(places)
             self.driver.caught_up(senses)
@@ -90,7 +90,7 @@ class Drives:
         return self._rejoin.way_home(senses, self.obstacles, self.trail)
 
     def way_out(self, senses: Senses) -> Floats | None:
-        """Return the first of the way home, out of a place that no path leads out of, or None."""
+        """Return the beginning of the way home, for a place that no path leads out of, or None."""
         return self._rejoin.way_out(senses, self.obstacles, self.trail)
 
     def make_room(self, senses: Senses) -> None:
@@ -105,9 +105,9 @@ class Drives:
         return self._length_home(senses) is not None
 
     def is_parted_from_home(self, senses: Senses) -> bool:
-        """Whether walls and zones alone part it from its station: they stay.
+        """Whether walls and zones, which stay, part the robot from its station.
 
-        A map that grows may show a way yet.
+        False while the map grows: it may show a way yet.
         """
         context = self.context
         if context.is_growing:
@@ -121,7 +121,7 @@ class Drives:
         return False
 
     def distance_home(self, senses: Senses) -> float:
-        """Return how far it is home, m; what cannot be told is as far as the map is wide."""
+        """Return how far it is home, m; the map's width plus its height where no way is known."""
         length = self._length_home(senses)
         if length is None:
             left, right, low, high = self.context.known.frame.extent
@@ -137,7 +137,7 @@ class Drives:
             return None
 
     def forget_place(self) -> None:
-        """The robot is somewhere else than it thought: what it remembers is of another place."""
+        """Forget trail and obstacles: the robot is elsewhere, and they are of another place."""
         self.trail.forget()
         self.obstacles.forget()
 

@@ -24,10 +24,10 @@ def way_aside(
     trail: Trail,
     config: GivingWayConfig,
 ) -> Floats | None:
-    """Return a way, float64 [n, 2], m, to where there is room between the robot and what stands.
+    """Return a way, float64 [n, 2], m, to where the robot leaves room beside what stands there.
 
-    Where nothing is known to stand beside it, it goes away from where it is: what stands there may
-    be on a map that is being made. None when there is no such place.
+    Where nothing is known to stand beside the robot, the robot leaves the place where it is: what
+    stands there may be part of a map that is being made. None when there is no such place.
     """
     here = (senses.pose.x, senses.pose.y)
     standing, at_least = obstacles.standing(senses.now), obstacles.at_least(senses.now)

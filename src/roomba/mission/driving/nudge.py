@@ -1,7 +1,7 @@
 """Moving a piece of a path aside a little, from things that turn out to stand nearer to it.
 
-Each look at a thing shows a bit more of it. A path along it, so that the floor beside it gets
-clean, is kept that way, instead of leaving it and coming back another time.
+Each look at a thing shows a bit more of it. A path along the thing is moved aside and kept, so that
+the floor beside the thing gets clean without leaving the path and coming back another time.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def nudged(
     moved = np.hypot(*(points - before).T)
     is_moved = moved > 1e-6
     has_room = _fits(floor, points) | ~is_moved
-    # Where it joins what comes then, it must be where it was.
+    # Where the moved piece joins the rest of the path, it must not have moved.
     if moved.max() > most or not has_room.all() or (last < length and is_moved[-1]):
         return None
     if (_too_near(points, things, keep)[0] > _NEARLY).any():

@@ -25,10 +25,10 @@ from roomba.perception.things.layer import ThingLayer
 
 _FOREVER: Final = math.inf
 _TOUCHES: Final = 20
-"""The last ones, which are compared."""
+"""The newest touches, with whose places a new one is compared."""
 _SPARED: Final = 0.010
-"""m; so much nearer to a thing than planned it may come, of the 0.02 m that a thing is thought
-thicker than it was seen: else each new look at it would break a path along it."""
+"""m by which the robot may come nearer to a thing than planned, of the 0.02 m by which a thing is
+thought thicker than it was seen: else each new look at it would break a path along it."""
 _MOST_BESIDE: Final = 2
 """Touches from one place that a wall beside the robot explains; after them something else must."""
 _LEAST: Final = 0.01
@@ -48,12 +48,12 @@ class Way(Protocol):
 
 
 class Obstacles:
-    """Round things in the way; ``version`` changes when there are others.
+    """Round things in the way; ``version`` changes whenever a thing comes or goes.
 
-    The one memory of a robot's drives, of cleans and walks alike: what was felt is forgotten after
-    ``felt_memory`` s; after half an hour what was felt again at the same place, and what was felt
-    where nothing is seen. What was seen is forgotten when the lidar sees through it. An edge of
-    the floor is remembered through the errand in which it was felt; felt in two errands, for good.
+    Cleans and walks share this one memory. What was felt is forgotten after ``felt_memory`` s. What
+    was felt again at the same place, or where nothing is seen, is forgotten after
+    ``lasting_memory`` s. What was seen is forgotten when the lidar sees through it. An edge of the
+    floor is remembered through the errand in which it was felt; felt in two errands, for good.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class Obstacles:
         # Stairs do not go away. What a speck of dirt on a sensor showed once is not felt again.
         self._edges = UnknownThings(walk, body, _FOREVER)
         self._stairs = UnknownThings(walk, body, _FOREVER)
-        # Of errands before: in nothing's way, and stairs if it is felt again.
+        # Edges of errands before: they block nothing, and become stairs if they are felt again.
         self._edges_before = UnknownThings(walk, body, _FOREVER)
         self._all_edges = self._edges, self._stairs, self._edges_before
         self._same_place, self._tipping = config.lasting_radius, walk.tipping
@@ -92,7 +92,7 @@ class Obstacles:
         return self.seen.version + self.felt_version
 
     def use(self, seen: ThingLayer, moved: Pose) -> None:
-        """Go on with what is seen besides another map; what was felt stays where it was.
+        """Go on with ``seen``, the things beside another map; what was felt stays where it was.
 
         The frame of the map before lies at ``moved`` in that of this one.
         """
@@ -116,7 +116,7 @@ class Obstacles:
             edges = self._stairs if self._ended_before(places) else self._edges
             edges.felt(senses.now, here, *senses.touches)
         elif is_unseen and before < _MOST_BESIDE and (walls := self._bearings_of_walls(senses)):
-            # What it met aside, where a gap is narrow: nothing stands before it.
+            # The robot met a wall aside, in a narrow gap: nothing stands before it.
             self._beside.felt_at(senses.now, here, walls)
         elif is_unseen:
             self._unseen.felt(senses.now, here, *senses.touches)
@@ -172,10 +172,10 @@ class Obstacles:
         return self._edges.at(0.0) + self._stairs.at(0.0)
 
     def at_least(self, now: float) -> list[RoundObstacle]:
-        """Return the same, as small as it may be: where the bumper felt something is a guess.
+        """Return what is :meth:`standing`, as small as it may be: where the bumper felt is a guess.
 
-        What was felt again, or where nothing is seen, begins where the body touched it: else the
-        way would lead there anew.
+        What was felt again, or was felt where nothing is seen, begins where the body touched it:
+        else the way would lead there anew.
         """
         felt = [(x, y, _LEAST) for x, y, _ in self._felt.at(now)]
         for touched in (self._lasting, self._unseen, self._beside):
@@ -194,7 +194,7 @@ class Obstacles:
         return self.seen.first_blocked(way.points, way.stations, first, last, self.keep)
 
     def offered_zones(self, zones: Zones) -> tuple[OfferedZone, ...]:
-        """Return the no-go zones that are offered beside those that there are."""
+        """Return the no-go zones that are offered in addition to ``zones``."""
         return self.low.offers(zones, self._low_config)
 
     def _is_any_seen(self, places: list[tuple[float, float]]) -> bool:

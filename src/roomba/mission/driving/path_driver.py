@@ -1,7 +1,7 @@
 """Driving a path to its end, around what stands in the way.
 
-No clock and no I/O: it is ticked with what the robot senses and answers with the twist it wants.
-What it finds in its way it remembers, leaves the path before it, and joins it again behind.
+No clock and no I/O: it is ticked with what the robot senses and answers with the twist it wants. It
+remembers what it finds in its way, leaves the path before the thing, and joins it again behind.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ from roomba.mission.inputs.senses import Senses
 _PAUSE: Final = 3.5
 """Ticks; after more of them without a command its drive has stopped."""
 _HERE: Final = 0.001
-"""m; the robot stands at what is as near as this."""
+"""m; the robot counts as standing at a corner that is as near as this."""
 
 
 class DriveState(Enum):
-    """How a drive stands."""
+    """The state of a drive."""
 
     DRIVING = "driving"
     BACKING = "backing"
@@ -75,7 +75,7 @@ class DriveStep:
 class PathDriver:
     """Drives along ``points``, float64 [n, 2], m, from wherever the robot stands.
 
-    How it comes farther is in ``progress``, PROGRESS [1], and what stands before it in ``ahead``;
+    Its progress is in ``progress``, PROGRESS [1], and what stands before it in ``ahead``; compiled
     kernels go on with both while it :attr:`is_tracking`.
 
     Each tick ends in bounded time, and so does the drive: what blocks it is remembered, and it
@@ -128,7 +128,7 @@ class PathDriver:
     def points_left(self) -> NDArray[np.float64]:
         """The corners of the path before the robot, and its end, float64 [n, 2], m.
 
-        A corner where it stands is behind it.
+        A corner at which the robot stands counts as behind it.
         """
         course = self.tracker.course
         return course.points[course.stations > self.tracker.along + _HERE]
@@ -140,7 +140,7 @@ class PathDriver:
 
     @property
     def is_tracking(self) -> bool:
-        """Whether the next ticks are those of its tracker alone, while nothing comes up."""
+        """Whether only the tracker runs in the next ticks, as long as nothing comes up."""
         return self._state is DriveState.DRIVING and not self.tracker.is_done
 
     def tick(self, senses: Senses, limit: float) -> DriveStep:
@@ -166,11 +166,11 @@ class PathDriver:
         return DriveStep(self._state, STANDSTILL, self._reason)
 
     def caught_up(self, senses: Senses) -> None:
-        """Go on after ticks that were the tracker's alone."""
+        """Go on after ticks that only the tracker ran."""
         self._jumps.last, self._was_touching = senses.now, False
 
     def _follow_clock(self, now: float) -> None:
-        """When the clock was set, move the times that are remembered with it.
+        """Move the remembered times along when the clock was set.
 
         A robot that was not driven for some ticks stands by now.
         """
@@ -214,7 +214,7 @@ class PathDriver:
         return DriveStep(self._state, STANDSTILL, self._reason)
 
     def _needs_new_way(self, senses: Senses) -> bool:
-        """Whether it was moved, or something that was seen stands in its way."""
+        """Whether the robot is off its path, or something that was seen stands on it."""
         if self.tracker.off_path(senses.pose) > self._config.off_path:
             return True
         return self.ahead.is_blocked(self.tracker.along)
@@ -237,7 +237,7 @@ class PathDriver:
     def _begin(
         self, points: NDArray[np.float64], senses: Senses, leaves_until: float = 0.0
     ) -> None:
-        """Drive another path; before ``leaves_until``, m along it, nothing seen is in its way."""
+        """Drive another path; before ``leaves_until``, m along it, things seen do not count."""
         robot = self._robot
         self.tracker = PathTracker(points, robot.tracking, robot.body, robot.timing.tick)
         self.ahead = WayAhead(

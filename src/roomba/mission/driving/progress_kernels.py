@@ -1,4 +1,4 @@
-"""How far a drive came on its path, as compiled code tells it."""
+"""The progress of a drive on its path, in compiled code."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ PROGRESS: Final = np.dtype(
 
 @entry
 def is_held(rows: Rows, along: float, leg: int, to_turn: float, now: float) -> bool:
-    """Remember whether a drive came farther by a time, s; tell if it has not for too long.
+    """Note the progress of a drive at ``now``, s; tell whether it made none for too long.
 
-    ``to_turn`` is what is left of a turn on the spot, rad, infinite where it drives. On one place
-    it comes farther as long as less and less of a turn is left, so not for ever.
+    ``to_turn`` is what is left of a turn on the spot, rad, infinite where it drives. A turn on the
+    spot counts as progress as long as less and less of it is left, so not for ever.
     """
     progress = rows[0]
     if along > progress.along + progress.least or leg > progress.leg:

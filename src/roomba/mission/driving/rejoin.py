@@ -48,8 +48,8 @@ class Rejoin:
     ) -> tuple[Floats | None, float]:
         """Return the points, float64 [n, 2], m, from here on, or None if nothing can be reached.
 
-        Also for how many m that is a way back. It may have come in by a gap that looks too narrow
-        now: then it squeezes through, or drives back as it came.
+        Also return for how many m they lead back. The robot may have come in by a gap that looks
+        too narrow now: then it squeezes through, or drives back as it came.
         """
         here = (senses.pose.x, senses.pose.y)
         standing, at_least = obstacles.standing(senses.now), obstacles.at_least(senses.now)
@@ -63,7 +63,7 @@ class Rejoin:
         return trail.back_and_on(lambda place: self._around(place, tracker, at_least))
 
     def way_home(self, senses: Senses, obstacles: Obstacles, trail: Trail) -> Floats:
-        """Return the way to the place before the station, if need be closely by what stands there.
+        """Return the way to the place before the station, if need be close to what stands there.
 
         Raises NoPathError when there is none.
         """
@@ -81,7 +81,7 @@ class Rejoin:
             return points
 
     def way_out(self, senses: Senses, obstacles: Obstacles, trail: Trail) -> Floats | None:
-        """Return the first of the way home, or None: out of a place that no path leads out of."""
+        """Return the beginning of the way home, for a place that no path leads out of, or None."""
         try:
             points = self.way_home(senses, obstacles, trail)
         except NoPathError:
@@ -106,7 +106,7 @@ class Rejoin:
     def _around(
         self, here: Point, tracker: PathTracker, obstacles: Sequence[RoundObstacle]
     ) -> Floats | None:
-        """Plan around round things, kept away from a little."""
+        """Plan around round things, a little away from them."""
         samples, stations = _samples(tracker)
         kept_away = [(x, y, radius + self._away) for x, y, radius in obstacles]
         try:
@@ -134,7 +134,7 @@ class Rejoin:
     def _squeezed(
         self, senses: Senses, tracker: PathTracker, obstacles: Sequence[RoundObstacle]
     ) -> Floats | None:
-        """Plan on the fine grid to the next free place behind, or to the end."""
+        """Plan on the fine grid to the next free place behind the thing, or to the path's end."""
         samples, stations = _samples(tracker)
         free = self._free(samples, obstacles)
         index = _first(_runs(free, _FREE_RUN), _behind(free))
@@ -180,7 +180,7 @@ def _samples(tracker: PathTracker) -> tuple[Floats, Floats]:
 
 
 def _behind(free: Bools) -> int:
-    """Return from where on to join: behind what stands on the first stretch of a path, if it is."""
+    """Return the first sample to join at: behind what blocks the path's first stretch, else 0."""
     blocked = np.flatnonzero(~free[:_STRETCH])
     return int(blocked[0]) if len(blocked) else 0
 

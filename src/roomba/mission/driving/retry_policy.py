@@ -63,7 +63,7 @@ class RetryPolicy:
         return self._has_begun
 
     def found_no_way_home(self) -> None:
-        """Count it."""
+        """Count one search for a way home that found none."""
         self._tries += 1
 
     @property
@@ -73,5 +73,5 @@ class RetryPolicy:
 
     @property
     def is_over(self) -> bool:
-        """Whether it waited long enough."""
+        """Whether it tried and waited often enough to give up."""
         return self._tries > self._config.most_ways_home + self._config.most_waits

@@ -10,7 +10,7 @@ class SearchPatience:
     """Tells when an errand is given up because the place is not found.
 
     A robot that becomes lost on its way has looked around in vain. One that stood lost when it was
-    told to drive looks around first: its search begins anew with that.
+    told to drive looks around first: its search begins anew with the errand.
     """
 
     def __init__(self, config: WalkConfig, knowledge: Knowledge) -> None:

@@ -30,7 +30,7 @@ class Trail:
         self._count = np.zeros(1, np.int64)
 
     def add(self, x: float, y: float) -> None:
-        """The robot is here; what is near to the last place is left out."""
+        """Remember that the robot is here; a place near to the last one is left out."""
         self.add_all(np.array([[x, y]]))
 
     def add_all(self, places: Floats) -> None:
@@ -42,11 +42,11 @@ class Trail:
         self._places[:] = moved.transform(self._places)
 
     def forget(self) -> None:
-        """The robot was carried: there is no way back."""
+        """Forget all places: the robot was carried, and there is no way back."""
         self._count[0] = 0
 
     def back_and_on(self, plan: Callable[[Point], Floats | None]) -> tuple[Floats | None, float]:
-        """Return the way back to the nearest place from which ``plan`` finds one, and that one.
+        """Return the way back to the nearest place from which ``plan`` finds a way, and that way.
 
         Also how long the way back is, m. None where there is no such place.
         """
@@ -63,10 +63,10 @@ class Trail:
 
 @entry
 def remember(kept: Floats, count: NDArray[np.int64], places: Floats) -> None:
-    """Keep those of some places, [n, 2], m, that are not near to the one kept before.
+    """Keep those of ``places``, [n, 2], m, that are not near to the one kept before.
 
-    ``kept`` is a ring; ``count`` [1] tells how many were put there since it was begun. To a place
-    that is too far off for a step the robot was carried: it is begun anew there.
+    ``kept`` is a ring; ``count`` [1] tells how many were put there since it was begun. When a place
+    is too far off for a step, the robot was carried, and the ring is begun anew there.
     """
     for number in range(places.shape[0]):
         x, y = places[number, 0], places[number, 1]

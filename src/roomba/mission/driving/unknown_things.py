@@ -74,8 +74,8 @@ class UnknownThings:
     def at(self, now: float, radius: float | None = None) -> list[RoundObstacle]:
         """Return what is still remembered; a clock set back forgets nothing.
 
-        Things touch the body where that felt them; ``radius``, m, is given to them in place of the
-        usual one.
+        A thing touches the body where the body felt it; ``radius``, m, is given to things in place
+        of the usual one.
         """
         self._felt = [touch for touch in self._felt if now - touch.time < self._memory]
         size = self._radius if radius is None else radius
@@ -96,7 +96,7 @@ class UnknownThings:
         self._felt = [touch.moved(moved) for touch in self._felt]
 
     def take(self, others: UnknownThings) -> None:
-        """Remember what others do, which forget it."""
+        """Take over what ``others`` remember; they forget it."""
         self._felt += others._felt
         others.forget()
 

@@ -18,7 +18,7 @@ _NEVER: Final = -1
 class WayAhead:
     """Looks along a path, and again when other things stand there or the robot has come farther.
 
-    What it knows is in ``rows``, AHEAD [1], that kernels go on with.
+    What it knows is in ``rows``, AHEAD [1], with which compiled kernels go on.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""How far a path is clear before the robot, as compiled code tells it."""
+"""How far a path is clear before the robot, in compiled code."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ def is_blocked(
 ) -> bool:
     """Tell whether a path is not clear any more for a robot that is ``along``, m.
 
-    It is looked at when ``version`` is another one than at the last look, or the robot has come as
-    far as it was looked at. ``points`` [n, 2] and ``stations`` [n], m, are the path's.
+    The path is looked at again when ``version`` is not that of the last look, or the robot has come
+    as far as the path was clear. ``points`` [n, 2] and ``stations`` [n], m, are the path's.
     """
     ahead = rows[0]
     if ahead.checked != version or along >= ahead.clear_to:

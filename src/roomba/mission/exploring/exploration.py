@@ -1,7 +1,7 @@
 """One exploration: which frontier to go to next, and when there is none left.
 
-No clock and no I/O. The map grows while the robot drives: whenever it did, the frontier that it is
-on its way to is looked at again.
+No clock and no I/O. The map grows while the robot drives. Each time that it did, the frontier that
+the robot is on its way to is checked again.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class ExploreResult:
 
     @property
     def is_completed(self) -> bool:
-        """Whether the map is whole: it saw all that it could get to see, and docked."""
+        """Whether the robot saw all that it could get to see, and docked: the map is whole."""
         return self.outcome is CleanOutcome.COMPLETED
 
 
@@ -70,13 +70,13 @@ class Exploration:
         self.goal: Frontier | None = None
         self.given_up: dict[Point, GivenUp] = {}
         self.times_given_up = 0
-        """Also of frontiers that it had given up before, and looked at from nearer."""
+        """Counts a frontier again that is given up anew, after it was looked at from nearer."""
         self._vanished: list[Point] = []
         self._sought: Point | None = None
         self._sought_for = 0.0
         self._looked_on: float | None = None
         self.is_as_near_as_it_gets = False
-        """Whether it touched something by the viewpoint that it is on its way to."""
+        """Whether the robot touched something by the viewpoint that it is on its way to."""
         self.times_stuck = 0
         self.times_shut_in = 0
         self.looked_again = False
@@ -93,7 +93,8 @@ class Exploration:
     def of(values: list[list[float]], config: ExploringConfig) -> Exploration:
         """Return an exploration that goes on; raises ValueError or TypeError for other values.
 
-        Those of older programs do not tell from how far it looked, or whether.
+        Values of older programs do not tell from how far a frontier was looked at, or whether it
+        was.
         """
         exploration = Exploration(config)
         for x, y, *told in values:
@@ -110,7 +111,7 @@ class Exploration:
         self.goal = self.goal and self.goal.moved(moved)
 
     def give_up(self, middle: Point, seen_from: float = 0.0) -> None:
-        """Go there no more, but to a place that is nearer than that it was ``seen_from``, m."""
+        """Give up a frontier until it can be seen from nearer than ``seen_from`` m; 0: for good."""
         self.times_given_up += 1
         known = self.given_up.get(middle, GivenUp(middle, math.inf, was_looked_at=False))
         self.given_up[middle] = GivenUp(
@@ -118,7 +119,7 @@ class Exploration:
         )
 
     def give_up_all(self, here: Pose, context: PlanningContext) -> None:
-        """Give up all frontiers of the floor that is known, also where the robot cannot get to."""
+        """Give up all frontiers of the known floor, also those that the robot cannot get to."""
         floor = context.known.values == FREE
         at = (here.x, here.y)
         left = frontiers(context.known, floor, floor, at, self.unseen, self._choice)
@@ -137,12 +138,14 @@ class Exploration:
         obstacles: list[RoundObstacle],
         farthest: float = math.inf,
     ) -> NDArray[np.float64] | None:
-        """Return the way to the next viewpoint, float64 [n, 2], m; None when there is none left, or
-        the robot is shut in.
+        """Return the way to the next viewpoint, float64 [n, 2], m, or None.
 
-        Those that are ``farthest`` m of way off and more are left out. A frontier to which no way
-        leads is given up. When none is left, gaps that only a clean passes are looked through, and
-        longer frontiers that were looked at from afar are looked at from nearer.
+        None when no viewpoint is left, or the robot is shut in.
+
+        Viewpoints that are ``farthest`` m of way off and more are left out. A frontier to which no
+        way leads is given up. When no viewpoint is left and ``farthest`` is infinite, the robot
+        looks through gaps that only a clean passes, and then from nearer at longer frontiers that
+        it looked at from afar.
         """
         self._leave_behind(here, context)
         at = (here.x, here.y)
@@ -177,8 +180,8 @@ class Exploration:
     ) -> list[Frontier]:
         """Return long frontiers that were given up, but can be looked at from nearer by now.
 
-        The map went on there meanwhile, or showed where the robot fits: what is black, or met at a
-        flat angle, is seen from near alone.
+        The map has grown there meanwhile, or shows now that the robot fits. A surface that is
+        black, or met at a flat angle, is seen from near only.
         """
         nearest = self._config.look_nearer
         left_out = [each.place for each in self.given_up.values() if each.seen_from <= nearest]
@@ -218,7 +221,7 @@ class Exploration:
         return None
 
     def still_unseen(self, occupancy: OccupancyMap) -> tuple[Point, ...]:
-        """Return the frontiers that it gave up and that are some on this map, which is newer."""
+        """Return the given-up frontiers that still are frontiers on ``occupancy``, a newer map."""
         return tuple(point for point in self.unseen if self._is_left(occupancy, point))
 
     def open_edges(self, occupancy: OccupancyMap) -> tuple[OpenEdge, ...]:
@@ -252,7 +255,7 @@ class Exploration:
         return self._sought_for > allowed
 
     def note_touch(self, here: Pose) -> None:
-        """Note that it touched something; by its viewpoint it comes no nearer to the frontier.
+        """Note that the robot touched something; at its viewpoint it then comes no nearer.
 
         A cell at the rim of the map is free though a wall is in its last centimetres.
         """
@@ -265,7 +268,7 @@ class Exploration:
         return off <= self._config.viewpoint_tolerance
 
     def cut_off(self, *, is_stuck: bool = False) -> None:
-        """No way leads to the frontier it was on its way to: give that up."""
+        """Give up the frontier that the robot was on its way to: no way leads there."""
         self.times_stuck += is_stuck
         if self.goal is not None:
             self.give_up(self.goal.middle)
@@ -274,8 +277,8 @@ class Exploration:
     def _leave_behind(self, here: Pose, context: PlanningContext) -> None:
         """Give the last frontier up if it was looked at from its viewpoint, and is still one.
 
-        Or if others at the same place vanished often before: what is seen through glass and by
-        mirrors comes and goes, and there is no end of it.
+        It is also given up if frontiers at the same place vanished often before: what is seen
+        through glass and in mirrors comes and goes without end.
         """
         is_there = self._is_at_viewpoint(here)
         goal, self.goal, self._looked_on = self.goal, None, None

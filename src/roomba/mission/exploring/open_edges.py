@@ -16,10 +16,12 @@ _MOST_TOLD: Final = 3
 
 
 class GivenUp(NamedTuple):
-    """A frontier that was given up: a ``place`` on it, m, map frame, and from how far it was looked
-    at last, m; 0 where it shall not be looked at again.
+    """A frontier that was given up; ``place`` is a point on it, m, map frame.
 
-    ``was_looked_at``: from a viewpoint, and it stayed open.
+    ``seen_from`` is the least distance from which it was looked at, m; 0 where it shall not be
+    looked at again.
+
+    ``was_looked_at``: the robot looked at it from a viewpoint, and it stayed open.
     """
 
     place: Point
@@ -40,7 +42,7 @@ def open_edges(
 
     One frontier is told once. Those shorter than ``config.open_edge`` are left out.
     """
-    # Of the places of one frontier the first counts.
+    # Where several places are of one frontier, the first one counts.
     places = sorted(given_up, key=lambda each: not each.was_looked_at)
     lengths = lengths_near(
         occupancy,

@@ -11,7 +11,7 @@ from roomba.geometry import Pose, Twist
 from roomba.mission.inputs.senses import Senses
 
 _ROUND: Final = math.tau
-"""rad; the lidar may sit off the middle and look past what hides from it now."""
+"""rad of a turn; a lidar that sits off the middle may look past what hides things from it now."""
 
 
 class TurnToSee:
@@ -25,7 +25,7 @@ class TurnToSee:
         self.is_under_way = False
 
     def begin(self, senses: Senses) -> bool:
-        """Begin to turn, unless that was done here before; return whether it does."""
+        """Begin to turn, unless that was done here before; return whether a turn began."""
         here = senses.pose
         near = self._config.same_frontier
         if any(here.distance_to(place.x, place.y) < near for place in self._places):

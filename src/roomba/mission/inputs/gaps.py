@@ -1,7 +1,7 @@
 """Gaps between things that look hardly wide enough: planning closes them.
 
-What is seen of a thing is a part of it, and next time it may look nearer. A robot that drives in
-between the legs of a chair may be shut in there.
+Only a part of a thing is seen, and at the next look the thing may seem nearer. A robot that drives
+in between the legs of a chair may then be shut in there.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from roomba.geometry import RoundObstacle
 _SIZE: Final = 0.01
 """m; radius of what is put into a gap to close it."""
 _ALONE: Final = 0.9
-"""Of half a gap: so far from all things its middle must be, else it is a corner of one thing."""
+"""Share of half the things' distance that a gap's middle keeps from all; else it is a corner."""
 
 
 def closed_gaps(things: Sequence[RoundObstacle], reach: float, spare: float) -> list[RoundObstacle]:

@@ -31,15 +31,15 @@ from roomba.planning.path.new_walls import is_walled
 from roomba.planning.path.planner import NoPathError, NoPathReason, PathPlanner
 
 _NEARER: Final = 0.02
-"""m; by so much the place before the station comes nearer to it, until there is room."""
+"""m by which the staging place is moved towards the station, again until there is room."""
 
 
 @dataclass(frozen=True, eq=False)
 class NarrowFloor:
     """Where the robot's middle can be, as near to walls as it cleans.
 
-    ``places``, bool over the map's grid ``frame``, are cells in which it can be somewhere; ``fine``
-    over the ``fine_frame`` is exact.
+    ``places``, bool over the map's grid ``frame``, are the cells in which the middle can be at some
+    point; ``fine``, over the ``fine_frame``, is exact.
     """
 
     frame: GridFrame
@@ -50,8 +50,8 @@ class NarrowFloor:
     def place_near(self, there: Point) -> Point:
         """Return the point of the cell of ``places`` around ``there`` that is nearest to it, m.
 
-        Around where the robot stands there may be no such cell: then of all cells, of which there
-        must be some.
+        Around the robot itself there may be no such point: then the nearest of all points is
+        returned, of which there must be some.
         """
         row, column = self.frame.cell_of(*there)
         parts = self.fine_frame.rows // self.frame.rows
@@ -113,7 +113,7 @@ class PlanningContext:
     def _staging(self, docking: DockingConfig) -> Pose:
         """Return the place before the station, nearer to it where a wall is behind the robot.
 
-        On a map that is growing nothing says so for sure.
+        A map that is growing does not show such walls for sure: there the place is not moved.
         """
         far = staging_pose(self.station, docking.staging_distance)
         if self.is_growing:
@@ -131,7 +131,7 @@ class PlanningContext:
 
     @cached_property
     def growing_coverage(self) -> CoveragePlanner:
-        """The same for a map that grows: farther from walls, as these and the place may be off."""
+        """The same for a growing map: farther from walls, as they and the pose may be off."""
         return self._coverage_planner(self._growing_reach)
 
     def _coverage_planner(self, reach: float) -> CoveragePlanner:
@@ -147,7 +147,7 @@ class PlanningContext:
 
     @cached_property
     def longest_way(self) -> float:
-        """No way over the map is longer, m: a shortest way sweeps no floor twice."""
+        """An upper bound for shortest ways over the map, m: such a way sweeps no floor twice."""
         return self.occupancy.free_area / (2.0 * self.body_radius)
 
     @property
@@ -166,8 +166,8 @@ class PlanningContext:
     ) -> CoveragePlan:
         """Plan to sweep ``todo``, bool over ``frame``, from ``here``, and on to an ``end``.
 
-        That is the staging place where none is given, or no way leads there. Raises NoPathError
-        when the robot cannot move.
+        The end is the staging place where none is given, or no way leads to ``end``. Raises
+        NoPathError when the robot cannot move.
         """
         home = (self.staging.x, self.staging.y)
         if end is not None:
@@ -180,9 +180,10 @@ class PlanningContext:
         return [*obstacles, *closed_gaps(obstacles, self.reach, self._gap_spare)]
 
     def reachable(self, here: Point, obstacles: Sequence[RoundObstacle]) -> Mask:
-        """Return what can be cleaned from a place, over ``frame``, among what no map shows.
+        """Return the floor that can be cleaned from ``here``, bool over ``frame``.
 
-        Between ``obstacles`` all gaps count that the body fits through: see with_closed_gaps.
+        All gaps between ``obstacles`` that the body fits through count as open: see
+        with_closed_gaps.
         """
         return self.floor.with_obstacles(obstacles).coverable(here)
 
@@ -225,7 +226,7 @@ class PlanningContext:
     ) -> NDArray[np.float64]:
         """Return the shortest way, float64 [n, 2], m, out of the zones to where it may be.
 
-        It goes through zones, of course. Raises NoPathError when there is none.
+        The way itself goes through zones. Raises NoPathError when there is none.
         """
         planner = PathPlanner(self.occupancy, self.body_radius, self._clearance, self._least)
         allowed = self.paths.reachable((self.staging.x, self.staging.y))
@@ -270,7 +271,7 @@ class PlanningContext:
         return here.distance_to(self.station.x, self.station.y) <= reach
 
     def in_room(self, name: str) -> Mask:
-        """Return a room's cells over ``frame``; raises RoomsError for a name that is none."""
+        """Return a room's cells over ``frame``; raises RoomsError for an unknown name."""
         assert self.rooms is not None
         label = self.rooms.label_of(name)
         return self.fine(self.rooms.labels == label)

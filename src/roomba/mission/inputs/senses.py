@@ -27,7 +27,7 @@ class Battery:
 
 @dataclass(frozen=True, slots=True)
 class EmptyingTold:
-    """What a station tells that empties the bin: whether it does so now, its bag's share, 0..1."""
+    """What a station that empties the bin tells: whether it is at work, its bag's level, 0..1."""
 
     is_at_work: bool
     bag: float
@@ -41,11 +41,12 @@ class Senses:
     """What the robot senses: time s of its clock, pose in the map frame as it is believed.
 
     ``knowledge`` is how well the pose is known, ``trouble`` why not better, ``unsure`` the standard
-    deviation of its place, m, infinite where none is told; ``twist`` is by the wheels;
-    ``cliff_left`` tells that the left cliff sensors see no floor; ``lifted`` that both wheels hang
-    in the air, ``wheel_hangs`` that one does, or both; ``grains`` is what the dirt sensor counts,
-    1/s; ``in_bin`` what was picked up, g; ``brush_current`` what the brush's motor takes, A;
-    ``emptying`` what the station tells that empties the bin, None of one that does not.
+    deviation of its place, m, infinite where none is told; ``twist`` is by the wheels, and its
+    turning speed by the gyro where there is one; ``cliff_left`` tells that the left cliff sensors
+    see no floor; ``lifted`` that both wheels hang in the air, ``wheel_hangs`` that one does, or
+    both; ``grains`` is what the dirt sensor counts, 1/s; ``in_bin`` what was picked up, g;
+    ``brush_current`` what the brush's motor takes, A; ``emptying`` what the station tells that
+    empties the bin, None of one that does not.
     """
 
     now: float
@@ -70,7 +71,7 @@ class Senses:
 
     @property
     def cliff(self) -> bool:
-        """Whether there is no floor before a side of it."""
+        """Whether the cliff sensors of one side, or of both, see no floor."""
         return self.cliff_left or self.cliff_right
 
     @property
@@ -80,5 +81,5 @@ class Senses:
 
     @property
     def where(self) -> str:
-        """Its place in words."""
+        """The robot's place as text, m, map frame."""
         return f"({self.pose.x:.2f}, {self.pose.y:.2f})"

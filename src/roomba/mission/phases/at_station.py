@@ -73,7 +73,7 @@ class AtStation:
         """Drive into the station from the place before it, ``staging``; both map frame."""
         sensed = self._sensed(senses)
         if self._is_turned:
-            # What its bumper meets is not the station.
+            # The bumper is at its other side: what it meets is not the station.
             sensed = replace(sensed, bumper_left=False, bumper_right=False)
         if self._docking is None:
             robot, far = self._robot, station.distance_to(staging.x, staging.y)
@@ -94,7 +94,7 @@ class AtStation:
     def look_for_beams(self, senses: Senses) -> PhaseStep:
         """Stand until the beams that it awaits are seen for a while.
 
-        One that was moved meanwhile, by hand or by a walk, waits for them no longer.
+        A robot that was moved meanwhile, by hand or by a walk, waits for them no longer.
         """
         if self._gave_up_at.distance_to(senses.pose.x, senses.pose.y) > self._config.left_standing:
             self._without_beams = None
@@ -160,8 +160,8 @@ class AtStation:
     def _wait_for_current(self, senses: Senses, station: Pose) -> PhaseStep | None:
         """Stand in a station without power until current comes; None where it comes.
 
-        One that was moved, or that sees the beams of a station which gives it no current for a
-        while, has lost contact: it docks anew.
+        A robot that was moved has lost contact and docks anew. So has one that sees the beams of
+        its station for a while, but gets no current from it.
         """
         if senses.battery.is_docked:
             was_without, self._without_current = self._without_current, None

@@ -10,7 +10,7 @@ from roomba.configuration.body import BrushConfig
 from roomba.mission.phases.carpet_kernels import CARPET_SENSE, note_current
 
 _RESTS: Final = 0.5
-"""Of the current below which it is off carpet; a brush with less rests."""
+"""Share of the current below which the robot is off carpet; with less the brush rests."""
 
 
 class CarpetSense:

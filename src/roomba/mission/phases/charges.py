@@ -1,4 +1,4 @@
-"""Going home to charge: a job that charges take no further is over."""
+"""Going home to charge; a job is over when charges take it no further."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from roomba.mission.phases.step import PhaseStep
 
 
 def when_low(job: Job, drives: Drives, senses: Senses) -> PhaseStep | None:
-    """Return what is to be done when what is left just suffices for the way home; else None.
+    """Return the step that leads home when the charge just suffices for the way; else None.
 
-    It goes home to charge, and for good once charge after charge went into the ways alone.
+    The robot goes home to charge. It goes home for good once charge after charge went into the ways
+    alone.
     """
     if not job.ledger.must_go_home(senses, drives.distance_home):
         return None

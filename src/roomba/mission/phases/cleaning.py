@@ -1,4 +1,4 @@
-"""Cleaning, path by path; while the map is being made it goes to see more of it as well."""
+"""Cleaning, path by path; while the map is being made, the robot explores as well."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class CleanPhase:
         self._begin(None)
 
     def _begin(self, cleaning: Cleaning | None) -> None:
-        """Begin with a clean, of which nothing was seen."""
+        """Begin with another clean, before its first path."""
         self._cleaning = cleaning
         self._turn = TurnToSee(self._config)
         self._seen_all_of: PlanningContext | None = None
@@ -78,7 +78,8 @@ class CleanPhase:
             return self._wait_for_whole_map(senses)
         points = None
         if retries.gets_out:
-            # By the middle of gaps: along their sides, as it cleans, it may have been shut in.
+            # The way out leads by the middle of gaps: along their sides, as it cleans, it may be
+            # shut in.
             retries.gets_out = False
             points = drives.way_out(senses)
         if points is None and self._begin_look(senses, self._config.look_first):
@@ -123,13 +124,13 @@ class CleanPhase:
         given_up = exploration.times_given_up
         if self._begin_look(senses, math.inf):
             return None
-        # It may have given up before it tried all.
+        # Some frontiers were given up just now, and others may not be tried yet.
         if exploration.times_given_up > given_up or exploring.forget_obstacles_once(
             exploration, drives
         ):
             return PhaseStep()
         if not drives.may_go_home(senses):
-            # Shut in it has not seen all.
+            # A robot that is shut in has not seen all.
             if self._turns_to_see(senses):
                 return PhaseStep()
             reason = "no way leads out of where it is"

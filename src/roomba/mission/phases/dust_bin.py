@@ -14,15 +14,15 @@ from roomba.configuration.mission import BinConfig
 from roomba.mission.phases.dust_bin_kernels import DUST, note_dust
 
 _REMEMBERED: Final = 4000
-"""Places of the last ticks: more way than the silence that tells a full bin takes."""
+"""Places of the last ticks that are kept: longer than the silence that tells a full bin."""
 
 
 class DustBin:
-    """Ticked while it sweeps; ``is_full`` until it is emptied, ``full_at`` by its level sensor, g.
+    """The bin: ``is_full`` until it is emptied; ``full_at`` is its level as it became full, g.
 
-    A level sensor that reads more than nothing is trusted below ``nearly_full``. Where there is
-    none the grains alone tell, if some came in before. They tell something only on floor on which
-    there usually are some.
+    It is ticked while the robot sweeps. Below ``nearly_full`` a level sensor that reads more than
+    nothing is trusted. Without a level sensor the grains alone tell, if some came in before: a full
+    bin takes none in. They tell something only on floor on which there usually are some.
     """
 
     def __init__(self, config: BinConfig, capacity: float) -> None:
@@ -69,11 +69,11 @@ class DustBin:
         self._places.append((x, y))
 
     def passed(self, places: NDArray[np.float64]) -> None:
-        """Note ticks of which ``rows`` know already, at ``places``, float64 [n, 2], m."""
+        """Note ``places``, float64 [n, 2], m, of ticks that ``rows`` have counted already."""
         self._places.extend((x, y) for x, y in places.tolist())
 
     def forget_places(self) -> None:
-        """Forget where it was: the map is another one."""
+        """Forget where the robot was: the map is another one."""
         self._places.clear()
 
     @property

@@ -21,9 +21,9 @@ class ChargeGains:
         self._in_vain = 0
 
     def note_charge(self, *reached: float) -> bool:
-        """Note what is reached when it goes home to charge, m2, each more where there was progress.
+        """Note what a job reached before it charges, m2; by progress one of the values grows.
 
-        Return whether some charges brought nothing.
+        Return whether too many charges in a row brought nothing.
         """
         gains = [now - before for now, before in zip(reached, self._reached, strict=False)]
         is_vain = bool(gains) and max(gains) < self._config.least_gain
@@ -35,9 +35,9 @@ class ChargeGains:
 class EnergyLedger:
     """Ticked with what is sensed; ``distance`` m, ``energy`` Wh and ``dirt`` g since the begin.
 
-    ``driven`` m and ``used`` Wh are what of the distance and the energy came while it drove: a
-    battery gets lower while the robot stands as well, which says nothing of what a metre takes. No
-    way home is longer than ``longest_way_home``, m.
+    ``driven`` m and ``used`` Wh are the parts of distance and energy while the robot drove: it uses
+    energy while it stands as well, which says nothing of what a metre takes. No way home is longer
+    than ``longest_way_home``, m.
     """
 
     def __init__(self, config: EnergyConfig, senses: Senses) -> None:
@@ -76,21 +76,25 @@ class EnergyLedger:
         return max(self.used / self.driven, 0.2 * self._config.per_metre)
 
     def next_check(self, senses: Senses) -> float:
-        """Return when it is looked at again how far it is home, s; inf while the charge is ample.
+        """Return when the way home is checked again, s; infinite while the charge is ample.
 
         It is ample down to :meth:`least_ample`.
         """
         return self._checked + self._config.check_period if self._is_low(senses) else math.inf
 
     def least_ample(self, senses: Senses) -> float:
-        """Return the level, 0..1, from which on down it may be time to go home, or all is used."""
+        """Return the level, 0..1, down to which the charge needs no decision.
+
+        While the charge is ample, that is where it stops being so; later it is where the battery
+        counts as empty.
+        """
         if self._is_low(senses):
             return self.empty
         return self._ample(senses.battery) / senses.battery.capacity
 
     @property
     def empty(self) -> float:
-        """A level with less than which the battery gives nothing any more, 0..1."""
+        """The level, 0..1, below which the battery counts as empty."""
         return self._config.empty
 
     def _is_low(self, senses: Senses) -> bool:
@@ -106,7 +110,7 @@ class EnergyLedger:
 
     def must_go_home(self, senses: Senses, way_home: Callable[[Senses], float]) -> bool:
         """Whether what is left just suffices for the way home; ``way_home`` tells that way, m."""
-        # Only when it may come to that is the way home worth planning.
+        # The way home is planned only when the charge may be too low for it.
         if not self._is_low(senses):
             return False
         if is_recent(senses.now, self._checked, self._config.check_period):

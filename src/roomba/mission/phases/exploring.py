@@ -1,4 +1,4 @@
-"""The phase of exploring: to where more can be seen, until there is no such place."""
+"""The phase of exploring: driving to where more can be seen, until there is no such place."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from roomba.mission.phases.step import Failure, PhaseStep
 from roomba.vocabulary import NO_REASON
 
 _MOST_SHUT_IN: Final = 3
-"""Times that it forgets what shuts it in, before it takes what it knows for all."""
+"""Times that the robot forgets what shuts it in; then it takes the floor it knows for all."""
 
 
 def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: int) -> PhaseStep:
-    """Go to the nearest place from where more can be seen; stuck too often it fails."""
+    """Go to the next place from where more can be seen; fail when stuck too often."""
     exploration = job.exploration
     assert exploration is not None
     if (charging := when_low(job, drives, senses)) is not None:
@@ -47,9 +47,9 @@ def explore(job: Job, drives: Drives, senses: Senses, limit: float, most_stuck: 
 
 
 def _forgets_what_shuts_in(exploration: Exploration, drives: Drives, senses: Senses) -> bool:
-    """Forget all that was felt if it shuts the robot in, which then has not seen all; tell whether.
+    """Forget obstacles that shut the robot in, as it has not seen all; return whether it did.
 
-    It came in there: what a wide touch may have been is narrower in truth.
+    The robot came in there, so what it touched must be narrower than it is taken to be.
     """
     if exploration.times_shut_in >= _MOST_SHUT_IN or drives.may_go_home(senses):
         return False
@@ -59,7 +59,7 @@ def _forgets_what_shuts_in(exploration: Exploration, drives: Drives, senses: Sen
 
 
 def forget_obstacles_once(exploration: Exploration, drives: Drives) -> bool:
-    """Forget what stands in the way, once before the end: it may have gone; return whether now."""
+    """Forget, once before the end, what may have left the way; return whether that was now."""
     if exploration.looked_again:
         return False
     exploration.looked_again = True
@@ -70,7 +70,7 @@ def forget_obstacles_once(exploration: Exploration, drives: Drives) -> bool:
 def look_on(
     exploration: Exploration, drives: Drives, senses: Senses, limit: float, most_stuck: int
 ) -> PhaseStep:
-    """Drive on to a frontier; one where it got stuck is given up, the last time it fails."""
+    """Drive on to a frontier; give it up when stuck there, and fail when stuck too often."""
     assert drives.driver is not None
     if exploration.is_too_long(senses.now):
         exploration.cut_off()

@@ -29,7 +29,7 @@ _TOO_FAR: Final = (
     "what is left is too far from the station: charge after charge went into the ways alone"
 )
 _DOUBTFUL: Final = 0.05
-"""Share of its way; from more on it is told that its place was known roughly."""
+"""Share of the way; where the place was known only roughly on more of it, that is told."""
 
 
 class Job:
@@ -50,7 +50,7 @@ class Job:
     ) -> None:
         """Begin with nothing to do, and with a dust bin that takes ``bin_capacity`` g.
 
-        What is swept by a place that is unsure by more than ``known_deviation``, m, is doubtful.
+        What is swept while the place is unsure by more than ``known_deviation``, m, is doubtful.
         """
         self.dirt, self._config = dirt, config
         self.cleaning: Cleaning | None = None
@@ -68,7 +68,7 @@ class Job:
         self.open_edges: tuple[OpenEdge, ...] = ()
         """Where the map was still open when there was nothing left to look for."""
         self.rough_way = 0.0
-        """m; driven while it swept and its place was known roughly."""
+        """m that were driven while the robot swept and its place was known only roughly."""
 
     def cleaning_of(
         self, request: CleanRequest, context: PlanningContext, senses: Senses
@@ -149,8 +149,9 @@ class Job:
             self.cleaning.ledger.coverage.take_back(self.bin.swept_in_vain())
 
     def note_charge(self, known: float) -> bool:
-        """Note that it goes home to charge, with ``known`` m2 of floor on the map; return whether
-        charges take it no further: what is left is too far from the station.
+        """Note that the robot goes home to charge; return whether charges take the job no further.
+
+        ``known`` is the floor on the map, m2. What is left is then too far from the station.
         """
         done = 0.0 if self.cleaning is None else self.cleaning.ledger.clean_area
         left = 0.0 if self.cleaning is None else self.cleaning.ledger.left
@@ -158,7 +159,7 @@ class Job:
         return self._is_too_far
 
     def needed_energy(self, tool_width: float) -> float:
-        """Return what the rest of it takes, Wh; of an exploration this is not known."""
+        """Return the energy that the rest takes, Wh; infinite, as unknown, for an exploration."""
         if self.exploration is not None:
             return math.inf
         if self.cleaning is None:
@@ -259,7 +260,7 @@ class Job:
         )
 
     def forget(self) -> None:
-        """It is over for good."""
+        """End the job for good."""
         self.exploration = None
         if self.cleaning is not None:
             self.cleaning = None

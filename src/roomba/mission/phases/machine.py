@@ -1,8 +1,8 @@
 """The mission's state machine: what comes after what. No clock, no I/O, no robot.
 
 A state is a :class:`Phase`, the :class:`Errand` that it is for, and, while the robot is held up,
-the phase that comes again. :func:`next_state` says what comes after an event: one that a phase does
-not know changes nothing, and a command among them is refused.
+the phase that comes again. :func:`next_state` says what comes after an event. An event that a phase
+does not know changes nothing; if it is a command, it is refused.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from roomba.vocabulary import HELD, Phase
 
 
 class Errand(Enum):
-    """What it is on its way for."""
+    """What the robot is on its way for."""
 
     NONE = "none"
     CLEAN = "clean"
@@ -121,10 +121,10 @@ def way_ended(
 ) -> CleanOutcome | None:
     """Return how a way into the station or out of it ended; None while it is under way.
 
-    ``errand`` is DOCK or UNDOCK. The outcome is COMPLETED where it was to come to, STOPPED, or
-    FAULT, of an emergency stop as well. A robot that was stopped on its way out, or held and
-    released, stands off its station, too: by ``last_command``, the last one that it obeyed, this
-    is no success.
+    ``errand`` is DOCK or UNDOCK. The outcome is COMPLETED where the robot was to come to, FAULT
+    after an error or an emergency stop, and else STOPPED. A robot that was stopped on its way out,
+    or held and released, stands off its station, too: ``last_command``, the last one that it
+    obeyed, tells this from a success.
     """
     if state.phase in (Phase.ERROR, Phase.EMERGENCY):
         return CleanOutcome.FAULT

@@ -30,7 +30,7 @@ class Monitor:
 
     @property
     def is_astray(self) -> bool:
-        """Whether it does not know its place."""
+        """Whether the robot does not know its place."""
         return self._astray is not None
 
     def note_contact(self, senses: Senses) -> bool:
@@ -42,7 +42,7 @@ class Monitor:
     def failure(
         self, state: MissionState, senses: Senses, last_place: tuple[float, float]
     ) -> Failure | None:
-        """Return what ends a drive; ``last_place``, m, is where it was a tick before."""
+        """Return what ends a drive; ``last_place``, m, is where the robot was a tick before."""
         if not state.drives:
             self._astray = self._hanging = None
             self._patience.begin(senses.knowledge)

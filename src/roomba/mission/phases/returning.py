@@ -55,9 +55,9 @@ def _go_home_on(drives: Drives, retries: RetryPolicy, senses: Senses, limit: flo
 
 
 def try_home_again(reason: str, drives: Drives, retries: RetryPolicy, senses: Senses) -> PhaseStep:
-    """Once more without what was remembered; a door may open; then it says there is no way.
+    """Try again without remembered obstacles, then wait for a way to open, and fail at last.
 
-    What the map itself shows in between does not open: that is said at once.
+    If walls or zones of the map are in between, no way opens: then it fails without a wait.
     """
     retries.found_no_way_home()
     if retries.is_over:
@@ -71,7 +71,7 @@ def try_home_again(reason: str, drives: Drives, retries: RetryPolicy, senses: Se
 
 
 def wait(reason: str, drives: Drives, retries: RetryPolicy, senses: Senses) -> PhaseStep:
-    """Wait for a while, and then look anew: a door that is shut is opened again.
+    """Wait for a while, and then look anew: a door that is shut may be opened.
 
     A person before the robot may be waiting for it to go: it makes room.
     """
@@ -83,7 +83,7 @@ def wait(reason: str, drives: Drives, retries: RetryPolicy, senses: Senses) -> P
 
 
 def wait_on(drives: Drives, retries: RetryPolicy, senses: Senses, limit: float) -> PhaseStep | None:
-    """While it waits: stand, or drive on to where others can pass; None when it does not wait.
+    """While waiting: stand, or drive on to where people can pass; None when it does not wait.
 
     As soon as there is a way it waits no longer.
     """

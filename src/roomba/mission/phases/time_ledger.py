@@ -12,7 +12,7 @@ from roomba.time_spent import TimeSpent
 from roomba.vocabulary import Phase
 
 _STANDS: Final = 0.1
-"""Share of the top speed; slower than that it turns on the spot, and does not go."""
+"""Share of the top speed; a robot that is slower counts as turning on the spot."""
 _OF_PHASE: Final = {
     Phase.UNDOCKING: "station",
     Phase.RETURNING: "station",
@@ -72,7 +72,7 @@ class TimeLedger:
         self._spent["slowed"] += float(lost[~turns].sum())
 
     def spent(self, area: float, tool_width: float) -> TimeSpent:
-        """Return where the time went in which ``area`` m2 became clean, passes counted."""
+        """Return what the time went into; ``area`` became clean in it, m2, each pass counted."""
         swept_in_a_second = tool_width * self._fastest
         least = area / swept_in_a_second if swept_in_a_second > 0.0 else 0.0
         return TimeSpent(least, **self._spent)
@@ -82,6 +82,6 @@ class TimeLedger:
         return {**self._spent, "fastest": self._fastest}
 
     def restore(self, values: Mapping[str, float]) -> None:
-        """Go on from such values; what is not among them was not counted then."""
+        """Go on from such values; times that are missing count as 0."""
         self._spent = {name: values.get(name, 0.0) for name in _COUNTED}
         self._fastest = values.get("fastest", 0.0)

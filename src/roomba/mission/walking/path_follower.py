@@ -12,9 +12,9 @@ from roomba.geometry import Pose
 from roomba.planning.path.planner import Path
 
 _SAME = 1e-9
-"""m; a corner that is so little behind the robot is where it is."""
+"""m; a corner that is no farther behind the robot counts as where the robot is."""
 _HALVINGS = 20
-"""Of the way to a setpoint that is brought nearer: to less than a micrometre."""
+"""Bisections of the way to a setpoint that is brought nearer: to less than a micrometre."""
 _SEARCH_AHEAD = 0.6
 """m; window of the path, from the robot's last place on, in which its place is searched."""
 
@@ -42,7 +42,7 @@ class PathFollower:
         return self._path.length - self._along
 
     def distance_off(self, pose: Pose) -> float:
-        """Return how far a pose is from the path where it was last seen, m."""
+        """Return how far a pose is from where the robot was last on the path, m."""
         return pose.distance_to(*self._path.point_at(self._along))
 
     def tick(self, pose: Pose, max_speed: float) -> tuple[tuple[float, float], float]:
@@ -54,8 +54,8 @@ class PathFollower:
     def _carrot(self, pose: Pose) -> float:
         """Return how far along the path the setpoint is.
 
-        It is ahead, but not beyond a sharp corner, and where the straight way to it keeps to the
-        path.
+        The setpoint runs ahead, but not beyond a sharp corner, and only so far that the straight
+        way to it keeps to the path.
         """
         carrot = self._with_straight_way(
             min(self._along + self._config.lookahead, self._path.length)

@@ -28,7 +28,7 @@ _UNKNOWN = "something that the map does not show stands"
 
 
 class WalkState(Enum):
-    """How a walk stands."""
+    """The state of a walk."""
 
     WALKING = "walking"
     ASTRAY = "astray"
@@ -50,7 +50,7 @@ class WalkStep:
 
 
 class Walk:
-    """One walk to ``goal``, around what the map does not show, by ``obstacles``.
+    """One walk to ``goal``, around ``obstacles`` that the map does not show.
 
     It ends by arriving or by failing, never otherwise: each new plan needs a bump, a standstill, a
     push or something seen on the path, and of all of them there are only so many.
@@ -119,7 +119,7 @@ class Walk:
         return WalkStep(state, here, speed, self._follower.left, reason)
 
     def _wait_to_be_found(self, senses: Senses, max_speed: float) -> WalkStep:
-        """Ask for nothing while the robot's place is not known; it may look around meanwhile."""
+        """Ask for no motion while the robot's place is not known; it may look around meanwhile."""
         if not self._went_astray:
             self._went_astray, self._astray_since = True, senses.now
         self._progressed = senses.now
@@ -129,7 +129,7 @@ class Walk:
         return self._stay(state, senses, max_speed, reason)
 
     def _follow_clock(self, now: float) -> None:
-        """When the clock was set, move the times that are remembered with it."""
+        """Move the remembered times along when the clock was set."""
         jump = self._jumps.at(now)
         self._started += jump
         self._progressed += jump
@@ -236,7 +236,7 @@ class Walk:
             return self._planner.plan(here, self.goal, self._obstacles.at_least(now))
 
     def _plan_to_look(self, senses: Senses) -> Path:
-        """Return the same, or a way to where something stood that was seen: it may have gone."""
+        """Return the same, or a way that only what was felt blocks: what was seen may have gone."""
         here = (senses.pose.x, senses.pose.y)
         try:
             return self._plan(senses)

@@ -1,4 +1,4 @@
-"""A way of its own over some floor, put into a path where that comes nearest to it."""
+"""A detour over some floor, put into a path where the path comes nearest to that floor."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PlanFrom = Callable[[Point], CoveragePlan]
 """Plans a way from a place over the floor and back there; raises NoPathError."""
 
 _STEP: Final = 0.05
-"""m; a path is looked at in such steps."""
+"""m between two points at which a path is looked at."""
 
 
 def with_detour(
@@ -26,10 +26,10 @@ def with_detour(
 ) -> Floats | None:
     """Return a path, float64 [n >= 2, 2], m, with a way over floor put in, or None.
 
-    ``floor``, float64 [k >= 1, 2], m, are places of it. The way branches off where the next
-    ``ahead`` m of the path come nearest to them; if it is longer than ``most`` m from there, or
-    leads nowhere, as a wall is between, where the path begins; None if that is no better. A plan
-    without length sweeps nothing.
+    ``floor``, float64 [k >= 1, 2], m, are places of it. The detour branches off where the next
+    ``ahead`` m of the path come nearest to them. If it is longer than ``most`` m from there, or a
+    wall lets no way through, it branches off where the path begins. None if that is no better. A
+    plan without length sweeps nothing.
     """
     path = Path(points)
     for station in dict.fromkeys((nearest_station(path, floor, ahead), 0.0)):

@@ -19,14 +19,14 @@ from roomba.raster.regions import Labels, dilated, large_regions, numbered_regio
 
 _AROUND: Final = np.ones((3, 3), np.bool_)
 _HAIR: Final = 1e-4
-"""m; cells and ways lie on grids, so the last bits would decide between distances that are even."""
+"""m of tolerance: on grids many distances are equal, and the last bits must not decide."""
 _MISSED: Final = 0.02
-"""Share of a patch that may be missed still when it is swept as a whole: specks stay at walls."""
+"""Share that may be missed of a patch that counts as swept as a whole: specks stay at walls."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DirtyPatch:
-    """Dirty floor that hangs together: bool over the dirt map, and ``floor`` over the fine grid."""
+    """Connected dirty floor: ``cells``, bool over the dirt map; ``floor`` over the fine grid."""
 
     cells: Mask
     floor: Mask
@@ -93,7 +93,7 @@ class DirtyFloor:
         return self._each(cells, patches, coverage, floor)
 
     def note_again(self, patch: DirtyPatch) -> None:
-        """A patch that was told is swept again now; it is not at the end."""
+        """Note that a patch that was told is swept again now, and so not at the end."""
         self._again |= patch.cells
 
     def places_of(self, patch: DirtyPatch) -> Floats:
@@ -101,9 +101,9 @@ class DirtyFloor:
         return np.column_stack(self.dirt.frame.centres(*np.nonzero(patch.cells)))
 
     def _measure(self, now: float) -> None:
-        """Find out from how many grains on floor is dirty, when that is due.
+        """Measure, when that is due, from how many grains on floor counts as dirty.
 
-        While too little was swept to tell what is usual none is.
+        While too little was swept to tell what is usual, no floor does.
         """
         row, config = self.watch[0], self._config
         row["looked_at"] = now
@@ -120,7 +120,7 @@ class DirtyFloor:
     def _each(
         self, cells: Mask, labels: Labels, coverage: CoverageMap, floor: Mask
     ) -> list[DirtyPatch]:
-        """Return cells as patches by ``labels`` of their own, those with swept floor."""
+        """Return the cells of each label as a patch, but only patches with swept floor."""
         patches = []
         for number in np.unique(labels[cells]):
             patch = cells & (labels == number)
@@ -139,7 +139,7 @@ class DirtyFloor:
         return are_near
 
     def _are_whole(self, patches: Labels, asked: Mask, coverage: CoverageMap, floor: Mask) -> Mask:
-        """Return the same of whether all that is wanted of it, and around it, is swept.
+        """Return of each patch, by its number, whether its wanted floor, also around it, is swept.
 
         Only those ``asked`` for, bool [patches + 1], are looked at in full.
         """

@@ -1,4 +1,4 @@
-"""Whether dirty floor may be close by, as compiled code tells it at each tick."""
+"""The compiled check, made at each tick, of whether dirty floor may be close by."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ def may_be_dirty(
     """Tell whether it is time to look closely for dirty floor near a place, m.
 
     That is when a cell close by, not yet ``done`` [rows, columns], is dirty, or it is to be
-    measured anew how dirty floor usually is. Nothing close by is a look, too: the next one follows
-    after a period. ``place`` is the dirt map's corner and cell, m.
+    measured anew how dirty floor usually is. Finding nothing close by counts as a look, too: the
+    next one follows after a period. ``place`` is the dirt map's corner and cell, m.
     """
     watch = rows[0]
     if _is_recent(now, watch.looked_at, watch.look_period):
