@@ -1,4 +1,4 @@
-"""The addresses that pages are printed with, and which of this user's tokens a page may be told."""
+"""The addresses of pages as they are printed, and the token that a page may be told."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ HERE: Final = "127.0.0.1"
 """The host that is this machine, to itself alone."""
 _LOOPBACK: Final = (HERE, "localhost")
 _FAR: Final = ("192.0.2.1", 9)
-"""Of a network for documents (RFC 5737): the system says from which address it would be reached,
-and nothing is sent."""
+"""An address for use in documents (RFC 5737): the system says from which address of this machine it
+would be reached, and nothing is sent."""
 _SOCKETS: Final = Path("/proc/net/tcp")
-"""Those of IPv4, a line each, as proc(5) has it."""
+"""The TCP sockets of IPv4, a line each, in the format of proc(5)."""
 _LISTENS: Final = "0A"
 """The state of a socket that waits for connections."""
 
 
 @dataclass(frozen=True, slots=True)
 class PageAddress:
-    """Where a page may be: ``port`` None is the first that answers; ``token`` is empty without."""
+    """Where a page may be; ``port`` None: the first that answers; ``token``: empty without one."""
 
     host: str = HERE
     port: int | None = None
@@ -35,7 +35,7 @@ class PageAddress:
 
 
 def page_address(text: str) -> PageAddress:
-    """Return the address that is written as a page's server prints it, or as a port alone.
+    """Return the address of a text: as a page's server prints it, a port alone, or nothing.
 
     Raises RoombaError.
     """
@@ -57,8 +57,9 @@ def page_address(text: str) -> PageAddress:
 def token_for(address: PageAddress, port: int) -> str:
     """Return the token for the page at a port of an address; empty where there is none.
 
-    It is that of the address, or this user's kept one. The kept one is for a server of this user,
-    or of root, on this machine alone: any program may listen at a port and ask for it.
+    It is the token of the address, or the one that this user keeps. The kept one is told only to a
+    server of this user, or of root, on this machine: any program may listen at a port and ask for
+    it.
     """
     if address.token:
         return address.token
@@ -70,7 +71,7 @@ def token_for(address: PageAddress, port: int) -> str:
 def listeners_of(port: int, sockets: Path = _SOCKETS) -> set[int]:
     """Return the users whose programs listen at a port of this machine, at any of its addresses.
 
-    Empty where that is not told.
+    Empty where the system does not tell them.
     """
     users: set[int] = set()
     try:

@@ -1,4 +1,4 @@
-"""The clock that waiting needs, so that tests can step it."""
+"""The interface of the clock by which callers wait, so that tests can step it."""
 
 from __future__ import annotations
 

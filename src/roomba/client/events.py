@@ -12,9 +12,9 @@ from roomba.client.under_way import is_running
 from roomba.client.view import RobotView
 
 EVENT_KINDS: Final = ("state", "begun", "ended", "trouble")
-"""``state``: what it does changed; ``begun`` and ``ended``: a run; ``trouble``: what is wrong, in
-words, which are empty when all is well again. One that goes on is told once, though its words
-change."""
+"""``state``: what the robot does changed; ``begun`` and ``ended``: a run; ``trouble``: what is
+wrong, in words, which are empty when all is well again. Trouble that goes on is told once, though
+its words change."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class EventFinder:
         yield from self._troubles(view.time, vacuum.hindrance.value or told, told)
 
     def _troubles(self, at: float | None, trouble: str, told: str) -> Iterator[RobotEvent]:
-        """Tell of a trouble that is another one than before, by its words if it has no code."""
+        """Yield a trouble that differs from the one before, by its code, or else by its words."""
         if trouble != self._trouble:
             self._trouble = trouble
             yield RobotEvent("trouble", {"time": at, "message": told})

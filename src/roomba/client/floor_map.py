@@ -17,13 +17,16 @@ from roomba.geometry import Point, Pose
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 
 _VALUES = np.array([UNKNOWN, FREE, OCCUPIED, OCCUPIED], np.int8)
-"""By the value of a cell of the layer of the map."""
+"""Occupancy by the value of a cell in the layer of the map."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FloorMap:
-    """What is drawn: the layer of the map, that of the coverage if it lies alike, what seldom
-    changes, the robot's pose and the way that it came, m."""
+    """What a floor is drawn from, m.
+
+    ``cells`` is the layer of the map, ``coverage`` that of the coverage if its grid lies alike,
+    ``home`` what seldom changes, ``pose`` the robot's, and ``way`` the places that it came by.
+    """
 
     cells: GridLayer
     coverage: GridLayer | None
@@ -63,7 +66,7 @@ def _mask(room: RoomView, layer: GridLayer) -> NDArray[np.bool_]:
         left, bottom = np.clip(np.floor(corners.min(axis=0)), 0, None).astype(int).tolist()
         right, top = np.minimum(np.ceil(corners.max(axis=0)) + 1, (columns, rows)).astype(int)
         if left < right and bottom < top:
-            # Of its bounds alone: a large map has many rooms.
+            # Only the bounds of the room are drawn: a large map has many rooms.
             drawn = Image.new("1", (right - left, top - bottom))
             ImageDraw.Draw(drawn).polygon((corners - (left, bottom)).ravel().tolist(), fill=1)
             inside[bottom:top, left:right] ^= np.asarray(drawn)

@@ -49,7 +49,7 @@ class UpkeepView:
 
 @dataclass(frozen=True, slots=True)
 class PlanView:
-    """What comes of a plan: when it is ``next`` due, and what is ``due`` and waits for a reason.
+    """How a plan stands: its ``next`` time, and a time that was ``due`` and waits, with the reason.
 
     Moments are aware of their zone, None where there is none.
     """
@@ -90,7 +90,7 @@ class Household(Protocol):
         """Return how the parts are, and the totals."""
 
     def reset_part(self, part: Part) -> None:
-        """Let a part count as new, clean or empty; of the bin the robot is told so, too."""
+        """Let a part count as new, clean or empty; the robot is told of an empty bin, too."""
 
     def plans(self) -> PlansView:
         """Return the plans, and what comes of them."""
@@ -98,17 +98,17 @@ class Household(Protocol):
     def put_plan(self, plan: Plan, *, is_new: bool = False) -> None:
         """Add a plan, or replace the one of the same name; its times count from now on.
 
-        One that ``is_new`` replaces none: it is refused if there is one of its name.
-        Its rooms are of the present map; those of a plan that is off may be any.
+        A plan that ``is_new`` replaces none: it is refused if there is one of its name. Its rooms
+        must be on the present map; a plan that is off may name any.
         """
 
     def remove_plan(self, name: str) -> None:
         """Remove a plan; a clean that it began goes on."""
 
     def put_preset(self, preset: Preset, *, is_new: bool = False) -> None:
-        """Add a preset, or replace the one of the same name; its rooms are of the present map.
+        """Add a preset, or replace the one of the same name; its rooms must be on the present map.
 
-        One that ``is_new`` replaces none.
+        A preset that ``is_new`` replaces none: it is refused if there is one of its name.
         """
 
     def remove_preset(self, name: str) -> None:
@@ -121,7 +121,7 @@ class Household(Protocol):
         """Replace all quiet hours."""
 
     def set_emptying(self, when: Emptying) -> None:
-        """Set when a station that can empties the bin; in quiet hours it never does."""
+        """Set when a station that is able to empties the bin; in quiet hours it never does."""
 
     def set_zone(self, zone: str) -> None:
         """Set the time zone, by its name of the IANA."""

@@ -11,7 +11,7 @@ from roomba.geometry import Point
 from roomba.vocabulary import RoomWay
 
 HAND_SILENCE: Final = 0.5
-"""s of wall time; a drive by hand without news for so long ends."""
+"""s of wall time; a drive by hand ends when no new command came for so long."""
 SPILL: Final = (0.25, 6.0)
 """m and g of a heap of dirt."""
 STATION_BOX: Final = (0.6, 0.15)
@@ -41,7 +41,7 @@ class ObservedRobot(Protocol):
         """Begin a clean."""
 
     def change_rooms(self, rooms: tuple[str, ...], each: tuple[RoomWay, ...] = ()) -> None:
-        """Let the clean of rooms under way go on with these, as a client asks for it."""
+        """Let the clean of rooms under way go on with ``rooms``, as in RobotClient."""
 
     def explore(self) -> None:
         """Begin to look at what the map does not show yet."""
@@ -68,7 +68,7 @@ class ObservedRobot(Protocol):
         """Tell that the dust bin was emptied; a simulated one is emptied."""
 
     def empty_at_station(self) -> None:
-        """Let its station empty its bin; refused where that does not."""
+        """Let its station empty its bin; refused where the station cannot."""
 
     def replace_bag(self) -> None:
         """Put an empty bag into its simulated station; refused where there is none."""
@@ -106,7 +106,7 @@ class ObservedRobot(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class TimelineView:
-    """Where a recording is: s of ``duration``, and its seconds per second.
+    """Where a replay is: ``at`` of ``duration``, s; ``speed`` is recorded seconds per second.
 
     ``jumps`` grows by one whenever another time was chosen.
     """
@@ -120,7 +120,7 @@ class TimelineView:
 
 @runtime_checkable
 class Timeline(Protocol):
-    """What a recorded robot can do beside: its time is chosen."""
+    """What a recorded robot can do in addition: its time can be chosen."""
 
     def timeline(self) -> TimelineView:
         """Return where the recording is."""
@@ -132,7 +132,7 @@ class Timeline(Protocol):
         """Show another time, s."""
 
     def set_speed(self, speed: float) -> None:
-        """Play at so many of its seconds per second."""
+        """Play ``speed`` seconds of the recording per second."""
 
     def way(self) -> list[Point]:
         """Return the places up to now, m."""
@@ -142,8 +142,8 @@ class Timeline(Protocol):
 class TickTimes:
     """Wall time that the robot's ticks took to compute since it began, ``seconds`` in all.
 
-    ``counts`` are ticks that took at most the bound of the same place, s, and more than the one
-    before; the last count is of those above all bounds.
+    Each of ``counts`` is how many ticks took at most the bound of the same place, s, and more than
+    the bound before; the last count is of ticks above all bounds.
     """
 
     bounds: tuple[float, ...]
@@ -153,7 +153,7 @@ class TickTimes:
 
 @runtime_checkable
 class Timed(Protocol):
-    """What a robot that knows how long its ticks take can tell beside."""
+    """What a robot that knows how long its ticks take can tell in addition."""
 
     def tick_times(self) -> TickTimes:
         """Return how long they took."""
@@ -169,7 +169,7 @@ class MapsView:
 
 @runtime_checkable
 class MapKeeper(Protocol):
-    """What a robot that keeps maps of its own can do beside.
+    """What a robot that keeps maps of its own can do in addition.
 
     What it would change of its map is in :attr:`roomba.client.view.HomeView.changes`.
     """
@@ -195,9 +195,10 @@ class MapKeeper(Protocol):
 
 @runtime_checkable
 class FeelsLowThings(Protocol):
-    """What a robot that offers no-go zones of its own can do beside.
+    """What a robot that offers no-go zones of its own can do in addition.
 
-    They are in :attr:`roomba.client.view.HomeView.low_things`; each is taken as any zone.
+    The offers are in :attr:`roomba.client.view.HomeView.low_things`; one is accepted by putting it
+    as any zone.
     """
 
     def ignore_low_thing(self, x: float, y: float) -> None:

@@ -12,7 +12,7 @@ from typing import Any, Final
 from roomba.client.protocol import RequestRefusedError, RobotUnavailableError
 
 _PATIENCE: Final = 6.0
-"""s of wall time; a robot that says nothing for 5 s is told by its server."""
+"""s of wall time; of a robot that says nothing for 5 s the server itself tells that."""
 
 
 class PageApi:

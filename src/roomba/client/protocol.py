@@ -120,7 +120,7 @@ class ErrandOutcome(Enum):
     """The connection to the action server was lost. The robot itself resumes a clean once its
     mission node is back: :meth:`RobotClient.vacuum` reports it, this errand does not."""
     INTERRUPTED = "interrupted"
-    """Of a run that is looked back at: the program that kept it ended in the middle of it. No
+    """Only of a run in the history: the program that recorded it ended in the middle of it. No
     errand reports this."""
 
 
@@ -265,13 +265,14 @@ class VacuumSnapshot:
 
 
 class CleaningClient(Protocol):
-    """What cleans, by a request or by its words as keywords, which become a request at once."""
+    """A robot that cleans, by a request or by keywords that are made into one."""
 
     def begin_clean(self, request: CleanRequest) -> CleanHandle:
         """Start cleaning; another clean, or a way to the station, ends.
 
-        Raises RequestRefusedError for what this robot cannot be asked, RobotUnavailableError. What
-        it refuses by its map or state, such as a room that there is not, is the handle's report.
+        Raises RequestRefusedError for what this robot cannot be asked, and RobotUnavailableError.
+        If the robot refuses by its map or state, as for an unknown room, the handle's report says
+        so.
         """
 
     def clean(
@@ -339,11 +340,11 @@ class RobotClient(CleaningClient, Protocol):
         """Start walking; raises RobotUnavailableError when no action server answers."""
 
     def change_rooms(self, rooms: Sequence[str], each: Sequence[RoomWay] = ()) -> None:
-        """Let the clean of rooms under way go on with these, in this order, the first one at once.
+        """Let the clean of rooms under way go on with ``rooms``, in this order, the first at once.
 
         ``rooms`` are all that are still to be cleaned. ``each`` is how each of them is cleaned;
-        without it those of before stay as they were, and new ones are cleaned as all are. Raises
-        RequestRefusedError with the reason, RobotUnavailableError.
+        without it, rooms of before stay as they were, and new ones are cleaned as the request says
+        for all. Raises RequestRefusedError with the reason, RobotUnavailableError.
         """
 
     def dock(self) -> DockingHandle:

@@ -23,7 +23,7 @@ def token_file(environment: Mapping[str, str] | None = None) -> Path:
 
 
 def read_token(path: Path | None = None) -> str | None:
-    """Return the token; None if there is none, or if others than this user could have told it.
+    """Return the token; None if there is none, or if other users could read or write it.
 
     The file must be a regular one of this user, and of mode 0600 or less.
     """

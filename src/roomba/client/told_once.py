@@ -1,4 +1,4 @@
-"""Trouble that lasts is told once, and again only after it was another, or none."""
+"""Telling of trouble once as long as it lasts, and again only after another trouble or none."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a robot has a run under way, and what that comes to, by what it tells of itself."""
+"""Whether a robot has a run under way, goes on with it, or is done, by what the robot tells."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ _HOMEWARD: Final = (Phase.RETURNING, Phase.DOCKING)
 def is_running(vacuum: VacuumSnapshot, *, before: bool | None) -> bool | None:
     """Return whether a run is under way; a charge in its middle belongs to it.
 
-    ``before`` is what was so a look ago, None if there was none. It is so still where the phase
-    does not tell: a run that met an error may go on, and a bin is emptied amid a run and after it.
+    ``before`` is what the look before returned, None if there was none. It is returned again where
+    the phase does not tell: a run that met an error may go on, and a bin is emptied amid a run and
+    after it.
     """
     if vacuum.state == "error" or vacuum.phase == Phase.EMPTYING:
         return before

@@ -242,7 +242,7 @@ class PageLimits:
     play: tuple[str, ...] = ()
 
     def clamped(self, linear: float, angular: float) -> Twist:
-        """Return the twist of a hand, m/s and rad/s, as fast as the robot can drive at most."""
+        """Return the twist of a drive by hand, m/s and rad/s, within what the robot can drive."""
         return Twist(
             min(max(linear, -self.max_speed), self.max_speed),
             min(max(angular, -self.max_angular_speed), self.max_angular_speed),

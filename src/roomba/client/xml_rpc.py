@@ -11,7 +11,7 @@ class ImpatientTransport(Transport):
     """A transport that raises TimeoutError when an answer takes too long."""
 
     def __init__(self, within: float) -> None:
-        """Wait for each answer for so many s of wall time."""
+        """Wait for each answer for ``within`` s of wall time."""
         super().__init__()
         self._within = within
 

@@ -42,9 +42,9 @@ _JOURNAL: Final = "runs.journal"
 _BUSY: Final = 10.0
 """s of wall time that one program waits for another one."""
 _MOST_RECORDINGS: Final = 200
-"""Of the newest runs; of older ones only the figures are kept."""
+"""Recordings that are kept, of the newest runs; of older ones only the figures are kept."""
 _LARGEST_NUMBER: Final = 2**63 - 1
-"""Of a run: larger ones SQLite does not know."""
+"""The largest number of a run: SQLite has no larger integers."""
 
 _UNUSABLE: Final = (
     sqlite3.Error,
@@ -66,9 +66,9 @@ class HistoryError(RoombaError):
 class History:
     """The runs in a folder; nothing is kept open between two calls, which may be of any thread.
 
-    A database that is damaged is set aside under another name, and ``set_aside`` names it. A new
-    one takes its place, or that of one that is missing, with the figures of all runs out of the
-    journal beside it, and without recordings. All methods raise HistoryError.
+    A database that is damaged is set aside under another name, which ``set_aside`` tells. A new one
+    takes its place, or that of a missing one, with the figures of all runs from the journal beside
+    it, but without recordings. All methods raise HistoryError.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -107,7 +107,7 @@ class History:
         return self.chosen(Choice(home), limit)
 
     def chosen(self, choice: Choice, limit: int, before: int | None = None) -> list[KeptRun]:
-        """Return the newest runs of a choice; those older than the run ``before``."""
+        """Return the newest runs of a choice; with ``before`` only those older than that run."""
         older = "? IS NULL OR (began, id) < (SELECT began, id FROM runs WHERE id = ?)"
         which = f"{CHOSEN} AND ({older}) ORDER BY began DESC, id DESC LIMIT ?"
         with self._opened() as database:
@@ -120,7 +120,8 @@ class History:
 
     def totals(self, program: str) -> TotalsView:
         """Return the sums over all runs of a program; what is not known counts as nothing."""
-        # Imported here, with all of the household's plans: what keeps a run needs none.
+        # Imported here, as it brings all of the household's plans, which keeping a run does not
+        # need.
         from roomba.client.household import TotalsView
 
         sums = ", ".join(f"TOTAL({name})" for name in _SUMS)
@@ -229,7 +230,7 @@ class History:
     def _make(self) -> None:
         """Make a database with the figures of the journal; it gets its name once it is filled."""
         new = self.path.with_name(f"{_NAME}.new")
-        # SQLite would take what is left of another one for its own.
+        # SQLite would take files that are left of another database for its own.
         for left in (new, *_beside(new), *_beside(self.path)):
             left.unlink(missing_ok=True)
         # SQLite gives its log the mode of the file.
@@ -261,7 +262,8 @@ class History:
 
     def _restore(self, database: sqlite3.Connection) -> None:
         """Fill a new database with the figures of the journal."""
-        # Of a number that was given twice the first writer was killed before it was kept.
+        # Where a number is there twice, the first writer was killed before the database had its
+        # run.
         rows = {row.pop("number", None): ADDED | row for row in read_lines(self._journal)}
         with transaction(database):
             for number, row in rows.items():

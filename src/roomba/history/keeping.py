@@ -1,4 +1,4 @@
-"""Keeps what is seen of a robot in a thread of its own: what looks does not wait for the disk."""
+"""A thread that keeps looks at a robot, so that the program need not wait for the disk."""
 
 from __future__ import annotations
 

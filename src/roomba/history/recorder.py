@@ -1,4 +1,4 @@
-"""Makes the record of each run out of looks at a robot, as a page looks at it."""
+"""The record of each run, made of looks at a robot as a page looks at it."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class RunRecorder:
         self._run: RunUnderWay | None = None
         self._last: CleanReport | None = None
         self.wish: Mapping[str, Any] | None = None
-        """What the next run was asked for by, where that is known: plain values."""
+        """The request for the next run, as plain values, where it is known."""
 
     @property
     def so_far(self) -> RunSoFar | None:
@@ -67,7 +67,7 @@ class RunRecorder:
     def look(
         self, view: RobotView, home: HomeView, layer: Layers
     ) -> tuple[RunFigures, RunRecording] | None:
-        """Take a look; return the run that it was the end of.
+        """Take a look; return the run that ended since the look before, if one did.
 
         Raises what ``layer`` does. A run that ended at such a look is returned by the next one.
         """
@@ -86,7 +86,7 @@ class RunRecorder:
         return ended
 
     def _source_of_run(self) -> RunSource:
-        """Return the source with what the run that begins was asked for by."""
+        """Return the source with the request for the run that begins."""
         wish, self.wish = self.wish, None
         return self.source if wish is None else replace(self.source, configuration={REQUEST: wish})
 
@@ -94,9 +94,10 @@ class RunRecorder:
 class HistoryKeeper:
     """Keeps the runs of a robot that is looked at; trouble with the history is told, once each.
 
-    A run under way is on the disk up to the last second. Was a program killed in the middle of one,
-    the next one goes on with it if its robot does, and else keeps it as interrupted. So it does if
-    the robot seemed to, held by the emergency stop, and then stands without a word of its end.
+    A run under way is on the disk up to the last second. If a program was killed in the middle of a
+    run, the next program goes on with the run if its robot does, and else keeps it as interrupted.
+    It does so, too, if the robot seemed to go on, held by the emergency stop, but then stands
+    without telling how the run ended.
     """
 
     def __init__(self, history: History, source: RunSource, tell: Callable[[str], None]) -> None:
@@ -111,22 +112,22 @@ class HistoryKeeper:
         self._added = 0
         """Runs that the history was given."""
         self._totals: tuple[int, TotalsView] | None = None
-        """How many of them there were before these sums."""
+        """These sums, and how many runs had been given to the history before them."""
         self.interrupted: dict[str, Any] | None = None
         """How the newest run ended, as plain values, if it was interrupted before this start."""
 
     def note(self, wish: Mapping[str, Any] | None) -> None:
-        """Remember what the next run is asked for by, plain values; None: it was refused."""
+        """Remember the request for the next run, plain values; None: it was refused."""
         self._recorder.wish = wish
 
     def look(self, view: RobotView, home: HomeView, layer: Layers) -> None:
-        """Take a look, and keep a run that it was the end of.
+        """Take a look, and keep a run that ended since the look before.
 
         A look that fails is told. A run that ended at it is kept by the next look.
         """
         try:
             self._look(view, home, layer)
-        # What a robot of another program answers, asked for a layer, is not known here.
+        # It is not known here what a robot of another program raises when it is asked for a layer.
         except Exception as fault:
             self.tell(f"a look for the history failed: {type(fault).__name__}: {fault}")
         if self.history.set_aside is not self._set_aside:
@@ -190,7 +191,7 @@ class HistoryKeeper:
         return None if newest is None else _as_interrupted(newest)
 
     def _has_kept(self, run: RunSoFar) -> bool:
-        """Whether the run is in the history, and its file could not be removed any more."""
+        """Whether the run is in the history already: its file may not have been removed in time."""
         return any(
             each.figures.began == run.wall and each.figures.source.program == run.source.program
             for each in self.history.runs(home=run.source.home)

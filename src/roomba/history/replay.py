@@ -38,9 +38,9 @@ class RecordedRobot:
     """Plays a recording; its methods may be called from any thread. Commands are refused."""
 
     def __init__(self, figures: RunFigures, recording: RunRecording, speed: float = 10.0) -> None:
-        """Begin at the first row, standing; raises RunFileError for a recording of nothing.
+        """Begin at the first row, standing; raises RunFileError for an empty recording.
 
-        So it does for one of which the home cannot be shown.
+        It raises that, too, for a recording whose home cannot be shown.
         """
         if not len(recording.trace) or not recording.words:
             raise RunFileError("expected a recording with at least one row, got none")
@@ -77,7 +77,7 @@ class RecordedRobot:
             self._jumps += 1
 
     def set_speed(self, speed: float) -> None:
-        """Play at so many of its seconds per second."""
+        """Play ``speed`` seconds of the recording per second."""
         with self._lock:
             self._pass_time()
             self._speed = min(max(speed, SPEEDS[0]), SPEEDS[1])
@@ -195,7 +195,7 @@ def _home_of(recording: RunRecording) -> view.HomeView:
 
 
 class _Coverage:
-    """What was swept up to a row of a trace; rows that follow are added, others begin anew."""
+    """What was swept up to a row of a trace; later rows are added, earlier ones begin anew."""
 
     def __init__(self, recording: RunRecording, tool: float) -> None:
         self._trace = recording.trace

@@ -48,7 +48,7 @@ MIGRATIONS: Final = (
     ALTER TABLE missed ADD COLUMN code TEXT NOT NULL DEFAULT '';
     """,
 )
-"""What makes each version of the schema of the one before; the first one of nothing."""
+"""Scripts of SQL: each makes a version of the schema of the one before, the first of nothing."""
 
 COLUMNS: Final = (
     "program", "home", "seed", "repeat", "configuration", "kind", "began", "outcome", "message",
@@ -56,7 +56,7 @@ COLUMNS: Final = (
     "times", "mapped", "open_edges",
 )  # fmt: skip
 ADDED: Final = {"times": "{}", "mapped": None, "open_edges": "[]"}
-"""Columns that rows of older journals do not have, with what they are then."""
+"""Columns that rows of older journals do not have, with the values to take for them."""
 _NUMBERS: Final = (
     "duration", "covered", "wanted", "distance", "turning", "dirt", "energy", "mapped",
 )  # fmt: skip
@@ -132,7 +132,7 @@ def _known(value: float) -> float | None:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Runs of one home, and of one program; with ``campaigns`` theirs are among those of all."""
+    """Runs of one home and of one program, None: of all; ``campaigns``: those of campaigns, too."""
 
     home: str | None = None
     program: str | None = None
@@ -195,7 +195,7 @@ def _edges_of(rows: list[tuple[float, float, float, str]]) -> tuple[OpenEdge, ..
 
 @contextlib.contextmanager
 def transaction(database: sqlite3.Connection) -> Iterator[None]:
-    """Keep all that is changed meanwhile, or nothing of it."""
+    """Keep all that is changed in the block, or nothing of it if the block raises."""
     database.execute("BEGIN IMMEDIATE")
     try:
         yield

@@ -47,7 +47,7 @@ def totals_by_week(runs: Iterable[RunFigures]) -> list[WeekTotals]:
 
 
 def weeks_of(database: sqlite3.Connection, which: str, values: tuple[Any, ...]) -> list[WeekTotals]:
-    """Return the same of those runs in a database of which a condition of SQL is true."""
+    """Return the same for the runs in a database that meet ``which``, a condition of SQL."""
     database.create_function("week_of", 1, _week_of, deterministic=True)
     sums = ", ".join(f"TOTAL({name})" for name in _SUMMED)
     rows = database.execute(

@@ -45,7 +45,7 @@ class RunUnderWay:
         self._began, self._wall = view.time, time.time()
         self._rows: list[Row] = []
         self._standing: Row | None = None
-        """Of a standstill the newest row, which is not among those that are kept yet."""
+        """The newest row of a standstill, which is not among the kept rows yet."""
         self._words: list[Word] = []
         self._theta = view.pose[2]
         self._turning = 0.0
@@ -107,7 +107,7 @@ class RunUnderWay:
         self._before = run
 
     def interrupted(self) -> tuple[RunFigures, RunRecording] | None:
-        """Return it as one that came to no end; None: it was none before this program either."""
+        """Return the run as interrupted; None if it began in this program: then it was no run."""
         before = self._before
         if before is None:
             return None

@@ -1,7 +1,7 @@
 """Runs under way, kept line by line: a program that is killed loses half a second of its run.
 
 Each program has a file of its own beside the history, which it holds locked for as long as it
-lives. One that no program holds is of a run that was interrupted.
+lives. A file that no program holds is of a run that was interrupted.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class RunSoFar:
         return np.array(self.rows, np.float32).reshape(-1, len(TRACE))
 
     def closed(self) -> tuple[RunFigures, RunRecording]:
-        """Return it as it ended, or as a run that came to no end."""
+        """Return the run as it ended, or else as interrupted."""
         figures = self._interrupted() if self.ended is None else self.ended
         return figures, RunRecording(self.trace, tuple(self.words), self.home, self.layers)
 
@@ -111,7 +111,7 @@ class RunSoFar:
 
 @dataclass(slots=True)
 class _Written:
-    """How many rows and words are written, of home and floor the newest, and when, monotonic s."""
+    """What is written: how many rows and words, the newest home and floor; when, monotonic s."""
 
     rows: int = 0
     words: int = 0
@@ -132,7 +132,7 @@ class UnfinishedFile:
         self._written = _Written()
 
     def keep(self, run: RunSoFar, home: Mapping[str, Any], layers: Layers) -> None:
-        """Write what is new, a moment after the last time; it is on the disk then.
+        """Write what is new, unless the last write was a moment ago; it is on the disk then.
 
         Raises OSError, ValueError for what is not finite, and TypeError for what is not plain.
         """
@@ -177,7 +177,7 @@ class UnfinishedFile:
             self._let_go()
 
     def leave(self, figures: RunFigures) -> None:
-        """Leave the file, if there is one, of a run that ended to the next program.
+        """Leave the file of a run that ended, if there is one, to the next program.
 
         Raises as :meth:`keep`; the next run gets a file of its own all the same.
         """
@@ -203,7 +203,7 @@ class UnfinishedFile:
             source = asdict(run.source)
             append_line(path, {"source": source, "clock": run.clock, "wall": run.wall})
         except BaseException:
-            # What follows would be worth nothing without its first line.
+            # Without its first line the rest of the file would be worth nothing.
             os.close(held)
             path.unlink(missing_ok=True)
             raise

@@ -27,11 +27,11 @@ class DirtKeeper:
         self.keep(records)
 
     def renamed(self, names: Mapping[str, str], rooms: Collection[str]) -> DirtRecords:
-        """Return what was learned with other names of ``rooms``, by the old ones."""
+        """Return what was learned with new names of ``rooms``, in ``names`` by the old ones."""
         return self._records.with_room_names(names, rooms)
 
     def keep(self, records: DirtRecords) -> None:
-        """Go on with records; raises OSError, and goes on with them all the same."""
+        """Use ``records`` from now on, and write them; raises OSError, but uses them even then."""
         self._records = records
         if records != self._written:
             self._kept.write(records)

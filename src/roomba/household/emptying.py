@@ -1,4 +1,4 @@
-"""When the station is let empty the robot's bin: as the household wants it."""
+"""When the station is to empty the robot's bin, as the household wants it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def is_to_be_emptied(
 ) -> bool:
     """Whether its station is to empty the bin now, which takes ``capacity`` g.
 
-    One with a full bag is not asked: it cannot.
+    A station with a full bag is not asked: it cannot.
     """
     can = math.isfinite(view.bag) and view.bag < 1.0
     if not can or is_quiet or wanted is Emptying.NEVER:

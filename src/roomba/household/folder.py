@@ -35,7 +35,7 @@ def household_folder(environment: Mapping[str, str] | None = None) -> Path:
 
 
 class KeptValues:
-    """Values of one model in one file; a damaged file gives way to the one before, and is told.
+    """Values of one model in one file; for a damaged file the one before is read, and that is told.
 
     A file that the disk refuses, or that a newer program wrote, is not written over.
     """
@@ -46,7 +46,7 @@ class KeptValues:
         self._unread: UnreadFileError | None = None
 
     def read(self, otherwise: _Kept) -> _Kept:
-        """Return what was kept, a model as ``otherwise``, and that where nothing can be read."""
+        """Return what was kept, of the model of ``otherwise``; that itself if none can be read."""
 
         def parse(content: bytes) -> _Kept:
             return validated(type(otherwise), load_json(content.decode("utf-8")), "")
@@ -64,9 +64,9 @@ class KeptValues:
         return otherwise if found is None else found
 
     def write(self, values: Frozen) -> None:
-        """Keep values; raises OSError when the disk refuses, and for more than is read again.
+        """Keep values; raises OSError when the disk refuses, or they are too many to be read again.
 
-        It does so, too, where :meth:`read` could not read what is there.
+        It raises OSError, too, where :meth:`read` could not read what is there.
         """
         if self._unread is not None:
             raise OSError(errno.EPERM, f"not kept: {self._unread}")

@@ -37,14 +37,14 @@ _END: Final = 10.0
 
 
 class ClockNotSetError(NotDoneError):
-    """The clock of this computer tells a time at which there was no such program."""
+    """The clock of this computer is not set: it tells a time before this program existed."""
 
 
 class LiveHousehold:
     """The household of one robot; its methods may be called from any thread.
 
-    What goes wrong of a look, with the disk or by a fault of the program, is told once for each
-    reason. It holds up nothing else of that look, nor the looks after it.
+    What goes wrong in a look, with the disk or by a fault of the program, is told once for each
+    reason. It holds up neither the other steps of that look nor the looks after it.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class LiveHousehold:
         self._thread = threading.Thread(target=self._live, name="household", daemon=True)
 
     def start(self) -> None:
-        """Look from now on; a program that keeps this household already is told."""
+        """Look from now on; if another program keeps this household already, that is told."""
         self._in_use.begin()
         self._thread.start()
 
@@ -99,7 +99,7 @@ class LiveHousehold:
         self._ends.set()
         if self._thread.is_alive():
             self._thread.join(_END)
-        # A look that hangs would be waited for.
+        # A look that hangs holds the lock of the plans: to follow rooms would wait for it.
         rooms = () if self._thread.is_alive() else (self._plans.follow_rooms,)
         self._steps.take(*rooms, self._upkeep.end)
         self._in_use.end()
@@ -133,7 +133,7 @@ class LiveHousehold:
     def put_plan(self, plan: Plan, *, is_new: bool = False) -> None:
         """Add a plan, or replace the one of the same name, unless it ``is_new``.
 
-        One that is off may name any rooms, and may be over.
+        A plan that is off may name any rooms, and its last day may be over.
         """
         if plan.is_on:
             self._require_rooms(plan.order)
@@ -184,12 +184,12 @@ class LiveHousehold:
             self.look()
 
     def _sum_up(self) -> None:
-        # What is wrong with the history its keeper tells.
+        # The keeper of the history tells what is wrong with it.
         with contextlib.suppress(RoombaError):
             self._summed = self._totals()
 
     def _see(self) -> None:
-        """See the robot; None while it does not answer."""
+        """Look at the robot; the view is None while it does not answer."""
         self._view = None
         with contextlib.suppress(RoombaError):
             self._view = self.robot.robot()
@@ -223,7 +223,7 @@ class LiveHousehold:
                 self.robot.empty_at_station()
 
     def _require_clock(self) -> None:
-        """Raise ClockNotSetError if no plan can begin for that."""
+        """Raise ClockNotSetError if the clock is not set, as then no plan can begin."""
         now = self._now()
         if not is_set(now):
             raise ClockNotSetError(
@@ -234,10 +234,10 @@ class LiveHousehold:
     def _require_rooms(self, order: PlannedOrder) -> None:
         """Raise RequestRefusedError for rooms that the map does not have.
 
-        What plans name already goes on by the rooms' names before: they may have changed places.
+        Before that, plans follow the edits of rooms: two names may have changed places.
         """
         _kept(self._plans.follow_rooms)
-        # Without a robot that answers its rooms are not known.
+        # While the robot does not answer, its rooms are not known.
         with contextlib.suppress(RobotUnavailableError):
             require_rooms(order, self.robot.home().rooms)
 

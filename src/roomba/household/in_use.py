@@ -1,4 +1,4 @@
-"""Whether two programs keep one household: what is edited in one would be lost in the other."""
+"""The mark that tells of two programs on one household, where edits of one can be lost."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from roomba.files.lock import try_to_lock
 from roomba.household.folder import Tell
 
 _NAME: Final = "in_use"
-"""Of the file: the process whose household it is."""
+"""The file's name; it has the id of the process that keeps the household."""
 _LONGEST: Final = 20
 """Bytes of a process id."""
 
 
 class InUse:
-    """The mark in a household's folder that a program keeps it; it goes with the program."""
+    """The mark in a household's folder that a program keeps it; the mark ends with the program."""
 
     def __init__(self, folder: Path, tell: Tell) -> None:
         """Touch nothing yet."""
         self._folder, self._tell = folder, tell
         self._lock: int | None = None
         self._owner = 0
-        """The process that marked it by this: this one, or one that it was forked from."""
+        """The id of the process that set the mark, perhaps before this one was forked; 0: none."""
 
     def begin(self) -> None:
-        """Mark the household as this program's; another program that keeps it is told."""
-        with contextlib.suppress(OSError):  # of a disk that refuses all else tells
+        """Mark the household as this program's; if another program keeps it, that is told."""
+        with contextlib.suppress(OSError):  # everything else tells of a disk that refuses
             make_private(self._folder)
             flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW
             self._lock = os.open(self._folder / _NAME, flags, 0o600)
@@ -44,7 +44,7 @@ class InUse:
                 self._mark(self._lock)
 
     def end(self) -> None:
-        """Let another program have it."""
+        """Release the mark, so that another program can have it."""
         lock, self._lock = self._lock, None
         if lock is not None:
             # A child of this process may have the file open as well.

@@ -16,7 +16,7 @@ _ETC: Final = Path("/etc")
 _ZONES: Final = Path("/usr/share/zoneinfo")
 _FOLDER: Final = "zoneinfo/"
 _USUAL: Final = "zone1970.tab"
-"""Of the system's zones: has one name of each that was another one since 1970, in column 3."""
+"""The system's list of zones that differed since 1970: one name of each, in column 3."""
 _MOST_BYTES: Final = 100_000
 """Of a file of these; the largest zone has some thousands."""
 _OTHERWISE: Final = "UTC"
@@ -36,9 +36,8 @@ def local_zone(
     """Return the zone of ``$TZ``, else of ``localtime`` or ``timezone`` in ``etc``, else UTC.
 
     ``$TZ`` may name a zone or a file, or be a rule such as CET-1CEST,M3.5.0,M10.5.0/3. A file that
-    is no link but a copy does not tell its name, but its rule as well. Of the ``zones`` of this
-    system that have the same rule any has the right hours; what the copy or the other files tell
-    decides between them.
+    is a copy, and no link, tells its rule but not its name. Any of this system's ``zones`` with
+    that rule has the right hours; what the copy or the other files tell decides between them.
     """
     given = (os.environ if environment is None else environment).get("TZ", "").removeprefix(":")
     if _is_known(given):
@@ -105,7 +104,7 @@ def _rule_of(file: bytes) -> bytes:
 
 
 def _usual(zones: Path) -> set[str]:
-    """Return the zones' usual names: those of many are older, or of a neighbour."""
+    """Return the zones' usual names; many other names are older ones, or a neighbour's."""
     lines = _read(zones / _USUAL).decode("utf-8", "replace").splitlines()
     rows = [line.split("\t") for line in lines if not line.startswith("#")]
     return {_OTHERWISE, *(row[2] for row in rows if len(row) > 2)}

@@ -16,7 +16,10 @@ _Ordered = TypeVar("_Ordered", Plan, Preset)
 def replaced(
     household: HouseholdPlans, kind: str, name: str, value: Plan | Preset
 ) -> HouseholdPlans:
-    """Return the household with a plan or preset (``kind`` is plans or presets) in its place."""
+    """Return the household with ``value`` in place of the one called ``name``, or added.
+
+    ``kind`` is plans or presets.
+    """
     names = [each.name for each in getattr(household, kind)]
     values = list(getattr(household, kind))
     if name in names:
@@ -49,7 +52,8 @@ def with_orders_again(
 ) -> Change:
     """Return a change that gives plans and presets the orders that they had ``before``.
 
-    Those of which the order is no longer as it was ``after`` go on by other names of rooms.
+    A plan or preset whose order is not that of ``after`` any more keeps its order, with the rooms'
+    new names of ``names``.
     """
 
     def change(plans: HouseholdPlans) -> HouseholdPlans:

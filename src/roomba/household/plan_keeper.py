@@ -33,7 +33,7 @@ from roomba.plans.times import next_after, quiet_until
 from roomba.vocabulary import CleanMode, listed
 
 _SHORTEST: Final = 0.01
-"""Days; plans that follow on one another sooner are as if they did so after this."""
+"""Days; the least time to a plan's next time that rooms' needs are reckoned with."""
 
 
 class PlanKeeper:
@@ -63,7 +63,7 @@ class PlanKeeper:
         self._show()
 
     def view(self) -> PlansView:
-        """Return the plans and what became of them, at once: a command is not waited for."""
+        """Return the plans and what became of them, at once: it does not wait for a command."""
         return self._view_of_version
 
     def is_quiet(self) -> bool:
@@ -99,19 +99,19 @@ class PlanKeeper:
             self._step(view, ended, now)
 
     def _step(self, view: RobotView | None, ended: CleanReport | None, now: dt.datetime) -> None:
-        """Let the scheduler take a step, and the robot what it wants; raises OSError."""
+        """Let the scheduler take a step, and the robot do what it asks for; raises OSError."""
         scheduler = Scheduler(self._household, self._config)
         situation = situation_of(view, ended, self._config.least_battery)
         self._memory, act = scheduler.step(self._memory, now, situation)
         if act is not None:
             self._memory = self._carried_out(scheduler, act, now)
-        # What ended may have told of dirt.
+        # A clean that ended may have told of dirt.
         self._keep_memory(is_changed=ended is not None)
 
     @contextlib.contextmanager
     def _by_other_names(self, change: Change, why: str) -> Iterator[None]:
-        """Let plans go by other names of rooms, and tell of them after it; raises OSError."""
-        with contextlib.suppress(RequestRefusedError):  # by a name that no plan can have
+        """Let plans go by other names of rooms, and show them after the block; raises OSError."""
+        with contextlib.suppress(RequestRefusedError):  # for a name that no plan can have
             before, changed = self._write(change)
             for plan in changed.plans:
                 if plan not in before.plans:
@@ -177,7 +177,7 @@ class PlanKeeper:
         return self._dirt.needs(rooms, now, max(period, _SHORTEST))
 
     def _shown_needs(self) -> tuple[RoomNeed, ...]:
-        """Return what rooms need by the first plan that goes by it."""
+        """Return what rooms need, for the first plan that cleans only rooms that are due."""
         for plan in self._household.plans:
             if plan.order.only_due and plan.is_on:
                 with contextlib.suppress(RobotUnavailableError):
@@ -229,7 +229,7 @@ class PlanKeeper:
         raise RequestRefusedError(f"expected a preset, one of {names}; got {preset[:80]!r}")
 
     def _forget_changed(self, before: HouseholdPlans, changed: HouseholdPlans) -> None:
-        """What was due by a plan that is another one now is due no more."""
+        """Forget what was due by plans that were changed."""
         if before.zone != changed.zone:
             self._memory = self._memory.replanned()
         old = {plan.name: plan for plan in before.plans}
@@ -239,7 +239,7 @@ class PlanKeeper:
 
     def _keep_memory(self, *, is_changed: bool = False) -> None:
         """Write and show the memory if it tells anything new; raises OSError."""
-        # When it was looked last is news each second, and is not needed after a restart.
+        # The time of the last look is new each second, and is not needed after a restart.
         told = self._memory.model_copy(update={"seen": self._written.seen})
         if told != self._written or is_changed:
             self._show()

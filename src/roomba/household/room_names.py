@@ -17,11 +17,12 @@ _SAME_AREA: Final = 0.05
 
 
 def names_now(before: Sequence[RoomView], after: Sequence[RoomView]) -> dict[str, str]:
-    """Return the names that are gone, and what their rooms are called now.
+    """Return, by the names that are gone, what their rooms are called now.
 
-    A room that lies where one lay before was renamed. One that is as large as some that lie in it,
-    and has the name of one of them, was joined of these. Where a room was split and its name is
-    gone, its largest part goes on. Of another map, or of rooms found anew, nothing is returned.
+    A room with the outline of a room before was renamed. A room was joined of several if they lie
+    in it, are together as large, and one of them has its name. Where a room was split and its name
+    is gone, its largest part stands for it. For another map, or for rooms that were found anew,
+    nothing is returned.
     """
     changed = [room for room in before if _has_outline(room) and not _is_in(room, after)]
     new = [room for room in after if _has_outline(room) and not _is_in(room, before)]
@@ -72,7 +73,7 @@ def require_rooms(order: PlannedOrder, rooms: Sequence[RoomView]) -> None:
 
 
 def _has_outline(room: RoomView) -> bool:
-    """Whether its outline is one: rings of three corners, the first of them told twice."""
+    """Whether it has an outline: closed rings, so with three corners and the first one again."""
     return bool(room.rings) and all(len(ring) > 3 for ring in room.rings)
 
 
@@ -81,6 +82,6 @@ def _is_in(room: RoomView, rooms: Sequence[RoomView]) -> bool:
 
 
 def _holds(room: RoomView, part: RoomView) -> bool:
-    """Whether a point of another room lies in a room."""
+    """Whether the anchor of ``part`` lies in ``room``."""
     outline = shapely.Polygon(room.rings[0], room.rings[1:])
     return bool(shapely.contains_xy(outline, *part.anchor))

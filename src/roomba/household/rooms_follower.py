@@ -1,4 +1,4 @@
-"""Plans and what is learned of dirt go by the names of rooms: edits of rooms are followed."""
+"""Edits of rooms: plans and what is learned of dirt go by rooms' names, and follow them."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from roomba.plans.plan import HouseholdPlans
 from roomba.vocabulary import listed
 
 Changing = Callable[[Change, str], AbstractContextManager[None]]
-"""Changes plans for a reason, and what is done within it before the plans are told; OSError."""
+"""Makes a context: it changes plans for a reason, and shows them at its end; raises OSError."""
 
 
 class RoomsFollower:
     """Lets plans and dirt go by the rooms' names of the map as they are now.
 
-    An edit is kept before anything is written by it, so that one that the disk refused, or in
-    which the program was killed, is finished later.
+    An edit is kept before anything is changed by it. So an edit that the disk refused, or in which
+    the program was killed, is finished later.
     """
 
     def __init__(
@@ -42,14 +42,14 @@ class RoomsFollower:
         self._looked_at: tuple[RoomView, ...] = ()
 
     def follow(self) -> None:
-        """Follow what is other than at the last look; raises OSError, then it is tried again."""
+        """Follow edits since the last look; raises OSError, and then the next call tries again."""
         try:
             rooms = self._robot.home().rooms
         except RobotUnavailableError:
             return
         try:
             self._finish_edit()
-            # A map that is being made has none yet, and says nothing of those of another one.
+            # A map that is being made has no rooms yet, and says nothing of another map's rooms.
             if not rooms or rooms == self._looked_at:
                 return
             if seen(rooms) != self._seen.rooms:
@@ -57,11 +57,11 @@ class RoomsFollower:
                 self._finish_edit()
             self._looked_at = rooms
         except ValueError:
-            # Rooms of numbers that are none are not followed.
+            # Rooms with invalid numbers are not followed.
             return
 
     def _begin_edit(self, rooms: Sequence[RoomView]) -> None:
-        """Keep what other rooms mean for plans and dirt, before that is written; raises OSError."""
+        """Keep what an edit means for plans and dirt, before these are changed; raises OSError."""
         last, known = self._seen, seen(rooms)
         names = names_now(last.views, rooms)
         before = self._plans()
@@ -82,7 +82,7 @@ class RoomsFollower:
         )
 
     def _finish_edit(self) -> None:
-        """Let plans and what is learned be as an edit that is pending wants; raises OSError."""
+        """Change plans and what is learned as a pending edit says; raises OSError."""
         pending = self._seen
         if not pending.is_pending:
             return

@@ -21,23 +21,23 @@ class SeenRoom(Frozen):
 
 
 class RoomsEdit(Frozen):
-    """An edit of rooms that plans followed: what ``rooms`` were before it, and the plans."""
+    """An edit of rooms that plans followed: ``rooms`` before it, and the plans before and after."""
 
     rooms: tuple[SeenRoom, ...] = ()
     plans_before: HouseholdPlans = HouseholdPlans()
     plans_after: HouseholdPlans = HouseholdPlans()
 
     def is_undone_by(self, rooms: Sequence[SeenRoom]) -> bool:
-        """Whether rooms are as before it again, and it changed plans."""
+        """Whether ``rooms`` are as before the edit again, and the edit changed plans."""
         return self.rooms == rooms and self.plans_before != self.plans_after
 
 
 class SeenRooms(Frozen):
     """Rooms, and the newest edit of them.
 
-    While it ``is_pending`` not all that goes by the rooms' names was written by the edit: plans
-    become as in ``edit``, what is learned of dirt as in ``dirt``, for the reason ``why``. That may
-    be done again, after a refused write or a kill, and gives the same.
+    While the edit ``is_pending``, not all that goes by the rooms' names was changed by it: plans
+    are to become as in ``edit``, and what is learned of dirt as in ``dirt``, for the reason
+    ``why``. To do that again, after a refused write or a kill, gives the same.
     """
 
     rooms: tuple[SeenRoom, ...] = ()

@@ -23,7 +23,7 @@ class EndedErrands:
         self._is_first = True
 
     def news(self, view: RobotView | None) -> CleanReport | None:
-        """Return how the errand ended that did since the look before; None if none did."""
+        """Return the report of an errand that ended since the look before; None if none did."""
         if view is None:
             return None
         is_news = not self._is_first and view.last is not self._last
@@ -36,8 +36,8 @@ def situation_of(
 ) -> Situation:
     """Return what the robot does, by a look and how an errand ended since the one before.
 
-    ``view`` is None while it does not answer; with a battery below ``least_battery``, 0..1, it
-    cannot begin.
+    ``view`` is None while the robot does not answer; with a battery below ``least_battery``, 0..1,
+    the robot cannot begin.
     """
     if view is None:
         return Situation(unfit="the robot does not answer")

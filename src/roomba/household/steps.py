@@ -1,4 +1,4 @@
-"""Steps of a look at the robot: each is taken also if another one fails, and that is told."""
+"""Steps of a look at the robot: each is taken even if another one fails, which is told."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Steps:
     def take(self, *steps: Callable[[], None]) -> None:
         """Take steps, each of them also if another one fails.
 
-        What went wrong as well when steps were taken before is not told again.
+        What went wrong already in the call before is not told again.
         """
         # Steps that fail for one reason tell it once.
         troubles = tuple(dict.fromkeys(filter(None, map(_trouble_of, steps))))

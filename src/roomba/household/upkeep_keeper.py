@@ -19,7 +19,7 @@ from roomba.vocabulary import Phase
 WORKS: Final = (Phase.CLEANING,)
 """Phases in which brush and fan are on."""
 _LONGEST_LOOK: Final = 600.0
-"""s of the robot's clock; what lies farther apart than this is not one stretch of work."""
+"""s of the robot's clock; two looks farther apart than this are not one stretch of work."""
 _WRITE_EVERY: Final = 120.0
 """s of work that a program that is killed forgets at most."""
 
@@ -32,7 +32,7 @@ class KeptWear(Frozen):
     dirt_rate: NotNegative | None = None
 
     def wear(self) -> Wear:
-        """Return it as the brain has it."""
+        """Return the values as a :class:`roomba.upkeep.parts.Wear`."""
         return Wear(
             self.worked, self.in_bin, math.nan if self.dirt_rate is None else self.dirt_rate
         )

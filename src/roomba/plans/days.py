@@ -1,4 +1,4 @@
-"""Days by a rule of iCalendar: RRULE of RFC 5545, of which the times of the day are no part."""
+"""Days by a rule of iCalendar (RRULE of RFC 5545), without times of the day."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ _KEYS: Final = {
 }
 """What a rule of each frequency may have beside COUNT and UNTIL.
 
-The others say times, or can be said by another frequency; with these alone a rule that never
-matches is found out within a second (a daily one is looked for day by day, up to the year 9999).
+Other keys say times, or what another frequency can say. With these keys alone it takes less than a
+second to find that a rule never matches (a daily one is tried day by day, up to the year 9999).
 """
 _ENDS: Final = {"COUNT", "UNTIL"}
 _YEARS: Final = (2000, 2100)
 """The first day of a plan lies between these."""
 _MOST: Final = 366
-"""Of an interval."""
+"""The greatest INTERVAL of a rule."""
 _KEPT: Final = 256
 """Rules that are kept parsed."""
 
 
 def require_days(rule: str, begins: dt.date) -> None:
-    """Raise ValueError, with what was expected, for a rule that is none or has no day."""
+    """Raise ValueError, with what was expected, for a rule that is invalid or has no day."""
     if not _YEARS[0] <= begins.year <= _YEARS[1]:
         raise ValueError(f"expected a first day from {_YEARS[0]} to {_YEARS[1]}, got {begins}")
     if next(days_from(rule, begins, begins), None) is None:
@@ -38,7 +38,7 @@ def require_days(rule: str, begins: dt.date) -> None:
 
 
 def days_from(rule: str, begins: dt.date, first: dt.date) -> Iterator[dt.date]:
-    """Yield the days of a rule that begins on a day, those from ``first`` on; ValueError."""
+    """Yield the days, from ``first`` on, of a rule that begins on a day; raises ValueError."""
     parsed = _parsed(rule, begins)
     for day in parsed.xafter(dt.datetime.combine(first, dt.time()), inc=True):
         yield day.date()

@@ -35,10 +35,10 @@ class DirtRecords(Frozen):
     rooms: dict[str, RoomRecord] = Field(default={}, max_length=MOST_ZONES)
 
     def with_room_names(self, names: Mapping[str, str], rooms: Collection[str]) -> DirtRecords:
-        """Return the records by other names of ``rooms``, which there were until now.
+        """Return the records with new names; ``names`` has them by the old ones of ``rooms``.
 
-        A room that others were joined with goes on by its own record; that of a room that is long
-        gone gives way.
+        A room that others were joined to keeps its own record. A record that is left of a room long
+        gone is replaced.
         """
         kept = {name: record for name, record in self.rooms.items() if name not in names}
         moved = {now: self.rooms[name] for name, now in names.items() if name in self.rooms}
@@ -48,7 +48,7 @@ class DirtRecords(Frozen):
 
 @dataclass(frozen=True, slots=True)
 class RoomNeed:
-    """How often a room needs to be cleaned: every so many times of a plan, None if not known yet.
+    """How often a room is to be cleaned: at ``every`` so many times of a plan, None if not known.
 
     ``reason`` says why, and ``is_due`` whether it is to be cleaned now.
     """
@@ -62,7 +62,7 @@ class RoomNeed:
 def learned(
     records: DirtRecords, found: Sequence[RoomDirt], at: dt.datetime, config: DueConfig
 ) -> DirtRecords:
-    """Return what is known after a clean that ended at a moment and found dirt in rooms.
+    """Return what is known after a clean that ended ``at`` a moment and ``found`` dirt in rooms.
 
     A room of which too little was swept counts as not cleaned. While the clock is not set nothing
     is learned.
@@ -98,10 +98,11 @@ def needs_of(
     period: float,
     config: DueConfig,
 ) -> tuple[RoomNeed, ...]:
-    """Return what each of some rooms needs at a moment, if the next one is ``period`` days later.
+    """Return what each of some rooms needs ``now``, if the next clean is ``period`` days later.
 
-    The dirtiest is cleaned each time, and no other room may become dirtier than that does: it is
-    due when it would until the next time. One that is not known is due.
+    The room that becomes dirty the fastest is cleaned each time. No other room may become dirtier
+    than that one does from one time to the next: a room is due if it would by the next time. A room
+    of which nothing is known is due.
     """
     rates = {name: _rate(records, name) for name in names}
     known = {name: rate for name, rate in rates.items() if rate is not None}
@@ -141,5 +142,5 @@ def _need(
 
 def _times(rate: float, most: float, longest: int) -> int:
     """Return after how many times a room is as dirty as ``most``: 1 to ``longest`` of them."""
-    # Divided only then: by a rate that is nearly none nothing that can be counted comes out.
+    # Divided only where that gives less than ``longest``: by a rate near 0 it would overflow.
     return longest if rate * longest <= most else max(1, int(most / rate))

@@ -41,10 +41,10 @@ class Running(Frozen):
     rests_since: Moment | None = None
     """Since when the robot stands without telling how the clean ended."""
     unanswered: str = ""
-    """Why it is not known whether it began, empty if it is: the robot was asked, and silent."""
+    """Why it is unknown whether it began, as the robot was asked and silent; empty if known."""
 
     def not_after(self, now: dt.datetime) -> Running:
-        """Return it with no moment that is to come."""
+        """Return the clean with its moments, but none later than ``now``."""
         moments = {name: getattr(self, name) for name in ("due", "began", "held", "rests_since")}
         return self.model_copy(
             update={name: min(at, now) for name, at in moments.items() if at is not None}
@@ -60,7 +60,7 @@ class Note(Frozen):
 
 
 class Memory(Frozen):
-    """Up to when plans were looked at, what waits by the plan's name, what runs, what became."""
+    """What is remembered: ``seen`` is when the last step was, ``waiting`` is by plans' names."""
 
     seen: Moment | None = None
     since: dict[str, Moment] = Field(default={})
@@ -68,7 +68,7 @@ class Memory(Frozen):
     next_at: dict[str, Moment] = Field(default={})
     """Of each plan that has a further time: when that is."""
     reckoned: dict[str, str] = Field(default={})
-    """Of each plan: the days and times, and their zone, of which the above was reckoned."""
+    """Of each plan: its days, times and zone as a text, by which ``next_at`` was reckoned."""
     waiting: dict[str, Waiting] = Field(default={})
     running: Running | None = None
     notes: Annotated[tuple[Note, ...], Field(max_length=MOST_NOTES)] = ()
@@ -86,7 +86,7 @@ class Memory(Frozen):
         return self.model_copy(update=update)
 
     def not_ahead(self, now: dt.datetime, longest: dt.timedelta) -> Memory:
-        """Return the memory without what a clock that was ahead noted: nothing waits for that.
+        """Return the memory without moments to come, which a clock that was ahead has noted.
 
         What began is no later than now, and what waits is tried again within ``longest``.
         """
@@ -103,7 +103,7 @@ class Memory(Frozen):
         return self.model_copy(update={"waiting": waiting, "running": running})
 
     def replanned(self) -> Memory:
-        """Return the memory for times that were changed: what comes next is looked for anew."""
+        """Return the memory without what was reckoned of plans' times, which were changed."""
         return self.model_copy(update={"since": {}, "next_at": {}, "reckoned": {}})
 
     def without_waiting(self, plan: str) -> Memory:

@@ -1,4 +1,4 @@
-"""Moments that are kept: days before and after each can be reckoned, in any time zone."""
+"""Moments that are kept, in a range in which days before and after can be reckoned as well."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Moment = Annotated[
     AwareDatetime,
     Field(ge=dt.datetime(1970, 1, 1, tzinfo=_UTC), lt=dt.datetime(9000, 1, 1, tzinfo=_UTC)),
 ]
-"""A moment of the wall clock; a clock that was never set tells the first one."""
+"""A moment of the wall clock, from 1970 on, which a clock that was never set tells."""
 _BEGAN: Final = dt.datetime(2026, 1, 1, tzinfo=_UTC)
 """Before this program there were no plans of it."""
 

@@ -35,7 +35,7 @@ from roomba.vocabulary import (
 MOST_PLANS: Final = 50
 """Plans, and presets, of a household."""
 MOST_TIMES: Final = 12
-"""Of a plan on one day."""
+"""Times of a plan on one day."""
 MOST_QUIET: Final = 14
 """Quiet hours."""
 _LONGEST_RULE: Final = 200
@@ -75,7 +75,7 @@ class PlannedOrder(Frozen):
     carpets: CarpetWay = CarpetWay.BOOST
     edges: EdgeOrder = EdgeOrder.ANY
     only_due: bool = False
-    """Of all rooms, or of these, those alone that are due by their dirt."""
+    """Whether of all rooms, or of these, only those are cleaned that are due by their dirt."""
 
     @model_validator(mode="after")
     def _rooms_for_rooms(self) -> PlannedOrder:
@@ -91,7 +91,7 @@ class PlannedOrder(Frozen):
         return self
 
     def request(self) -> CleanRequest:
-        """Return what the robot is asked; raises CleanRefusedError for a name that is none."""
+        """Return what the robot is asked; raises CleanRefusedError for an invalid name."""
         return CleanRequest(
             self.mode,
             self.rooms,
@@ -153,7 +153,7 @@ class Plan(Named):
 
 
 class QuietHours(Frozen):
-    """When no clean begins by a plan: from ``begins`` to ``ends``, over midnight if that is less.
+    """When no clean begins by a plan: ``begins`` to ``ends``, over midnight if ``ends`` is less.
 
     ``days`` are those on which it begins.
     """
@@ -170,7 +170,7 @@ class QuietHours(Frozen):
 
 
 class Emptying(Enum):
-    """When a station that can empties the robot's bin; in quiet hours never."""
+    """When a station that is able to empties the robot's bin; in quiet hours never."""
 
     EACH_RUN = "after each run"
     FULL = "by level"
@@ -189,7 +189,7 @@ class HouseholdPlans(Frozen):
     """Whether plans wait, and what they began pauses, while a person is at home."""
     emptying: Emptying = Emptying.FULL
     is_person_home: bool = False
-    """What was told last."""
+    """Whether a person is at home, as it was told last."""
 
     @field_validator("zone")
     @classmethod

@@ -21,7 +21,7 @@ from roomba.plans.times import UTC, last_until, next_after, quiet_until
 
 _DAY: Final = dt.timedelta(days=1)
 _OVERRULED_AFTER: Final = dt.timedelta(seconds=30)
-"""A robot that goes on so long after it was paused was told to by a person."""
+"""A robot that works so long after it was told to pause was told to go on by a person."""
 _ENDED_WITHOUT_WORD: Final = dt.timedelta(seconds=60)
 """A robot that stands so long without telling how its clean ended was switched off meanwhile."""
 PERSON_HOME: Final = "a person is at home"
@@ -86,8 +86,8 @@ class Scheduler:
     ) -> tuple[Memory, Act | None]:
         """Return what is remembered after a moment (aware of its zone), and what is to be done.
 
-        Once an act is carried out, :meth:`begun` or :meth:`refused` is to follow a BEGIN. While the
-        clock is not set nothing is to be done.
+        After a BEGIN the caller is to call :meth:`begun`, :meth:`refused` or :meth:`not_due`. While
+        the clock is not set nothing is to be done.
         """
         if not is_set(now):
             return self._follow_end(memory, now, situation), None
@@ -102,8 +102,8 @@ class Scheduler:
     def begun(self, memory: Memory, plan: str, now: dt.datetime, unanswered: str = "") -> Memory:
         """Return what is remembered once the robot began the clean of a plan.
 
-        ``unanswered`` is why that is not known; then it did if it is seen to work, and it did not
-        if it goes on to rest.
+        ``unanswered`` is why it is not known whether the robot began. It did if it is then seen to
+        work, and it did not if it stays at rest.
         """
         waits = memory.waiting[plan]
         running = Running(
@@ -123,14 +123,14 @@ class Scheduler:
         return memory.without_waiting(plan).noting(told)
 
     def keep_to_plans(self, memory: Memory, now: dt.datetime) -> Memory:
-        """Return the memory without what is no plan any more, and with those that are new.
+        """Return the memory without plans that are gone, and with plans that are new.
 
-        One that has other days or times than before is new; so it is where its file was edited by
-        hand. While the clock is not set it stays as it is.
+        A plan with other days or times than before counts as new, also where its file was edited by
+        hand. While the clock is not set, the memory stays as it is.
         """
         if not is_set(now):
             return memory
-        # A clock that is set back by less cleans nothing twice.
+        # A clock that is set back by less than a day must not let anything be cleaned twice.
         is_back = any(at - now > _DAY for at in (memory.seen or now, *memory.since.values()))
         times = {plan.name: self._times_of(plan) for plan in self.household.plans if plan.is_on}
         before = {**times, **memory.reckoned}
@@ -147,7 +147,7 @@ class Scheduler:
         return memory.model_copy(update={"next_at": {**memory.next_at, **known}})
 
     def _note_due(self, memory: Memory, now: dt.datetime) -> Memory:
-        """Let the newest time of each plan wait that has come; older ones it replaces."""
+        """Let the newest time of each plan that has come wait, in place of older ones."""
         for plan in self._plans(memory.next_at):
             if now < memory.next_at[plan.name]:
                 continue
@@ -327,7 +327,7 @@ class Scheduler:
         return memory, None
 
     def _times_of(self, plan: Plan) -> str:
-        """Return the days and times of a plan: another text for others."""
+        """Return the days and times of a plan as a text, which differs where they differ."""
         times = " ".join(f"{time:%H:%M}" for time in plan.at)
         return f"{plan.rule} from {plan.begins} at {times} {self.household.zone}"
 
@@ -344,7 +344,7 @@ class Scheduler:
         return PERSON_HOME if waits else ""
 
     def _quiet(self, now: dt.datetime) -> str:
-        """Which quiet hours it is; empty if it is in none."""
+        """Until when quiet hours last, in words; empty outside of them."""
         ends = quiet_until(self.household.quiet, self._zone, now)
         return "" if ends is None else f"quiet hours until {self._clock(ends, now)}"
 

@@ -1,8 +1,9 @@
 """Moments of plans and quiet hours: times of the clock on the wall, through changes of the clock.
 
 A time that a day does not have, because the clock goes forward over it, counts by the clock as it
-was before (02:30 becomes 03:30); of one that a day has twice the first counts. So each day of a
-plan has each of its times once. Quiet hours that end at such a time end with the second.
+was before (02:30 becomes 03:30); of a time that a day has twice, the first counts. So each day of a
+plan has each of its times once. Quiet hours that end at a time that a day has twice end with the
+second.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from roomba.plans.plan import Plan, QuietHours
 UTC: Final = dt.timezone.utc
 _DAY: Final = dt.timedelta(days=1)
 _ALL_QUIET: Final = 8 * _DAY
-"""A week without an hour that is not quiet has no end."""
+"""Quiet hours that leave no gap for a week never end: the search for their end stops here."""
 _ASTRAY: Final = 2 * _DAY
 """No change of any clock moved a time farther: a whole day was left out in Samoa in 2011."""
 

@@ -1,1 +1,1 @@
-"""What of the robot wears, and when it is due."""
+"""Parts of the robot that wear, and when they are due."""

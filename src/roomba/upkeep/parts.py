@@ -17,7 +17,7 @@ _FORMER: Final = 1.0 * HOUR
 _LEARNED: Final = 600.0
 """s of work after which a first filling says how fast the bin fills."""
 _HELD: Final = 1.0
-"""g; a bin that held less says nothing when it holds less still: it is weighed no better."""
+"""g; a bin that held less does not count as emptied when it holds less: it is weighed no better."""
 
 
 class Part(Enum):
@@ -64,8 +64,8 @@ class PartState:
 class Wear:
     """How long each part has worked since its last reset, s, and what is in the bin, g.
 
-    ``dirt_rate`` is how fast it filled before it was last emptied, g a second of work; NaN if it
-    never was. A value: each change returns a new one.
+    ``dirt_rate`` is how fast the bin filled until it was last emptied, g a second of work; NaN if
+    it never was emptied. A value: each change returns a new one.
     """
 
     worked: Mapping[Part, float] = field(default_factory=dict)
@@ -98,7 +98,7 @@ class Wear:
     def rate(self) -> float:
         """Return how fast the bin fills, g a second of work; NaN while it is not known.
 
-        The mean of this filling and of former ones, which weigh an hour.
+        It is the mean of this filling and of former ones, which together weigh as an hour of work.
         """
         seconds, former = self.worked.get(Part.BIN, 0.0), self.dirt_rate
         if math.isnan(former):

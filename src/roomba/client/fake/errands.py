@@ -41,8 +41,8 @@ _INSTANT = 1e-9
 class ErrandScript:
     """One errand: its ``outcome`` comes ``after`` s of work, if the work is not done by then.
 
-    A refusal comes at once. After DISCONNECTED the robot goes on. One that ``freezes`` then
-    tells and reports no more.
+    A refusal comes at once. After DISCONNECTED the robot goes on. A robot that ``freezes`` then
+    sends no feedback and no report any more.
     """
 
     outcome: ErrandOutcome = ErrandOutcome.COMPLETED
@@ -139,7 +139,7 @@ class FakeErrand:
         return self._stopped_by or self._script.message
 
     def waits_for_news(self, timeout: float) -> bool:
-        """Let time pass until there is news or the end, at most ``timeout`` s; whether news."""
+        """Let time pass until news or the end, at most ``timeout`` s; return whether news came."""
         if self.ending is not None:
             return False
         due = max(0.0, self._told * FEEDBACK_PERIOD - self.elapsed)
@@ -237,7 +237,7 @@ class FakeClean(FakeErrand):
 
     @property
     def _index(self) -> int:
-        """Of the room that it is in."""
+        """The index of the room that the robot is in."""
         return min(int(self.cleaned / self._cleans * len(self._rooms)), len(self._rooms) - 1)
 
     def next_feedback(self, timeout: float) -> CleanProgress | None:
@@ -272,8 +272,7 @@ class FakeClean(FakeErrand):
 
 
 class FakeExploring(FakeErrand):
-    """A :class:`roomba.client.protocol.ExploringHandle`, which comes to know
-    :data:`EXPLORING_RATE`."""
+    """A :class:`roomba.client.protocol.ExploringHandle`; it maps :data:`EXPLORING_RATE`."""
 
     def next_feedback(self, timeout: float) -> float | None:
         """Let time pass until the next feedback or the end, at most ``timeout`` s."""

@@ -132,7 +132,7 @@ class FakeVacuum(CleaningClient):
         self.beeps += 1
 
     def empty_bin(self) -> None:
-        """Go by an emptied bin."""
+        """Take the bin for empty."""
         self._require_answers(5.0)
         self.is_bin_full = False
 

@@ -34,7 +34,7 @@ _DIFFERENCES: Final = (
     ("Dirt, g", "dirt", 2, 1.0),
     ("Energy, Wh", "energy", 2, 1.0),
 )
-"""Name with its unit, attribute of the figures, digits, and what makes that unit of it."""
+"""Name with its unit, attribute of the figures, digits, and the factor to that unit."""
 
 
 def report_of(run: KeptRun, recording: RunRecording | None, others: Iterable[KeptRun] = ()) -> str:
@@ -181,7 +181,7 @@ def _charts(recording: RunRecording | None) -> str:
 
 
 def _rate(times: NDArray[np.float64], dirt: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return g a minute; an emptied bin is no dirt that was lost."""
+    """Return the rate of dirt, g/min; when the bin is emptied, that does not count as negative."""
     taken = np.concatenate(([0.0], np.maximum(np.diff(dirt), 0.0).cumsum()))
     before = np.interp(times - _RATE_WINDOW, times, taken)
     rate: NDArray[np.float64] = (taken - before) * 60.0 / _RATE_WINDOW

@@ -24,7 +24,7 @@ def number(value: float, digits: int, unit: str) -> str:
 
 
 def area(value: float) -> str:
-    """Return an area, m2, that is more than nothing."""
+    """Return an area, m2, as a text that does not show a tiny one as 0."""
     return number(value, 2, "m²") if not value < _SMALLEST else f"< {_SMALLEST} m²"
 
 
