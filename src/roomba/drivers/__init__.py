@@ -1,1 +1,1 @@
-"""Robots that people own, as bodies of the brain: what is said on their lines."""
+"""Drivers of robots that people own: each makes the robot on a line a body of the brain."""

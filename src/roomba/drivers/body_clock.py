@@ -7,14 +7,14 @@ from collections.abc import Callable
 
 
 class BodyClock:
-    """Seconds since it was made; for any thread.
+    """Seconds since the clock was made, less those for which it stood; safe for any thread.
 
-    A brain times its errands by it: what the robot could not do while its line was gone is not
-    taken for being stuck.
+    The brain times its errands by this clock. It stands while the line is gone, so that the brain
+    does not take a robot that cannot be reached for one that is stuck.
     """
 
     def __init__(self, wall: Callable[[], float]) -> None:
-        """Go on with ``wall``, s, a clock that never goes back."""
+        """Run with ``wall``, s, a clock that never goes back."""
         self._wall, self._began = wall, wall()
         self._stood_at: float | None = None
         self._lock = threading.Lock()
@@ -25,13 +25,13 @@ class BodyClock:
             return self._now()
 
     def stand(self) -> None:
-        """Stand still until it goes on."""
+        """Stop the clock until :meth:`go_on`."""
         with self._lock:
             if self._stood_at is None:
                 self._stood_at = self._now()
 
     def go_on(self) -> None:
-        """Go on from the time at which it stands."""
+        """Let the clock run on from the time at which it was stopped."""
         with self._lock:
             if self._stood_at is not None:
                 self._began = self._wall() - self._stood_at

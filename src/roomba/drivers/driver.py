@@ -1,4 +1,4 @@
-"""What a driver of a robot that people own is: its protocol on a line, as a brain needs it."""
+"""The interface of a driver: it speaks a robot's protocol on a line, for the brain."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ __all__ = ["Driver", "LineError"]
 
 
 class Driver(Protocol):
-    """One robot on a line that others open.
+    """One robot on a line.
 
     The first four methods are for the thread of the brain and return at once; the others are for
-    the one thread that serves the line, :class:`roomba.drivers.line_body.LineBody`. A program
-    that hangs or dies sends no more commands: the robot stands within 0.5 s after the last one.
+    the one thread that serves the line, :class:`roomba.drivers.line_body.LineBody`. A program that
+    hangs or dies sends no more commands: the robot stands within 0.5 s after the last one.
     """
 
     def read(self) -> Readings:
-        """Return what the robot told last, at the time of now; a scan once."""
+        """Return what the robot told last, at the time of now; each scan is returned once."""
 
     def newest_scan(self) -> ScanReading | None:
         """Return the newest scan; None before the first one."""
 
     def act(self, command: Command) -> None:
-        """Take what is wanted; without another command the robot stands soon."""
+        """Take the wanted command; without another one the robot stands soon."""
 
     def locate(self) -> None:
         """Let the robot beep soon."""
@@ -35,7 +35,7 @@ class Driver(Protocol):
         """Take the robot over, for the first time or after its line was gone; raises LineError."""
 
     def serve(self) -> None:
-        """Do on the line what is due, some 0.1 s at most but for a scan.
+        """Do what is due on the line; this takes some 0.1 s at most, longer only for a scan.
 
         Raises LineError, after which :meth:`begin` is due.
         """

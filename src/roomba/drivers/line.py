@@ -17,7 +17,7 @@ _UNPLUGGED: Final = (serial.SerialException, OSError, termios.error, TypeError)
 _NO_PINS: Final = (errno.ENOTTY, errno.EINVAL)
 """What a device without such pins answers."""
 _EXCLUSIVE: Final = True if os.name == "posix" else None
-"""Of two programs on one line each would take bytes from the other, and both would drive."""
+"""Two programs on one line would take each other's bytes, and both would drive."""
 _PIECE: Final = 4096
 """Bytes that are read at once at most."""
 
@@ -86,7 +86,7 @@ class SerialLine:
     def pull(self, *, is_low: bool) -> bool:
         """Pull the pins RTS and DTR low, or let them go; return whether it has any.
 
-        Low is what a TTL adapter makes of a line that is set. A pseudo terminal has none.
+        A TTL adapter pulls a pin low while its line is set. A pseudo terminal has no pins.
         """
         try:
             self._serial.rts = self._serial.dtr = is_low

@@ -1,8 +1,8 @@
-"""A body of a brain by a driver on a line: served by a thread of its own, in real time.
+"""The body of a brain that a driver on a line makes, served by its own thread, in real time.
 
 The brain's thread reads what was told and says what is wanted; the line's thread talks with the
-robot. A line that is gone is opened again and again until the robot answers, and so it is after a
-fault of the driver: the thread lives as long as the body.
+robot. A line that is gone is opened again and again until the robot answers. The same is done after
+a fault of the driver: the thread lives as long as the body.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class LineAgain(Protocol):
     """A line that can be opened anew."""
 
     def reopen(self) -> None:
-        """Let go of it and open it; raises LineError as long as it is gone."""
+        """Close the line and open it again; raises LineError as long as it is gone."""
 
     def close(self) -> None:
         """Let go of it."""
@@ -47,7 +47,7 @@ class NoScanError(RoombaError):
 
 
 class DriverFaultError(LineError):
-    """The driver met what it was not made for."""
+    """The driver failed by an error that it does not handle."""
 
     remedy = "Please report this"
 
@@ -55,8 +55,8 @@ class DriverFaultError(LineError):
 class LineBody:
     """A :class:`roomba.robot.body.Body` by ``driver``, which times itself by ``clock``.
 
-    :meth:`act` lets a ``tick``, s, of wall time pass. Between :meth:`start` and :meth:`stop` the
-    line is the thread's of this body.
+    :meth:`act` lets a ``tick``, s, of wall time pass. Between :meth:`start` and :meth:`stop` only
+    this body's thread may use the line.
     """
 
     def __init__(self, driver: Driver, line: LineAgain, clock: BodyClock, tick: float) -> None:
@@ -67,7 +67,7 @@ class LineBody:
         self._thread = threading.Thread(target=self._serve, name="robot's line", daemon=True)
         self._due = 0.0
         self._faults: set[str] = set()
-        """The kinds and places of those that are in the log already."""
+        """Faults that are in the log already, by kind and place."""
 
     def start(self, first_scan: float = _FIRST_SCAN_WAIT, *, has_lidar: bool = True) -> None:
         """Take the robot over, and return when its lidar told a scan, if it has one.
@@ -111,7 +111,7 @@ class LineBody:
         return self._trouble
 
     def read(self) -> Readings:
-        """Return what the robot told last; a scan once."""
+        """Return what the robot told last; each scan is returned once."""
         return self._driver.read()
 
     def newest_scan(self) -> ScanReading | None:
@@ -119,11 +119,11 @@ class LineBody:
         return self._driver.newest_scan()
 
     def tell(self, command: Command) -> None:
-        """Tell what is wanted; without another command the robot stands soon."""
+        """Pass on the wanted command; without another one the robot stands soon."""
         self._driver.act(command)
 
     def act(self, command: Command) -> None:
-        """Tell what is wanted, and return when a tick has passed since the last time."""
+        """Pass on the wanted command, and return when a tick has passed since the last call."""
         self.tell(command)
         now = time.monotonic()
         # A brain that took longer than a tick to think does not catch up.
@@ -142,7 +142,7 @@ class LineBody:
                 self._take_over_again(error)
 
     def _take_over_again(self, error: Exception) -> None:
-        """Try until the robot answers again, or all ends; meanwhile its clock stands."""
+        """Try until the robot answers again, or the body is stopped; meanwhile the clock stands."""
         self._clock.stand()
         self._note(error)
         # A line that is only garbled is whole again at once; a fault may come each time.

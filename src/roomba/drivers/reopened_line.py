@@ -8,14 +8,14 @@ from roomba.drivers.line import Line
 
 
 class ReopenedLine:
-    """A :class:`roomba.drivers.line.Line` at whose other end the same robot is again."""
+    """A :class:`roomba.drivers.line.Line` that can be opened again, to the same robot."""
 
     def __init__(self, opened: Callable[[], Line]) -> None:
-        """Open it by ``opened``, which raises LineError; so does this."""
+        """Open the line by ``opened``; raises LineError if ``opened`` does."""
         self._opened, self._line = opened, opened()
 
     def reopen(self) -> None:
-        """Let go of it and open it; raises LineError as long as it is gone."""
+        """Close the line and open it again; raises LineError as long as it is gone."""
         self._line.close()
         self._line = self._opened()
 

@@ -1,4 +1,4 @@
-"""Where a robot is by how far its wheels rolled, told now and then and wanted at any time."""
+"""Odometry by wheel positions that come now and then, for a pose at any time."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Final
 from roomba.geometry import STANDSTILL, Pose, Twist
 
 _SPEED_WINDOW: Final = 0.15
-"""s; speeds are taken over at least that: wheels are told in steps of a millimetre or so."""
+"""s over which speeds are averaged at least: positions come in steps of a millimetre or so."""
 _LEAST_JUMP: Final = 0.5
-"""m; a wheel that is told farther than this from before began to count anew."""
+"""m; a wheel whose position jumps by more than this began to count anew."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class WheelOdometry:
         self._pose, self._twist = Pose(), STANDSTILL
 
     def take(self, at: float, left: float, right: float) -> None:
-        """Take how far the wheels had rolled at a time: m since any time, the same for each call.
+        """Take how far the wheels had rolled at ``at``, m, from the same start for each call.
 
         ``at``, s, grows from call to call.
         """
@@ -49,7 +49,7 @@ class WheelOdometry:
         self._measure()
 
     def stand(self) -> None:
-        """Take no speed from what was told before: the robot may have stood since."""
+        """Forget the speed, but not the pose: the robot may have stood since its last answer."""
         self._twist = STANDSTILL
         while len(self._told) > 1:
             self._told.popleft()
@@ -65,7 +65,7 @@ class WheelOdometry:
 
     @property
     def twist(self) -> Twist:
-        """How it moved between what was told last, m/s and rad/s."""
+        """How the robot moved over the last positions, m/s and rad/s."""
         return self._twist
 
     def _measure(self) -> None:

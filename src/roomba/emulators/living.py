@@ -8,18 +8,18 @@ from collections.abc import Callable
 from typing import Final
 
 STEP: Final = 0.0125
-"""s of the world; what is asked comes between two."""
+"""s of the world in a step; requests are answered between two steps."""
 _LATE: Final = 0.1
-"""s; a machine that is later than this has a slower world."""
+"""s; on a machine that is later than this the world runs slower."""
 
 
 class LivingWorld:
-    """Takes a step, and another; ``lock`` is held meanwhile, and by all who look at the world."""
+    """Steps the world in real time; ``lock`` is held in a step, and by all that look at it."""
 
     def __init__(
         self, step: Callable[[], object], speed: float = 1.0, period: float = STEP
     ) -> None:
-        """``step`` lets ``period`` s pass; ``speed`` of the world's seconds pass in one."""
+        """``step`` lets ``period`` s pass; the world runs ``speed`` times as fast as real time."""
         self.lock = threading.Lock()
         self._step, self._pause = step, period / speed
         self._is_over = threading.Event()

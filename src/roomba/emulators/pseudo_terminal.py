@@ -32,7 +32,7 @@ class PseudoTerminal:
     """The robot's end of a line; ``name`` is the device that a program opens at the other end.
 
     Raises RoombaError where ``link``, a name to find it by, is taken. A link to a line that is gone
-    is not: an emulator that was killed left it.
+    does not count as taken: an emulator that was killed left it.
     """
 
     def __init__(
@@ -40,7 +40,8 @@ class PseudoTerminal:
     ) -> None:
         """``baud`` bits a second go over the line; None: as over USB, at once.
 
-        ``speed`` of the line's seconds pass in one, of one whose rate is set later.
+        A rate that is set later counts ``speed`` times: the line runs so much faster than real
+        time.
         """
         if link is not None:
             _require_free(link)
@@ -92,7 +93,7 @@ class PseudoTerminal:
         return _RATES.get(code) == baud
 
     def close(self) -> None:
-        """Unplug it; once is enough: the numbers of its files may be others' after that."""
+        """Unplug it; a second call closes nothing: its files' numbers may be others' by then."""
         ends, self._ends = self._ends, ()
         for end in ends:
             with contextlib.suppress(OSError):

@@ -1,7 +1,7 @@
 """Bags of ROS 1 and 2 (a folder with metadata.yaml, .db3, .mcap), read without ROS by rosbags.
 
 Only standard messages and those of this robot are needed, and their fields are the same in all
-versions of ROS: what a bag says about the types of its messages is not read.
+versions of ROS. So the definitions of types in a bag are not read.
 """
 
 from __future__ import annotations
@@ -36,18 +36,16 @@ _TOLD_NAMES, _TOLD_TYPE = ("initialpose", "amcl_pose"), "geometry_msgs/PoseWithC
 _OWN_NAMES: Final = ("pose", "position", "amcl_pose")
 _WITHOUT_STAMP: Final = "roomba_robot/RobotPosition"
 _OWN_TYPES: Final = ("geometry_msgs/PoseStamped", _TOLD_TYPE, _WITHOUT_STAMP)
-"""Topics and types of told poses, and of what the robot itself says where it is."""
+"""Names of topics, and types, of told poses, and of poses that the robot itself estimated."""
 _TRANSFORMS: Final = (TRANSFORMS, "tf/tfMessage")
 _FIXED_MESSAGES: Final = 1000
 _MOVING_MESSAGES: Final = 300
-"""Messages of /tf_static and /tf that are searched for the mounts of sensors: /tf goes on to be
-searched for a lidar of which nothing was told till then.
-"""
+"""Messages of /tf_static and of /tf that are searched for the mounts of sensors. If these tell
+nothing of a lidar, /tf is searched further for it."""
 _ODOMETRY_FRAME: Final = "odom"
 _STAMP: Final = struct.Struct("<4xII")
-"""Of a message with a header: its stamp, s and ns, after a number (ROS 1) or what tells how the
-message is encoded (ROS 2).
-"""
+"""The stamp of a message with a header, s and ns. Before it are a sequence number (ROS 1), or bytes
+that tell how the message is encoded (ROS 2)."""
 
 
 class BagLog:
@@ -66,7 +64,7 @@ class BagLog:
 
     @cached_property
     def channels(self) -> Sequence[Channel]:
-        """The topics; one of transforms is of odometry if no other one is, and it tells of it."""
+        """The topics; one of transforms counts as odometry if it has some and no other has."""
         channels = [
             Channel(name, kind, type_, count)
             for name, (type_, count) in self._file.topics.items()
@@ -82,7 +80,7 @@ class BagLog:
         ]
 
     def frames(self, odometry: Channel) -> Frames:
-        """Return the frame of odometry, and that which it tells of."""
+        """Return the frame of odometry, and the frame of the body whose pose it tells."""
         if odometry.type in _TRANSFORMS:
             return Frames("", "") if self._moving is None else Frames(*self._moving[:2])
         first = next(self._messages(odometry), None)
@@ -92,9 +90,9 @@ class BagLog:
         return Frames(*(frame_name(str(name)) for name in names))
 
     def transforms(self) -> Iterable[FrameTransform]:
-        """Return what does not move; of /tf what others than odometry and maps say.
+        """Return transforms that do not move; of /tf those that are not of odometry or maps.
 
-        Some robots tell again and again on /tf what never changes.
+        Some robots repeat on /tf what never changes.
         """
         fixed = list(self._transforms(_FIXED_MESSAGES, is_static=True))
         known = {each.child for each in fixed}
@@ -153,7 +151,7 @@ class BagLog:
 
     @cached_property
     def _moving(self) -> FrameTransform | None:
-        """The first transform that is odometry, however late it comes if no topic tells any."""
+        """The first transform of odometry; searched in the whole bag if no topic has odometry."""
         is_told = any(_KINDS.get(type_) is Kind.ODOMETRY for type_, _ in self._file.topics.values())
         found = self._transforms(_MOVING_MESSAGES if is_told else math.inf, is_static=False)
         return next((each for each in found if _ODOMETRY_FRAME in each.parent.lower()), None)
@@ -206,7 +204,7 @@ class BagLog:
 
 
 def _deserializer(is_first: bool) -> Callable[[bytes, str], Any]:
-    """Return what makes messages of ROS 1, or else 2, of bytes and the name of a type."""
+    """Return the function that decodes bytes of a named type, of ROS 1 or else of ROS 2."""
     store = known_types(is_first=is_first)
     made: Callable[[bytes, str], Any] = (
         store.deserialize_ros1 if is_first else store.deserialize_cdr
@@ -215,7 +213,7 @@ def _deserializer(is_first: bool) -> Callable[[bytes, str], Any]:
 
 
 def _kinds(name: str, type_: str) -> list[Kind | None]:
-    """Return what a topic tells; of some robots their own pose is told to them as well."""
+    """Return what a topic tells: one topic may have told poses and the robot's own ones."""
     end, true_type = _TRUE_POSES
     if type_ == true_type and name.endswith(end):
         return [Kind.TRUTH]

@@ -24,13 +24,13 @@ from roomba.recordings.readings import LogError
 from roomba.recordings.times.set_back import clock_shifts
 
 _SKIPPED: Final = 10**9
-"""ns; after what cannot be read it goes on so much later."""
+"""ns that are skipped after what cannot be read."""
 _MOST_SKIPS: Final = 1000
 _RECOVER: Final = {
     "end magic": ("mcap", "mcap recover {} -o whole.mcap"),
     "malformed": ("db3", "sqlite3 {} .recover | sqlite3 whole.db3"),
 }
-"""What a reader says of files of ROS 2 that are cut, their form, and its own tool for them."""
+"""By what a reader says of cut files of ROS 2: their form, and the tool that repairs that form."""
 _UNNAMED: Final = (
     AssertionError,
     LookupError,
@@ -100,8 +100,8 @@ class BagFile:
         """Yield the messages of topics, numbered as these are, in the order of their recording.
 
         Each topic has a reader of its own, for a reader keeps one chunk of a bag at a time, and
-        some programs write bags topic by topic. What is recorded meanwhile is left out: a topic
-        that was read to its end has so many messages the next time, too.
+        some programs write bags topic by topic. Messages that are recorded meanwhile are left out:
+        once a topic was read to its end, it has as many messages the next time.
         """
         readers = [self._opened() for _ in topics]
         streams = [
@@ -131,7 +131,7 @@ class BagFile:
         self._lengths[topic] = count
 
     def _of_topic(self, reader: Any, topic: str, number: int) -> Iterator[Raw]:
-        """Yield the messages of a topic, run by run: a reader goes by times, of any run."""
+        """Yield the messages of a topic, run by run; a reader itself mixes runs, by times."""
         connections = [each for each in reader.connections if each.topic == topic]
         if len(self._runs) == 1:
             for recorded, data in self._whole(reader, connections):
@@ -163,7 +163,7 @@ class BagFile:
                 reason = f"{type(error).__name__}: {error}"
                 if start > reader.end_time or skips > _MOST_SKIPS:
                     break
-                # What it began to read it would take for read.
+                # Otherwise the reader would take for read what it only began to read.
                 reader.close()
                 reader.open()
                 connections = [each for each in reader.connections if each.topic == topic]

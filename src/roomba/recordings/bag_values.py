@@ -1,7 +1,7 @@
 """Messages of bags as values.
 
-The messages are those of rosbags, which have the fields of ROS 1 and 2; each is refused for what a
-node of this robot would refuse it for.
+The messages are those of rosbags, which have the fields of ROS 1 and 2. A message is refused for
+the reasons for which a node of this robot would refuse it.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ from roomba.recordings.readings import (
 _MAP: Final = "map"
 _NOT_FINITE: Final = "its numbers are not finite"
 _CLIPPED: Final = 0.1
-"""Share of a scan's beams that all are as long as the longest one: they are cut there."""
+"""If more than this share of a scan's beams are as long as the longest one, they are cut there."""
 _UNEVEN: Final = 0.02
-"""Share by which the turns of a lidar differ: 1 mrad where a robot turns by 0.5 rad/s."""
+"""Share by which times of a lidar's turns may differ: 1 mrad where a robot turns by 0.5 rad/s."""
 _LEAST_DEVIATION: Final = 0.1
 """m, rad; of a told pose whose sender does not say how sure it is."""
 
 
 class LidarBook:
-    """The newest lidar of each frame; one is made anew only when it changed.
+    """The newest lidar of each frame; its model is made anew only when the lidar changed.
 
-    Some drivers tell of each scan how fast the lidar turned just then, which is no other lidar.
+    Some drivers tell with each scan how fast the lidar turned just then: that is no change.
     """
 
     def __init__(self, mount_of: MountOf) -> None:
@@ -74,7 +74,7 @@ class LidarBook:
     def _farthest(self, message: Any) -> float:
         """Return from which range on a beam met nothing, m.
 
-        Some drivers cut ranges, and tell another largest one.
+        Some drivers cut ranges at one value, and tell another one as the largest.
         """
         frame, (nearest, told) = str(message.header.frame_id), _told_ranges(message)
         ranges = np.asarray(message.ranges, np.float32)
@@ -108,21 +108,21 @@ def transforms_in(message: Any) -> Iterator[tuple[float, FrameTransform]]:
 
 
 def _is_same(increment: float, known: float) -> bool:
-    """Whether a time between beams, s, is as the known one, but for how evenly a motor turns."""
+    """Whether a time between beams, s, is the known one, but for a motor that turns unevenly."""
     return abs(increment - known) <= _UNEVEN * abs(known)
 
 
 def _told_ranges(message: Any) -> tuple[float, float]:
-    """Return from and to which range, m, a scan counts.
+    """Return the least and the largest range of a scan that count, m.
 
-    A driver that tells none has NaN as the first, or 0 as the last.
+    A driver that does not tell them has NaN as the least, or 0 as the largest.
     """
     nearest = float(message.range_min)
     return 0.0 if math.isnan(nearest) else nearest, float(message.range_max) or math.inf
 
 
 def _scan(message: Any, lidars: LidarBook) -> Value | Refused:
-    # A copy: those of a file can only be read, and loops would be compiled for such once more.
+    # A copy: arrays of a file are read-only, and loops would be compiled once more for those.
     ranges = np.array(message.ranges, np.float32)
     first, step = message.angle_min, message.angle_increment
     fault = scan_fault(ranges, first, step, *_told_ranges(message))

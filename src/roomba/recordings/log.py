@@ -13,7 +13,7 @@ from roomba.perception.matching.mounts import FrameTransform, Mount
 from roomba.recordings.readings import Kind, Refused, Value
 
 MountOf: TypeAlias = Callable[[str, Kind], Mount]
-"""Tells where a frame is on the robot, of a sensor that tells readings of a kind."""
+"""Tells where the frame of a sensor is on the robot; the kind is that of its readings."""
 
 
 class Channel(NamedTuple):
@@ -26,10 +26,10 @@ class Channel(NamedTuple):
 
 
 class Arrival(NamedTuple):
-    """That something came: the number of its channel, and when, s.
+    """A message that came: the number of its channel, and its times, s.
 
-    ``stamp`` is what the message itself says, 0 if nothing; ``arrival`` when it was recorded, or
-    what its place among the others says, where its own time ``is_by_order``: others have it, too.
+    ``stamp`` is what the message itself says, 0 if nothing; ``arrival`` is when it was recorded.
+    ``is_by_order``: other messages have the same time, and its place among them gives ``arrival``.
     """
 
     channel: int

@@ -1,4 +1,4 @@
-"""The types of messages in bags of ROS 1 and 2, and this robot's own, that ROS does not bring."""
+"""The types of messages in bags of ROS 1 and 2, with this robot's own, which ROS does not have."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ class LogError(RoombaError):
 
 
 class Kind(IntEnum):
-    """What a channel tells; of readings of the same time the first of these comes first."""
+    """What a channel tells; readings of the same time come in the order of these members."""
 
     GYRO = 0
     ODOMETRY = 1
@@ -58,7 +58,7 @@ class TruePose(NamedTuple):
 
 
 class Lifted(NamedTuple):
-    """Whether the robot is held: both wheels hang; of one over an edge the other one does not."""
+    """Whether the robot is held, so that both wheels hang; at an edge only one of them does."""
 
     is_lifted: bool
 

@@ -1,9 +1,10 @@
-"""A Create 2 as a body of the brain: its stream becomes readings, what is wanted wheel speeds.
+"""A Create 2 as a body of the brain: its stream becomes readings, commands become wheel speeds.
 
-The robot drives as it was told last, for ever: the Open Interface has no time-out. So it is told
-anew twenty times a second; :mod:`roomba.drivers.create2.dead_man` stops it when the driver dies,
-and safe mode where a wheel drops or the floor ends. When its cable is pulled while it drives, only
-safe mode can stop it. A thread of its own calls :meth:`Create2Body.serve` again and again.
+The Open Interface has no time-out: the robot obeys its last drive command for ever. So the driver
+sends a command twenty times a second. :mod:`roomba.drivers.create2.dead_man` stops the robot when
+the driver dies, and its safe mode stops it where a wheel drops or the floor ends. When its cable is
+pulled while it drives, only safe mode can stop it. A thread of its own calls
+:meth:`Create2Body.serve` again and again.
 """
 
 from __future__ import annotations
@@ -32,23 +33,23 @@ from roomba.robot.command import Command
 from roomba.robot.readings import Readings, ScanReading
 
 BAUDS: Final = (115_200, 19_200)
-"""What its line is tried with: the usual rate, and the one of a robot that was asked for it."""
+"""Baud rates to try: the usual one, and the slower one of a robot that was told to use it."""
 _LEAST_BAUD_FOR_ALL: Final = 57_600
 """Baud, from which on all packets come in each frame."""
 _SEND_PERIOD: Final = 0.05
 """s, between two commands."""
 _LONGEST_SILENCE: Final = 0.15
-"""s; the robot stands when what it is to do, or what it told last, is older than this."""
+"""s; the robot is stopped when the newest command, or the newest frame, is older than this."""
 _FRAME_WAIT: Final = 0.5
 """s without a frame, after which the line counts as gone."""
 _FIRST_FRAME_WAIT: Final = 0.5
 """s, for the first frame at each rate."""
 _COMMANDS_PER_SLOW_LIST: Final = 5
-"""Of as many commands on a slow line one is followed by the packets that may be old."""
+"""On a slow line, after one command in so many the slow list is streamed, not the fast one."""
 
 
 class RobotLine(Line, PinLine, Protocol):
-    """Its line: data, and the pin that wakes it."""
+    """The robot's line: data, and the pin that wakes the robot."""
 
 
 class Create2Body:
@@ -66,9 +67,9 @@ class Create2Body:
     ) -> None:
         """Be about to drive the robot of ``config`` on ``port``; nothing is opened yet.
 
-        ``now`` is the robot's clock, s, by which readings are timed; it never goes back, and may
-        stand while the line is gone: waits end by the computer's. ``lidar`` is one on a line of its
-        own, read from :meth:`begin` to :meth:`end`; ``opened`` opens a port.
+        ``now`` is the robot's clock, s, which times the readings. It never goes back, but may stand
+        while the line is gone, so waits are timed by the computer's clock. ``lidar`` is one on a
+        line of its own, read from :meth:`begin` to :meth:`end`; ``opened`` opens a port.
         """
         self._port, self._now, self._config = port, now, config
         self._lidar, self._opened = lidar, opened
@@ -91,7 +92,7 @@ class Create2Body:
         self.trouble = "not asked yet"
 
     def read(self) -> Readings:
-        """Return what the robot told last; a scan once."""
+        """Return what the robot told last; each scan is returned once."""
         scan = self.newest_scan()
         with self._lock:
             is_new = scan is not None and scan is not self._given
@@ -118,7 +119,7 @@ class Create2Body:
         return None if self._lidar is None else self._lidar.newest()
 
     def act(self, command: Command) -> None:
-        """Take what is wanted; it holds for 0.15 s, then the robot stands.
+        """Take the wanted command; it holds for 0.15 s, then the robot stands.
 
         Raises ValueError for a twist that is not finite.
         """
@@ -149,11 +150,11 @@ class Create2Body:
         self.trouble = ""
 
     def _is_found(self) -> bool:
-        """Whether it answers at one of the rates."""
+        """Whether the robot answers at one of the rates."""
         return any(self._answers(baud) for baud in BAUDS)
 
     def _is_woken(self) -> bool:
-        """Wake it, if the line has the pin for that; whether it has."""
+        """Wake the robot by the line's pin; return whether the line has one."""
         line = self._opened(self._port, BAUDS[0])
         try:
             return self._pin.wake(line)
@@ -205,7 +206,7 @@ class Create2Body:
             line.close()
 
     def _answers(self, baud: int) -> bool:
-        """Open the line at a rate, and ask for the stream; whether it comes."""
+        """Open the line at ``baud`` and ask for the stream; return whether a frame comes."""
         self._lists = (ALL,) if baud >= _LEAST_BAUD_FOR_ALL else (FAST, SLOW)
         self._reader = FrameReader(self._lists)
         self._line = self._opened(self._port, baud)
@@ -252,14 +253,17 @@ class Create2Body:
             data += commands.power(*self._duties(wanted, twist))
         if sings:
             data += commands.play()
-        # It drives until it hears this command, and may from then on.
+        # Until the robot hears this command it obeys the one before: either of them may move it.
         if not self._switch.tell(twist != STANDSTILL or self._twist != STANDSTILL):
             raise LineError("its dead man's switch ended, and nothing else stops a robot for long")
         line.write(data + self._next_list())
         self._twist = twist
 
     def _mode_for(self, twist: Twist, state: Create2State, now: float) -> OpenMode:
-        """Return the mode: passive where it charges, else safe; only off its station full."""
+        """Return the mode: safe off the station, passive to charge, full to leave or to sing there.
+
+        With a dropped wheel it is passive everywhere.
+        """
         if state.dropped_left or state.dropped_right:
             return OpenMode.PASSIVE
         if not state.has_power:
@@ -269,14 +273,14 @@ class Create2Body:
         return OpenMode.FULL if leaves else OpenMode.PASSIVE
 
     def _duties(self, wanted: Command, twist: Twist) -> tuple[float, float]:
-        """Return those of brush and fan, which rest while the robot stands."""
+        """Return the duties of brush and fan, which rest while the robot stands."""
         if twist == STANDSTILL:
             return 0.0, 0.0
         brush = self._config.brush.duty if wanted.brush is None else wanted.brush
         return brush, self._config.fan.duty if wanted.fan is None else wanted.fan
 
     def _next_list(self) -> bytes:
-        """Return the command for what is streamed until the next one, where lists take turns."""
+        """Return the command that streams the other list, if there are two and a change is due."""
         if len(self._lists) == 1:
             return b""
         self._sent = (self._sent + 1) % _COMMANDS_PER_SLOW_LIST
@@ -287,7 +291,11 @@ class Create2Body:
 
 
 def _allowed(twist: Twist, state: Create2State) -> Twist:
-    """Return what of a twist is driven: nothing ahead at a cliff, on the station only off it."""
+    """Return ``twist`` where it is allowed, else standstill.
+
+    With a dropped wheel or a cable nothing is driven, at a cliff nothing ahead, and on the station
+    only what backs off it.
+    """
     is_blocked = (
         state.dropped_left
         or state.dropped_right

@@ -10,10 +10,10 @@ from roomba.drivers.create2.open_interface import FASTEST, Opcode, OpenMode
 from roomba.geometry import Twist
 
 PADDING: Final = bytes(4)
-"""Zeros before a command: one that lost a byte takes them for its data, else they say nothing."""
+"""Zeros before a command: they complete an earlier one that lost bytes, and else do nothing."""
 _MOST_DUTY: Final = 127
 _SIDE_SHARE: Final = 0.6
-"""Of the main brush's duty, that of the side brush: at all of it crumbs fly away."""
+"""The side brush's duty as a share of the main brush's: at the full duty it flings crumbs away."""
 _INTO: Final = {
     OpenMode.OFF: Opcode.STOP,
     OpenMode.PASSIVE: Opcode.START,
@@ -33,7 +33,7 @@ def into(mode: OpenMode) -> bytes:
 
 
 def drive(twist: Twist, track: float) -> bytes:
-    """Return the wheels' speeds for ``twist``; ``track`` is how far they are apart, m.
+    """Return the command that drives ``twist``; ``track`` is how far the wheels are apart, m.
 
     Too fast a twist is driven slower, along the same curve. Raises ValueError for one that is not
     finite.
@@ -53,7 +53,7 @@ def power(brush: float, fan: float) -> bytes:
 
 
 def stream(packets: Sequence[int]) -> bytes:
-    """Return the command after which these packets are told all 15 ms."""
+    """Return the command that lets the robot stream these packets every 15 ms."""
     return bytes([Opcode.STREAM, len(packets), *packets])
 
 
@@ -63,10 +63,10 @@ def silence() -> bytes:
 
 
 def song() -> bytes:
-    """Return the command that teaches it the song by which it is found."""
+    """Return the command that teaches the robot the song by which a person finds it."""
     return bytes([Opcode.SONG, _SONG, len(_NOTES) // 2, *_NOTES])
 
 
 def play() -> bytes:
-    """Return the command that plays it."""
+    """Return the command that plays the song."""
     return bytes([Opcode.PLAY, _SONG])

@@ -1,9 +1,10 @@
-"""A process of its own that lets a robot stand when the driver's program is killed or frozen.
+"""A process that stops the robot when the driver's program is killed or frozen.
 
-The Open Interface has no time-out: a robot drives as it was told last, for ever. This process hears
-twenty times a second that the driver lives, through a pipe that closes when it dies. Then, and when
-it is silent for 0.15 s while the robot drives, the process sends the stop on the same line. It is
-run as a program and needs nothing but Python, so that it is there soon and little can go wrong.
+The Open Interface has no time-out: the robot obeys its last drive command for ever. Through a pipe
+the driver tells this process twenty times a second that it lives; the pipe closes when the driver
+dies. When the pipe closes, and when nothing comes for 0.15 s while the robot drives, this process
+sends the stop on the same line. It is run as a program and needs nothing but Python, so that it
+starts soon and little can go wrong.
 """
 
 import os
@@ -17,13 +18,13 @@ SILENT: Final = 0.15
 """s; without a word for so long, while the robot drives, it is stopped."""
 DRIVES, STANDS = b"d", b"s"
 PADDING: Final = bytes(32)
-"""A command that was cut takes zeros for its data; as commands they are passed over."""
+"""Zeros: they complete a command that was cut short; as commands they are passed over."""
 STOP: Final = PADDING + bytes([145, 0, 0, 0, 0, 144, 0, 0, 0])
 """Both wheels at 0 mm/s, and all brushes off."""
 
 
 class Switch(Protocol):
-    """What a driver needs of it."""
+    """What a driver needs of a dead man's switch."""
 
     def start(self) -> None:
         """Watch from now on."""
@@ -36,17 +37,18 @@ class Switch(Protocol):
 
 
 class DeadManSwitch:
-    """The process, as its driver has it; for a port that is a file of this machine."""
+    """The driver's side of the process; the port must be a device file of this machine."""
 
     def __init__(self, port: str) -> None:
-        """Be about to watch over who drives the robot on ``port``."""
+        """Prepare to guard the robot on ``port``; no process runs yet."""
         self._port = port
         self._process: subprocess.Popen[bytes] | None = None
 
     def start(self) -> None:
         """Start the process; one that runs already is ended first."""
         self.end()
-        # A session of its own: what ends the program by the terminal must not end this, too.
+        # In a session of its own: a signal that ends the driver from its terminal must not end
+        # this, too.
         self._process = subprocess.Popen(
             [sys.executable, "-I", __file__, self._port],
             stdin=subprocess.PIPE,
@@ -59,7 +61,8 @@ class DeadManSwitch:
     def tell(self, drives: bool) -> bool:
         """Say that the driver lives, and whether the robot may drive; return whether it hears.
 
-        It does not when it was killed, or its line is gone: the next start() is another one.
+        The process does not when it was killed or its line is gone; start() then starts another
+        one.
         """
         if self._process is None or self._process.stdin is None:
             return False
@@ -70,7 +73,7 @@ class DeadManSwitch:
         return True
 
     def end(self) -> None:
-        """Close the pipe: it stops the robot once more, and ends."""
+        """Close the pipe: the process stops the robot once more, and ends."""
         process, self._process = self._process, None
         if process is None:
             return

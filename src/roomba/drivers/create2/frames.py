@@ -13,13 +13,14 @@ Told = Mapping[int, int]
 
 
 class FrameReader:
-    """Makes packets of bytes. ``spoilt`` counts what looked like the begin of a frame and was none.
+    """Finds frames of packets in bytes. ``spoilt`` counts headers that began no valid frame.
 
-    One sum in 256 is right by chance, so a frame must also be laid out as one that was asked for.
+    One checksum in 256 is right by chance, so a frame must also have the layout of a list that was
+    asked for.
     """
 
     def __init__(self, asked: Sequence[Sequence[int]]) -> None:
-        """Read frames of these packets: each of ``asked`` is a list that was asked for."""
+        """Read frames that are laid out as one of ``asked``, the lists that were asked for."""
         self._layouts = {
             sum(1 + format_of(packet).size for packet in packets): tuple(packets)
             for packets in asked
@@ -28,7 +29,7 @@ class FrameReader:
         self.spoilt = 0
 
     def forget(self) -> None:
-        """Forget what came of a frame that is not whole."""
+        """Forget the bytes of an unfinished frame."""
         self._came = b""
 
     def take(self, data: bytes) -> list[Told]:
@@ -52,7 +53,7 @@ class FrameReader:
             self._came = self._came[size + 3 :]
 
     def _told(self, size: int) -> Told | None:
-        """Return the packets of the frame that begins now; None where there is none."""
+        """Return the packets of the frame that begins the buffer; None if it is not valid."""
         layout, frame = self._layouts.get(size), self._came[: size + 3]
         if layout is None or sum(frame) & 0xFF:
             return None

@@ -1,4 +1,4 @@
-"""Whether the wheels do what they are told: of the two wires to a robot one may be broken."""
+"""The check that the wheels obey: the wire to the robot may be broken while it still tells."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from roomba.geometry import STANDSTILL, Twist
 from roomba.vocabulary import Hindrance
 
 _LEAST_DISOBEDIENCE: Final = 0.05
-"""m/s; a wheel that turns by so much faster than it is told, or the other way, does not obey."""
+"""m/s; a wheel that is faster than told by more than this, or turns back so fast, does not obey."""
 _LONGEST_DISOBEDIENCE: Final = 0.5
-"""s; wheels that are told to stand do so much sooner."""
+"""s for which a wheel may disobey: wheels that are told to stand do so much sooner."""
 _LONGEST_AFTER_DRIVING: Final = 3.0
-"""s since it was told to drive, after which wheels that turn are pushed by hand."""
+"""s since the robot was last told to drive; wheels that turn later are pushed by hand."""
 
 
 class DisobeyedError(LineError):
-    """The robot tells what it senses, and does not hear what it is told."""
+    """The robot tells what it senses, but does not do what it is told."""
 
     trouble = "the robot does not obey"
     remedy = "Switch it off, look whether the wire to it is broken, and switch it on"

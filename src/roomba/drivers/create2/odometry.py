@@ -1,4 +1,4 @@
-"""Where the robot came, by the encoders of its wheels, which begin anew after 65,536 counts."""
+"""Odometry by the wheels' encoders, whose counters wrap around after 65,536 counts."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from roomba.drivers.create2.open_interface import ENCODER_SPAN
 from roomba.geometry import STANDSTILL, Pose, Twist
 
 _SPEED_WINDOW: Final = 0.1
-"""s; over which speeds are measured: a count is 0.4 mm."""
+"""s over which speeds are averaged: a single count is 0.4 mm."""
 _FASTEST_WHEEL: Final = 1.0
-"""m/s, of a wheel; what is faster are encoders that began anew."""
+"""m/s of a wheel; counts that would need more mean that the encoders began anew."""
 _SLACK_WAY: Final = 0.05
-"""m; more than what a wheel rolls while bytes wait."""
+"""m beyond that speed: more than a wheel rolls while bytes wait."""
 
 
 class EncoderOdometry:
     """``pose`` in the frame in which it began, and ``twist``, by the counts of both wheels."""
 
     def __init__(self, config: RobotConfig) -> None:
-        """Be of a robot with these wheels."""
+        """Begin at the origin; ``config`` gives the wheels and their counts per turn."""
         body = config.body
         self._way = math.pi * body.wheel_diameter / config.wheels.counts_per_turn
         self._track = body.wheel_separation
@@ -31,12 +31,12 @@ class EncoderOdometry:
         self.pose, self.twist = Pose(), STANDSTILL
 
     def forget(self) -> None:
-        """Begin anew with the next counts, where the robot is by now: what lies between is lost."""
+        """Begin anew at the present pose with the next counts; the way until then is lost."""
         self._last, self.twist = None, STANDSTILL
         self._steps.clear()
 
     def pause(self) -> None:
-        """Stand until the next counts: what was rolled meanwhile counts, if it is plausible."""
+        """Stand until the next counts; a plausible way that was rolled meanwhile still counts."""
         self.twist = STANDSTILL
         self._steps.clear()
 
@@ -58,7 +58,7 @@ class EncoderOdometry:
         half = 0.5 * turn
         chord = way * (math.sin(half) / half if half else 1.0)
         self.pose = self.pose.compose(Pose(chord * math.cos(half), chord * math.sin(half), turn))
-        # Of what was rolled in a pause it is not known when: no speed is measured by that.
+        # When the wheels rolled in a pause is not known, so no speed is measured by that.
         self._steps.append((now, 0.0, 0.0) if is_resumed else (now, way, turn))
         self._measure(now)
 

@@ -53,7 +53,7 @@ class Opcode(IntEnum):
 
 
 class OpenMode(IntEnum):
-    """How much the robot does of what it is told; packet 35."""
+    """How much of what it is told the robot does; packet 35."""
 
     OFF = 0
     PASSIVE = 1
@@ -65,7 +65,7 @@ class OpenMode(IntEnum):
 
 
 class Packet(IntEnum):
-    """What the robot senses; 32 and 33 of older robots say nothing here."""
+    """What the robot tells; packets 32 and 33, of older robots, are not used here."""
 
     BUMPS_AND_DROPS = 7
     WALL = 8
@@ -126,7 +126,7 @@ _WIDE: Final = dict.fromkeys((22, 25, 26, *range(27, 32), 33, 43, 44, *range(46,
 FORMATS: Final[Mapping[int, str]] = MappingProxyType(
     {int(packet): (_SIGNED | _WIDE).get(int(packet), "B") for packet in Packet}
 )
-"""Of each packet as of :mod:`struct`: one byte or two, with a sign or without."""
+"""Each packet's format, as in :mod:`struct`: one byte or two, with a sign or without."""
 GROUPS: Final[Mapping[int, range]] = MappingProxyType(
     {
         group: range(first, last + 1)
@@ -145,13 +145,13 @@ GROUPS: Final[Mapping[int, range]] = MappingProxyType(
         )
     }
 )
-"""Packets that are asked for by one number."""
+"""Groups of packets that are asked for by one number."""
 BAUDS: Final = (300, 600, 1200, 2400, 4800, 9600, 14400, 19200, 28800, 38400, 57600, 115200)
-"""By their code in the command BAUD."""
+"""Baud rates; the place of each is its code in the command BAUD."""
 HEADER: Final = 19
 """The first byte of each frame of a stream."""
 STREAM_PERIOD: Final = 0.015
-"""s, between two frames, and two looks of the robot at its sensors."""
+"""s between two frames of a stream; the robot reads its sensors as often."""
 FASTEST: Final = 500
 """mm/s, of a wheel."""
 ENCODER_SPAN: Final = 1 << 16
@@ -174,5 +174,5 @@ def format_of(number: int) -> struct.Struct:
 
 
 def checked(frame: bytes) -> bytes:
-    """Return a frame with its last byte, by which all of them add up to 0 of 256."""
+    """Return a frame with its checksum, which makes the sum of all bytes 0 modulo 256."""
     return frame + bytes([-sum(frame) & 0xFF])

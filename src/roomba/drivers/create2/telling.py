@@ -23,7 +23,7 @@ FAST: Final = (
     Packet.LEFT_ENCODER,
     Packet.RIGHT_ENCODER,
 )
-"""25 bytes as a frame: what 19200 baud take in 15 ms, 28, are more."""
+"""25 bytes as a frame: fewer than the 28 that 19200 baud can send in 15 ms."""
 SLOW: Final = (
     Packet.BUMPS_AND_DROPS,
     Packet.DIRT,
@@ -41,12 +41,12 @@ _CHARGES: Final = frozenset({1, 2, 3, 4})
 """Charging states: reconditioning, full, trickle, waiting."""
 _MODES: Final = frozenset(int(mode) for mode in OpenMode)
 _DIRT_WINDOW: Final = 0.1
-"""s; of which the dirt sensor tells what it counted (assumed)."""
+"""s over which the dirt sensor counts what it tells (assumed)."""
 _MOST_WALL: Final = 1023
 _STATION_600: Final = {161: 1, 164: 4, 165: 5, 168: 8, 169: 9, 172: 12, 173: 13}
 _STATION_500: Final = {242: 1, 244: 4, 246: 5, 248: 8, 250: 9, 252: 12, 254: 13}
 _BEAMS: Final = _STATION_600 | _STATION_500
-"""Characters of the stations of both ages, as bits: 1 halo, 4 green, 8 red."""
+"""Infrared characters of older and newer stations, as bits: 1 halo, 4 green, 8 red."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +78,7 @@ class Create2State:
 
 
 def state_of(told: Told) -> Create2State:
-    """Return the state; what was not told is as nothing was sensed."""
+    """Return the state; a packet that was not told counts as nothing sensed."""
     bumps = told.get(Packet.BUMPS_AND_DROPS, 0)
     mode = told.get(Packet.MODE, 0)
     sources = told.get(Packet.CHARGING_SOURCES, 0)

@@ -1,19 +1,19 @@
-"""The time of a device that counts for itself, as time of the clock here."""
+"""The time of a device with a counter of its own, converted to the clock here."""
 
 from __future__ import annotations
 
 from typing import Final
 
 _MOST_DRIFT: Final = 0.0005
-"""Share; so much faster than the clock here a device's may go (crystals: 0.0001)."""
+"""Share by which a device's clock may run slower than the one here (crystals: 0.0001)."""
 _LARGEST_OFFSET: Final = 0.5
-"""s; a device that is farther off began anew."""
+"""s; when bytes seem to be later than this, the device began to count anew."""
 
 
 class DeviceClock:
-    """Bytes come late by what they wait on the way, never early: the least delay is that of none.
+    """Converts times; bytes come late, never early, so the least delay is taken to be none.
 
-    The device counts ms and begins anew after ``lap``.
+    The device counts ms and begins anew after ``lap`` ms.
     """
 
     def __init__(self, lap: int) -> None:
@@ -23,7 +23,7 @@ class DeviceClock:
         self._offset = 0.0
 
     def host_time(self, told: int, arrived: float) -> float:
-        """Return when ``told``, ms, was, in s of the clock by which it ``arrived``."""
+        """Return the device's time ``told``, ms, in s of the clock by which it ``arrived``."""
         if self._before is not None:
             before, at = self._before
             self._counted += 1e-3 * ((told - before) % self._lap)

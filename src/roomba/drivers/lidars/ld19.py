@@ -30,7 +30,7 @@ _POLYNOMIAL: Final = 0x4D
 _FULL_TURN: Final = 36_000
 """0.01 degrees"""
 _WIDEST_FRAME: Final = 30.0
-"""degrees from the first to the last point; at 4 turns a second they are 4 degrees apart."""
+"""degrees from a frame's first point to its last; at 4 turns a second it is some 4."""
 
 
 def _crc_of(value: int) -> int:
@@ -62,7 +62,7 @@ class LidarFrame:
 
 
 def frame_of(data: bytes) -> LidarFrame | None:
-    """Return the frame in SIZE bytes; None where they are none."""
+    """Return the frame in SIZE bytes; None if they are not a valid frame."""
     if data[:2] != HEAD or crc8(data[:-1]) != data[-1]:
         return None
     _head, speed, first = START.unpack_from(data)
@@ -85,12 +85,12 @@ class Ld19Frames:
         self._came = b""
 
     def begin(self, line: Line) -> None:
-        """Forget what came; it turns and sends by itself."""
+        """Forget what came; this lidar turns and sends without being told."""
         line.discard()
         self._came = b""
 
     def take(self, data: bytes, arrived: float) -> list[ScanReading]:
-        """Return the scans that are whole by now; ``arrived``, s, is when the bytes did."""
+        """Return the scans that are whole by now; ``arrived``, s, is when ``data`` came."""
         self._came += data
         scans: list[ScanReading] = []
         while True:

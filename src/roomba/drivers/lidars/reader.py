@@ -10,11 +10,11 @@ from roomba.drivers.line import Line, LineError
 from roomba.robot.readings import ScanReading
 
 _LONGEST_WITHOUT_SCAN: Final = 1.0
-"""s without a scan, after which that is told."""
+"""s without a scan, after which ``trouble`` says so."""
 _REOPEN_PERIOD: Final = 1.0
-"""s, after which a line is opened anew."""
+"""s between two attempts to open the line."""
 _LOOK_PERIOD: Final = 0.05
-"""s; between two looks for whether it is to end."""
+"""s between two checks of whether the thread is to end."""
 _LONGEST_ENDING: Final = 2.0
 """s, for its thread to end."""
 
@@ -26,7 +26,7 @@ class LidarLanguage(Protocol):
         """Let it measure; raises LineError."""
 
     def take(self, data: bytes, arrived: float) -> list[ScanReading]:
-        """Return the scans that are whole, of bytes that ``arrived`` by now, s."""
+        """Return the scans that ``data`` completes; ``arrived``, s, is when ``data`` came."""
 
 
 class LidarReader:
@@ -38,7 +38,7 @@ class LidarReader:
     def __init__(
         self, opened: Callable[[], Line], language: LidarLanguage, now: Callable[[], float]
     ) -> None:
-        """Read what ``opened`` returns; it raises LineError where there is none.
+        """Read the line that ``opened`` returns; ``opened`` raises LineError where there is none.
 
         ``now`` is the robot's clock, s, which never goes back.
         """
@@ -52,7 +52,7 @@ class LidarReader:
         self._thread: threading.Thread | None = None
 
     def start(self) -> None:
-        """Read from now on; while it does already nothing changes."""
+        """Read from now on; does nothing if it reads already."""
         if self._thread is None:
             self._is_over.clear()
             self._thread = threading.Thread(target=self._read_on, name="lidar", daemon=True)

@@ -17,7 +17,7 @@ from roomba.robot.readings import ScanReading
 STOP: Final = b"\xa5\x25"
 SCAN: Final = b"\xa5\x20"
 ANSWER: Final = b"\xa5\x5a\x05\x00\x00\x40\x81"
-"""What comes before the first point."""
+"""The lidar's answer to SCAN, before the first point."""
 _POINT_SIZE: Final = 5
 _PER_DEGREE: Final = 64.0
 _PER_METRE: Final = 4000.0
@@ -42,7 +42,7 @@ class RplidarPoints:
         self._came = b""
 
     def take(self, data: bytes, arrived: float) -> list[ScanReading]:
-        """Return the scans that are whole by now; ``arrived``, s, is when the bytes did."""
+        """Return the scans that are whole by now; ``arrived``, s, is when ``data`` came."""
         self._came += data
         if ANSWER in self._came:
             self._came = self._came.partition(ANSWER)[2]

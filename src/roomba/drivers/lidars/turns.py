@@ -15,7 +15,7 @@ from roomba.robot.readings import ScanReading
 _FULL_TURN: Final = 360.0
 """degrees"""
 _WIDEST_GAP: Final = 30.0
-"""degrees; a turn in which more is missing is none."""
+"""degrees; a turn with a wider gap gives no scan."""
 _LONGEST_TURN: Final = 1.0
 """s; lidars take 0.08 to 0.5 s."""
 _MOST_JITTER: Final = 0.05
@@ -25,7 +25,7 @@ _SAME_TURN: Final = 0.01
 
 
 class TurnCollector:
-    """Takes points one by one; each time that the lidar looks ahead again a scan may be whole.
+    """Takes points one by one; a scan ends each time that the lidar looks ahead again.
 
     Angles are those of the lidar: degrees, 0 where it looks ahead, clockwise as seen from above.
     """
@@ -53,7 +53,7 @@ class TurnCollector:
             if step > _WIDEST_GAP or not at - _MOST_JITTER <= when <= at + _LONGEST_TURN:
                 self._began = None
             elif angle < before:
-                # It looked ahead between the two.
+                # The lidar looked ahead between the two points.
                 when = max(when, at)
                 crossed = at + (when - at) * ((_FULL_TURN - before) / step if step > 0.0 else 0.0)
                 scan = self._ended(crossed)

@@ -21,7 +21,7 @@ BEAMS: Final = 360
 _LEAST_BEAMS: Final = 300
 """Lines of a scan; with fewer the answer was cut."""
 _FIRST_ERROR: Final = 1
-"""Of a beam; 0 is a range."""
+"""The least error code of a beam; 0 says that its range is good."""
 _LONGEST_RANGE: Final = 65_535
 """mm; the lidar tells ranges in 16 bits."""
 
@@ -29,7 +29,7 @@ Values = Mapping[str, float]
 
 
 class AnswerError(RoombaError):
-    """An answer that is none; the message says what was expected."""
+    """An answer that cannot be used; the message says what was expected."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class Drops:
 
 @dataclass(frozen=True, slots=True)
 class Charge:
-    """Of the battery 0..1, and whether the station or a cable gives current."""
+    """The battery's level, 0..1, whether it charges, and whether a station or cable gives power."""
 
     level: float
     is_charging: bool
@@ -152,7 +152,7 @@ def scan_of(lines: Sequence[str]) -> Scan:
 
 
 def _beam(cells: Sequence[str]) -> tuple[int, int, int]:
-    """Return angle, range and error of a line of a scan; the angle is -1 where it is none."""
+    """Return angle, range and error of a line of a scan; the angle is -1 if the line is no beam."""
     try:
         angle, millimetres, error = int(cells[0]), int(cells[1]), int(cells[3], 16)
     except (IndexError, ValueError):

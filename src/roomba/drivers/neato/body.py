@@ -1,11 +1,12 @@
-"""A Neato as a body of the brain: what it tells becomes readings, what is wanted its commands.
+"""A Neato as a body of the brain: its answers become readings, wanted twists its commands.
 
-One command at a time goes over the line, some 25 ms each and a scan half a second on a serial line.
-:meth:`NeatoBody.serve` does the one that is due; a thread of its own calls it again and again.
+One command at a time goes over the line. Each takes some 25 ms, and a scan half a second on a
+serial line. :meth:`NeatoBody.serve` sends the one that is due; a thread of its own calls it again
+and again.
 
-No command drives a wheel farther ahead than the floor that the drop sensors have seen. They are
-asked first where too little of it is left, so that neither a scan nor a slow or dead line leads
-over an edge. When they report an edge the wheels are stopped at once.
+No command drives a wheel farther ahead than the floor that the drop sensors have seen. Where too
+little seen floor is left, the sensors are asked first, so that neither a scan nor a slow or dead
+line leads over an edge. When they report an edge, the wheels are stopped at once.
 """
 
 from __future__ import annotations
@@ -46,33 +47,33 @@ _SCAN_ANSWER_WAIT: Final = 1.5
 _BEGINNING_WAIT: Final = 1.0
 """s; the longest wait for the answer to a command that takes the robot over."""
 _GIVING_BACK_TRIES: Final = 3
-"""Times that it is tried; a radio that fails once may not fail again."""
+"""Attempts to give the robot back: a radio that fails once may not fail again."""
 _LONGEST_SILENCE: Final = 0.15
-"""s; the robot stands when what it is to do is older than this."""
+"""s; the robot is stopped when the newest wanted command is older than this."""
 _DRIVE_HOLD: Final = 0.3
-"""s; that the wheels go on after a command, while others are on the line."""
+"""s for which a command lets the wheels go on, while other commands are on the line."""
 _SCAN_HOLD: Final = 0.45
 """s; the same before a scan, which takes longer on a serial line."""
 _DRIVE_REPEAT_PERIOD: Final = 0.05
 """s; from a command of the wheels to the next."""
 _LONGEST_WITHOUT_SCAN_OR_CHARGE: Final = 10.0
-"""s without a scan, or the charge, after which that is trouble; bumpers and drops are told."""
+"""s without a scan or the charge that are an error; meanwhile bumpers and drops are still told."""
 _SCAN_PERIOD: Final = 0.1
-"""s; more often than the lidar turns, so that it is seen when its sweeps end."""
+"""s; shorter than a turn of the lidar, so that it is seen when each sweep ends."""
 _SCAN_SHARE: Final = 0.5
-"""Of the line's time for scans, at most, where they take long."""
+"""The greatest share of the line's time for scans, where they take long."""
 _BRIDGED_SCAN_SHARE: Final = 0.8
 """The same behind a bridge: it rests after each short answer, and scans would be too rare."""
 _FASTEST_TURN_FOR_SCAN: Final = 0.3
 """rad/s; while the robot turns faster, no scan is asked for on a slow line."""
 _SETTLING_TIME: Final = 0.4
-"""s after such a turn until a scan is asked for: its sweep was measured after the turn."""
+"""s from such a turn to the next scan, so that its whole sweep is measured after the turn."""
 _LONGEST_TURN_WITHOUT_SCAN: Final = 3.0
 """s without a scan, after which one is asked for even while the robot turns."""
 _NO_FLOOR: Final = 0.06
-"""m; a floor so far below a drop sensor is none."""
+"""m; where the floor is farther below a drop sensor, there is an edge."""
 _SAME_TURN: Final = 0.05
-"""Share by which the lidar's turns may differ and its beams are taken to be the same."""
+"""Share by which the time of the lidar's turns may change while its model is kept."""
 _BEEP: Final = "PlaySound SoundID 3"
 
 
@@ -122,7 +123,7 @@ class NeatoBody:
         ]
 
     def read(self) -> Readings:
-        """Return what the robot told last; a scan once."""
+        """Return what the robot told last; each scan is returned once."""
         with self._lock:
             scan, self._scan = self._scan, None
             touches, charge, drops = self._touches, self._charge, self._drops
@@ -141,10 +142,10 @@ class NeatoBody:
             )
 
     def _pose_at(self, now: float) -> Pose:
-        """Return where the robot is by its wheels, which were told since what they are to do."""
+        """Return the pose by the wheels' last answer, and by what they were told to do since."""
         if math.isnan(self._odometry.told_at):
             return Pose()
-        # Commands that came since then are other ways from where it was then.
+        # Added to the pose of the last answer is the way that was planned since then.
         before, after = self._planned_when_told, self._planned.ways(now)
         return self._odometry.after(after[0] - before[0], after[1] - before[1])
 
@@ -154,7 +155,7 @@ class NeatoBody:
             return self._newest_scan
 
     def act(self, command: Command) -> None:
-        """Take what is wanted; it holds for 0.15 s, then the robot stands."""
+        """Take the wanted command; it holds for 0.15 s, then the robot stands."""
         with self._lock:
             self._wanted, self._wanted_at = command.twist, self._now()
             fan = 0.0 if command.fan is None else command.fan
@@ -169,8 +170,8 @@ class NeatoBody:
     def begin(self) -> None:
         """Take the robot over and let its lidar turn; raises LineError, or UntoldError.
 
-        All that it must tell is asked once; scans only once there was one: a lidar takes its time
-        to come up to its speed.
+        Each question is asked once, so that a silent sensor is noticed. A scan is asked for only if
+        there was one before: a lidar needs time to come up to its speed.
         """
         for command in ("TestMode On", "SetLDSRotation On", STOP):
             self._line.ask(command, _BEGINNING_WAIT)
@@ -187,8 +188,9 @@ class NeatoBody:
     def end(self) -> None:
         """Let the robot stand, and give it back.
 
-        Once a command is not answered, what gives it back comes next, some times if need be: until
-        then its own buttons do nothing, and little time may be left.
+        After a command without an answer the others are left out. The robot is given back next, in
+        several attempts if need be: until then its own buttons do nothing, and little time may be
+        left.
         """
         for command in (STOP, *_AT_REST, "SetLDSRotation Off"):
             if not self._is_answered(command):
@@ -207,7 +209,7 @@ class NeatoBody:
     def serve(self) -> None:
         """Send the command that is due; raises LineError, after which :meth:`begin` is due.
 
-        One answer that does not come is passed over, and so is one that tells nothing.
+        A single missing answer is passed over, and so is one that cannot be used.
         """
         try:
             self._serve()
@@ -219,7 +221,7 @@ class NeatoBody:
         self._require_answers()
 
     def _require_answers(self) -> None:
-        """Let the robot stand, and raise UntoldError, where it does not tell what it must."""
+        """Stop the robot and raise UntoldError if what it must tell is missing for too long."""
         # While a scan is on the line nothing else is told.
         soon = STANDSTILL_WITHIN + self._scans.took
         try:
@@ -251,7 +253,7 @@ class NeatoBody:
         is_blind = question is self._scans and question.period > _SCAN_PERIOD / _SCAN_SHARE
         is_blind = is_blind and since < _LONGEST_TURN_WITHOUT_SCAN
         if is_blind and (self._is_to_turn() or self._now() - self._turned_at < _SETTLING_TIME):
-            # While a scan is on a slow line it is not told how far the robot turned.
+            # While a scan is on a slow line, the robot cannot tell how far it turned.
             return 0.0
         return question.urgency(self._now())
 
@@ -335,7 +337,7 @@ class NeatoBody:
         self._power_told = power
 
     def _heard_at(self) -> float:
-        """When the newest answer began to come: what it tells was so then, s."""
+        """When the newest answer began to come, s: its values are those of that time."""
         return self._now() - self._line.since_heard
 
     def _take_motors(self, lines: list[str]) -> None:
@@ -379,7 +381,7 @@ class NeatoBody:
             self._scan = self._newest_scan = scan
 
     def _lidar_turning(self, turn: float) -> LidarModel:
-        """Return the lidar when a turn takes so long, s: the same one while that hardly changes."""
+        """Return the lidar's model for turns of ``turn`` s; kept while that hardly changes."""
         if self._lidar is None or abs(turn - self._turn) > _SAME_TURN * turn:
             lidar = self._config.lidar
             mount = Pose(lidar.mount_ahead, 0.0, 0.0)

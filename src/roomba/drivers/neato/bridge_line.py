@@ -1,10 +1,10 @@
-"""The line of a Neato that OpenNeato's bridge has: commands and answers go by HTTP.
+"""The line of a Neato behind OpenNeato's bridge: commands and answers go by HTTP.
 
 The bridge hands a command on as it is (``POST /api/serial?cmd=…``) and answers with what the robot
-said, without its end. It does one at a time and rests for 50 ms after each. Its other addresses
-tell what was so up to a second before, and nothing of where the floor ends: no robot is driven by
-them. What is behind a bridge that hands nothing on is told to clean by itself (``bridge_remote``).
-Source: OpenNeato's user guide and firmware.
+said, without the byte that ends it. It does one command at a time and rests for 50 ms after each.
+What its other addresses tell may be a second old, and says nothing of where the floor ends, so no
+robot is driven by them. A robot behind a bridge that hands no commands on is told to clean by
+itself (``bridge_remote``). Source: OpenNeato's user guide and firmware.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ PER_BYTE: Final = 10.0 / 115_200
 class BridgeLine:
     """A :class:`roomba.drivers.line.Line` to the robot behind the bridge at an address.
 
-    Each command is a request of its own; what comes after its time is never taken for the answer to
-    another one.
+    Each command is a request of its own, so a late answer is never taken for that of another
+    command.
     """
 
     def __init__(self, address: str) -> None:
         """Connect nothing; ``address`` is a name or a number, with a port where it is not 80.
 
-        Raises LineError for one that is none.
+        Raises LineError for another text.
         """
         self._address = BridgeAddress.of(address)
         self._asked: http.client.HTTPConnection | None = None

@@ -1,10 +1,10 @@
 """A Neato behind a bridge that hands on no commands: looked at, and told to clean by itself.
 
-OpenNeato's firmware hands commands on (``POST /api/serial``); the mock server of its page has that
-address or not, by its age, and no robot behind it. All of them tell state, charge, error and scan
-as JSON, and start, pause and stop the robot's own cleans. Their addresses that drive the wheels
-are not used: they tell nothing of where the floor ends, and where the wheels are a second late.
-Sources: OpenNeato's firmware, description of its API and mock server (May 2026).
+OpenNeato's firmware hands commands on (``POST /api/serial``). The mock server of its page has that
+address in some versions only, and no robot behind it. All of them tell state, charge, error and
+scan as JSON, and start, pause and stop the robot's own cleans. Their addresses that drive the
+wheels are not used: nothing tells where the floor ends, and the wheels' positions come a second
+late. Sources: OpenNeato's firmware, description of its API and mock server (May 2026).
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _PATHS: Final = {
 _AT_REST: Final = ("ST_C_Standby", "ST_C_Idle", "ST_M2_Charging_StdBy")
 """States of the robot in which it cleans nothing; the state of its page may say otherwise."""
 _STARTS: Final = ("UIMGR_STATE_STARTHOUSECLEANING", "UIMGR_STATE_STARTSPOTCLEANING")
-"""In which that state may be left behind (chrisse1/neato-FHEM, of a D6)."""
+"""States of its page that may stay when the robot is at rest (chrisse1/neato-FHEM, of a D6)."""
 _TAKEN: Final = ("MANUALCLEANING", "MANUALDRIVING", "TESTMODE")
 _PHASES: Final = (
     ("SUSPENDED", Phase.CHARGING),
@@ -51,9 +51,9 @@ _PHASES: Final = (
 )
 """By a part of the state of its page: the first that is in it."""
 _ERROR: Final = "error"
-"""The kind of what a person must do something about; others are reminders."""
+"""The kind of error that a person must act on; other kinds are reminders."""
 _COMMAND: Final = "GetVersion"
-"""Which each Neato answers."""
+"""A command that each Neato answers."""
 _SHOWN: Final = 40
 """Characters of an answer that an error message shows."""
 _LEAST_TURNS: Final = 1.0
@@ -87,7 +87,7 @@ class BridgeRemote:
         self._address, self._ahead = address, lidar.mount_ahead
 
     def look(self) -> RemoteState:
-        """Return what it does, its charge and its error."""
+        """Return what the robot does, its charge and its error."""
         state, charger, error = (
             json_at(self._address, f"/api/{what}") for what in ("state", "charger", "error")
         )
@@ -123,7 +123,7 @@ class BridgeRemote:
         return np.column_stack((ahead, ranges * np.sin(angles))).astype(np.float32)
 
     def tell(self, wish: RemoteWish) -> None:
-        """Tell it; the bridge answers once the robot has heard it."""
+        """Tell the robot a wish; the bridge answers once the robot has heard it."""
         path = self._going_on() if wish is RemoteWish.RESUME else _PATHS[wish]
         try:
             request(self._address, "POST", path)
@@ -131,10 +131,10 @@ class BridgeRemote:
             raise WishRefusedError(str(error)) from error
 
     def _going_on(self) -> str:
-        """Return what lets it go on; raises WishRefusedError where it is not paused.
+        """Return the request that resumes a clean; raises WishRefusedError where none is paused.
 
-        A bridge knows no such request: a start goes on with what is paused. It decides by the state
-        that it was told last, so it is asked for that first; otherwise it would begin anew.
+        A bridge has no such request: its start resumes a paused clean. It decides by the state that
+        the robot told it last, so it is asked for the state first; otherwise it might begin anew.
         """
         state = str(json_at(self._address, "/api/state").get("uiState", ""))
         if "CLEANINGPAUSED" not in state:

@@ -29,9 +29,9 @@ class BridgeAddress:
 
     @staticmethod
     def of(text: str) -> BridgeAddress:
-        """Return what is written as a name or a number, with a port where it is not 80.
+        """Return the address that is written as a name or a number, with a port where it is not 80.
 
-        Raises LineError for what is none.
+        Raises LineError for another text.
         """
         try:
             parts = urlsplit(f"//{text}")
@@ -59,7 +59,7 @@ class RefusedError(LineError):
 
 
 def gone(address: BridgeAddress, error: Exception) -> LineError:
-    """Return that a bridge is not reached, and what helps."""
+    """Return the error that says that a bridge is not reached, and what helps."""
     return LineError(
         f"expected OpenNeato's bridge at {address}, got: {error}. Is the robot switched on, and in "
         "this network?"

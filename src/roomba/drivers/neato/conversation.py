@@ -11,7 +11,7 @@ END: Final = b"\x1a"
 _LONGEST_ANSWER: Final = 65_536
 """Bytes; a scan has some 6,000."""
 _MOST_LATE_PIECES: Final = 8
-"""Pieces that are read after their time: what a line holds while none is read fits in."""
+"""Pieces that are read after the deadline: enough for all that a line holds while none is read."""
 
 
 class SilenceError(LineError):
@@ -19,7 +19,7 @@ class SilenceError(LineError):
 
 
 class Conversation:
-    """Asks over a line. Not for several threads: an answer would be another one's."""
+    """Asks over a line. For one thread only: two would take each other's answers."""
 
     def __init__(
         self,
@@ -30,8 +30,8 @@ class Conversation:
     ) -> None:
         """Ask over ``line``; ``now`` is a clock that never goes back, s.
 
-        ``patience`` is how much longer answers may take than on a wire, s. On a line that tells
-        whole answers each of their bytes took ``per_byte`` s before the first one came.
+        ``patience`` is how much longer answers may take than on a wire, s. On a line that sends on
+        only whole answers, ``per_byte`` is what each byte took before the first one came, s.
         """
         self._line, self._now = line, now
         self._patience, self._per_byte = patience, per_byte

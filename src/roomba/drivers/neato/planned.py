@@ -1,4 +1,4 @@
-"""How far the wheels should have come by what they were told, between two answers of theirs."""
+"""How far the wheels should have rolled by their commands, between two answers of theirs."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ Ways = tuple[float, float]
 
 
 class PlannedWheels:
-    """The way of both wheels since it was made, by the commands that they got.
+    """The ways of both wheels since this object was made, predicted by their commands.
 
-    A command lets the wheel with the longer way gain speed up to what it is told, and both stand
-    when they have come as far as they are told. How they brake there is left out.
+    By a command the wheel with the longer way gains speed up to the speed that it is told, and both
+    wheels stand at the end of their ways. How they brake there is left out.
     """
 
     def __init__(self) -> None:
@@ -30,7 +30,7 @@ class PlannedWheels:
         self._began_with = 0.0 if command is None else min(speed, command.top_speed)
 
     def ways(self, now: float) -> Ways:
-        """Return how far the wheels are to have come at a time, s."""
+        """Return how far the wheels should have rolled at a time, s."""
         command = self._command
         if command is None:
             return self._base

@@ -15,7 +15,7 @@ from roomba.vocabulary import Hindrance
 ANSWER: Final = 0.3
 """s; the longest wait for a short answer."""
 _MOST_FAILURES: Final = 2
-"""In a row; a single one may be the line's, and the question is asked again at once."""
+"""Failures in a row that count: a single one may be the line's, and is asked again at once."""
 
 
 class UntoldError(LineError):
@@ -74,13 +74,13 @@ class Question:
             raise UntoldError(f"{self._expected}: {self._why}") from error
 
     def check(self, now: float, longest: float) -> None:
-        """Raise UntoldError where it failed again, and its last good answer is too old."""
+        """Raise UntoldError after two failures if the last good answer is ``longest`` s old."""
         age = now - self.told_at
         if self._failures >= _MOST_FAILURES and age > longest:
             raise UntoldError(f"{self._expected}, got none for {age:.1f} s: {self._why}")
 
     def urgency(self, now: float) -> float:
-        """Return how many of its periods ago it was asked; without end after its first failure."""
+        """Return the time since it was asked, in periods; infinite after a first failure."""
         is_to_be_repeated = 0 < self._failures < _MOST_FAILURES
         return math.inf if is_to_be_repeated else (now - self.asked_at) / self.period
 

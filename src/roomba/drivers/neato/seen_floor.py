@@ -1,7 +1,7 @@
 """How far the wheels may roll ahead on floor that the drop sensors have seen.
 
-The sensors are ahead of the wheels. Where they told a floor, no edge is nearer to a wheel than the
-sensor that is least ahead: so far the wheels may roll before the sensors are asked again.
+The sensors are ahead of the wheels. Where they see floor, any edge is farther ahead of a wheel than
+the sensor that is least ahead. The wheels may roll that far before the sensors are asked again.
 """
 
 from __future__ import annotations
@@ -40,5 +40,5 @@ class SeenFloor:
         return max(0.0, self._reach - (self._most(at) - self._seen))
 
     def _most(self, at: float) -> float:
-        """Return how far a wheel has rolled at most, m: at once as fast as it was told to."""
+        """Return how far a wheel has rolled at most, m: as if it had its full speed at once."""
         return self._rolled + min(self._way, self._speed * max(0.0, at - self._at))

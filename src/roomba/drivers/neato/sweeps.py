@@ -1,9 +1,9 @@
-"""When the sweeps of a lidar were measured that are told on asking, without a time.
+"""The times of a lidar's sweeps, which the robot tells on request and without a time.
 
-A robot tells its newest whole sweep, which may have ended just now or a turn ago. Asked more often
-than it turns, the sweep that is another one than before ended between the two questions; and sweeps
-end a turn apart, so what was learned of one narrows down the next. Asked more seldom, nothing is
-learned: it ended some time within the last turn.
+The robot tells its newest whole sweep, which may have ended just now or a turn ago. When it is
+asked more often than the lidar turns, a sweep that differs from the one before ended between the
+two questions. Sweeps end a turn apart, so the bounds of one narrow down those of the next. When it
+is asked more seldom, all that is known is that the sweep ended within the last turn.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ import math
 from typing import Final
 
 _DRIFT: Final = 0.005
-"""Share of the time that passed by which the turns may be other than they are told."""
+"""Share of the passed time by which the lidar may turn faster or slower than it tells."""
 
 _TURNS_AS_NEWEST: Final = 1.4
-"""Turns since the end of a sweep until it cannot be the newest one any more."""
+"""Turns after its end when a sweep cannot be the newest one any more."""
 
 _Bounds = tuple[float, float]
 
@@ -29,10 +29,10 @@ class SweepClock:
         self._bounds: _Bounds = (-math.inf, math.inf)
 
     def ended(self, asked: float, turn: float, *, is_other: bool) -> float | None:
-        """Return when the sweep ended that was told when asked at a time, s; None: it was told.
+        """Return when the sweep that was told at ``asked``, s, ended; None if it was told before.
 
-        ``turn`` is how long a sweep takes, s. ``is_other`` says that it is not as the one that was
-        told before; one that looks the same is another one once that one is too old.
+        ``turn`` is how long a sweep takes, s. ``is_other`` says that it differs from the one that
+        was told before. An equal one counts as new once the one before is too old to be the newest.
         """
         before, self._asked = self._asked, asked
         newest = asked - turn, asked
@@ -43,18 +43,18 @@ class SweepClock:
         return None
 
     def _taken(self, seen: _Bounds, turn: float) -> float:
-        """Return when a sweep ended that did so within ``seen``; learn by it, if that tells."""
+        """Return when a sweep ended that did so within ``seen``, and keep the bounds of that."""
         expected = self._expected(seen, turn)
         both = [_common(seen, each) for each in expected] or [seen]
         most = max(both, key=_width)
-        # Where two sweeps may be meant this tells nothing of when either of them ended.
+        # Where two sweeps may be meant, ``seen`` tells nothing of when either of them ended.
         self._bounds = expected[both.index(most)] if len(both) > 1 else most
         return _middle(most)
 
     def _expected(self, seen: _Bounds, turn: float) -> list[_Bounds]:
-        """Return within what sweeps ended that may have done so within ``seen``, by earlier ones.
+        """Return the ends, predicted by earlier sweeps, that may lie within ``seen``, as bounds.
 
-        Nothing where the earlier ones tell no more than ``seen`` does.
+        Empty where the bounds of the earlier ones are as wide as a turn: they predict nothing.
         """
         low, high = self._bounds
         if not high - low < turn:

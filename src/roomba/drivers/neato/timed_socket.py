@@ -1,4 +1,4 @@
-"""A connection of which all waits end by one moment, however slowly bytes come."""
+"""A connection whose waits all end at one deadline, however slowly bytes come."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class TimedSocket(socket.socket):
 
 
 def connected(host: str, port: int, deadline: float) -> TimedSocket:
-    """Return a connection that is of use until ``deadline``.
+    """Return a connection that works until ``deadline``.
 
-    Of several addresses of a name each has its share of the time. Raises OSError. How long a name
-    takes to be found is up to the system.
+    When a name has several addresses, each gets its share of the time. Raises OSError. The deadline
+    does not bound the look-up of the name, which is up to the system.
     """
     found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
     failure = OSError(f"no address of {host}")
@@ -49,7 +49,7 @@ def connected(host: str, port: int, deadline: float) -> TimedSocket:
 
 
 def _left(deadline: float) -> float:
-    """Return the time until then, s; raises TimeoutError where that is over."""
+    """Return the time left until ``deadline``, s; raises TimeoutError when none is left."""
     left = deadline - time.monotonic()
     if left <= 0.0:
         raise TimeoutError("timed out")

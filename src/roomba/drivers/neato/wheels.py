@@ -1,7 +1,8 @@
 """A twist as distances of the wheels: a velocity loop that ends by itself.
 
-A Neato knows no speeds: it drives both wheels a distance, the farther one at a speed, and stands.
-So each command is for as long as the next one may take, and a silent line is a robot that stands.
+A Neato takes no velocities: it drives each wheel a distance, the longer one at a given speed, and
+then stands. So each command lasts as long as the next one may take, and when the line falls silent
+the robot stands.
 """
 
 from __future__ import annotations
@@ -78,9 +79,9 @@ def wheel_command(
     """Return what drives ``twist`` for ``seconds``; None for standing still.
 
     ``track`` is how far the wheels are apart, m; ``moving`` how fast the faster wheel goes already,
-    m/s: as long as it gains speed it comes less far in that time. Too fast a twist is driven
-    slower, along the same curve, and one that would come too far ahead less far. Raises ValueError
-    for one that is not finite.
+    m/s: while it gains speed, it rolls less far in that time. A twist that is too fast is driven
+    slower, along the same curve. A twist that would lead farther ahead than ``limit`` is driven
+    slower and less far. Raises ValueError for one that is not finite.
     """
     if not twist.is_finite:
         raise ValueError(f"expected a finite twist, got {twist}")
@@ -92,7 +93,7 @@ def wheel_command(
     speed = round(1e3 * fastest)
     if speed == 0:
         return None
-    # What it lacks while it gains speed it does not come in that time.
+    # While the wheel gains speed it rolls less far, so its way is made shorter.
     lacking = max(0.0, fastest - moving)
     gaining = min(seconds, lacking / GAIN)
     full = seconds - gaining * (lacking - 0.5 * GAIN * gaining) / fastest

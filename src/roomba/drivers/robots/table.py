@@ -1,6 +1,7 @@
 """One table of the robots that people own: another robot is another row.
 
-Each has a file of its own in ``data/configuration/robots``, by its name.
+Each row's numbers are in a file of ``data/configuration/robots``: ``numbers`` names it, or
+``name``.
 """
 
 from __future__ import annotations
@@ -34,24 +35,24 @@ _LD19_BAUD: Final = 230_400
 MakeBody = Callable[[str, str, RobotConfig], LineBody]
 """Makes the body of a robot on a line, whose lidar may be on another one; raises LineError."""
 FindRemote = Callable[[str, RobotConfig], RemoteRobot | None]
-"""Returns the robot on a line that cleans by its own brain alone; None of one that can be driven.
+"""Returns the robot on a line that can only clean by its own brain; None if it can be driven.
 
 Raises LineError where it is not reached.
 """
 
 
 class LidarLineError(RoombaError):
-    """A robot's lidar has a line of its own, or has none, unlike what was asked for."""
+    """The lidar's line is missing or of no use, or the robot does not go without its lidar."""
 
 
 @dataclass(frozen=True, slots=True)
 class OwnedRobot:
     """A kind of robot: its ``name`` on the command line, its ``title`` for people, and its body.
 
-    ``lidar`` names the lidar that stands on it with a line of its own; empty: its own tells by the
-    robot's line. ``goes_without``: it can also do without a lidar, by bumps and beams. ``numbers``
-    is the name of the file of its numbers, where that is not its own. ``find_remote`` is there
-    where a line may lead to a robot that can be told what to do, and not be driven.
+    ``lidar`` names a lidar that is mounted on it and has a line of its own; empty: the robot's own
+    lidar uses the robot's line. ``goes_without``: it can also do without a lidar, by bumps and
+    beams. ``numbers`` names its configuration file, where that is not ``name``. ``find_remote`` is
+    set where a line may lead to a robot that can be told what to do but cannot be driven.
     """
 
     name: str

@@ -25,9 +25,9 @@ _LENGTHS: Final = {
     Opcode.SCHEDULE: 15,
     Opcode.SET_DAY_TIME: 3,
 }
-"""Bytes after the opcode; none of the others have any, but for those below."""
+"""Bytes of data after the opcode; an opcode that is neither here nor in ``_COUNTED`` has none."""
 _COUNTED: Final = {Opcode.STREAM: (0, 1), Opcode.QUERY_LIST: (0, 1), Opcode.SONG: (1, 2)}
-"""Where after the opcode it is told how many items follow, and the bytes of an item."""
+"""The place after the opcode of the byte that counts the items, and the bytes of an item."""
 _OPCODES: Final = frozenset(int(opcode) for opcode in Opcode)
 
 
@@ -62,7 +62,7 @@ class InstructionReader:
         return whole
 
     def _end_of(self, opcode: Opcode) -> int | None:
-        """Return how many bytes the instruction has that begins now; None: not told yet."""
+        """Return the length of the instruction that begins the buffer, bytes; None: not known."""
         if opcode not in _COUNTED:
             return 1 + _LENGTHS.get(opcode, 0)
         place, item = _COUNTED[opcode]

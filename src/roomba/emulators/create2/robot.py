@@ -48,7 +48,7 @@ _MOTORS: Final = frozenset(
         Opcode.PLAY,
     }
 )
-"""What passive mode does not do."""
+"""Commands that do nothing outside safe and full mode."""
 
 
 SLEEPS_AFTER: Final = 300.0
@@ -56,7 +56,7 @@ SLEEPS_AFTER: Final = 300.0
 
 
 class Create2Robot:
-    """The robot: :meth:`do` what it is told, :meth:`advance` lets time pass.
+    """The robot: :meth:`do` obeys an instruction, :meth:`advance` lets time pass.
 
     ``mode``, ``leds`` (the last command of each kind) and ``songs`` are as of now; ``baud`` is the
     rate of its line, ``streamed`` what it tells without being asked while ``is_streaming``.
@@ -68,7 +68,8 @@ class Create2Robot:
     ) -> None:
         """Live in the body of ``simulator``, which it drives; its line begins at ``baud``.
 
-        In passive mode it falls asleep after so many s; a real one after :data:`SLEEPS_AFTER`.
+        It falls asleep after ``sleeps_after`` s of passive mode; a real one after
+        :data:`SLEEPS_AFTER`.
         """
         self.simulator = simulator
         self.seen = simulator.observe()
@@ -139,13 +140,13 @@ class Create2Robot:
         self._brc_is_low = is_low
 
     def press_button(self) -> None:
-        """Press CLEAN for a moment: it is awake, and its while in passive mode begins anew."""
+        """Press CLEAN for a moment: the robot wakes, and its time in passive mode begins anew."""
         self.is_asleep, self._passive_for = False, 0.0
 
     def _is_unsafe(self) -> bool:
         """Whether safe mode ends: a drop, a charger, or a cliff towards which it can come.
 
-        Back it may go from a cliff, in a curve that is no narrower than the robot.
+        It may back off from a cliff, in a curve that is no narrower than the robot.
         """
         twist, seen = self.wheels.twist, self.seen
         radius = self.simulator.config.body.radius
@@ -239,7 +240,7 @@ class Create2Robot:
         return b"".join(_packed(number, told) for number in known)
 
     def _told(self, numbers: Iterable[int]) -> Mapping[int, int]:
-        """Return all packets; way and turn begin anew when they are told."""
+        """Return all packets; distance and angle begin anew if they are among ``numbers``."""
         station = self.simulator.pose.inverse().compose(self.simulator.home.station)
         about = SensingContext(self.simulator.config, self._zero, station)
         told = dict.fromkeys(FORMATS, 0)

@@ -1,6 +1,7 @@
 """What a Create 2 in a simulated home tells in its packets.
 
-Of what the simulated robot does not have, values are those of one that is well and sees nothing.
+Packets of sensors that the simulated robot does not have are those of a healthy robot that senses
+nothing.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ _LIGHT_REACH: Final = 0.12
 """m before the bumper; from there on the light bumper sees something (assumed)."""
 _MOST_LIGHT: Final = 4095
 _LEAST_LIGHT: Final = 120
-"""Of a light bumper's signal, for its bit (assumed)."""
+"""The signal from which on a light bumper's bit is set (assumed)."""
 _LIGHTS: Final[Mapping[Packet, float]] = {
     Packet.LIGHT_LEFT: 65.0,
     Packet.LIGHT_FRONT_LEFT: 35.0,
@@ -50,9 +51,10 @@ _SIDE_SIGHT: Final = (math.radians(-30.0), math.radians(130.0))
 
 @dataclass(frozen=True, slots=True)
 class SensingContext:
-    """What packets are made of: the robot's own, and where its station is as seen by it.
+    """What packets need beside the observation: configuration, encoders, and station.
 
-    ``encoders`` are the wheels' angles that count as 0, left and right, rad.
+    ``encoders`` are the wheels' angles that count as 0, left and right, rad; ``station`` is the
+    station's pose in the robot's frame.
     """
 
     config: SimulatedRobotConfig

@@ -12,7 +12,7 @@ from roomba.emulators.create2.robot import Create2Robot
 from roomba.emulators.living import LivingWorld
 
 _LOOK: Final = 0.1
-"""s; between two looks for whether it is to end."""
+"""s between two checks of whether the thread is to end."""
 
 
 class TimedEnd(Protocol):
@@ -29,7 +29,7 @@ class TimedEnd(Protocol):
 
 
 class Create2Server:
-    """Serves a robot on a line until :meth:`end`; ``speed`` of the world's seconds pass in one."""
+    """Serves a robot on a line until :meth:`end`, ``speed`` times as fast as real time."""
 
     def __init__(
         self, robot: Create2Robot, line: TimedEnd, world: LivingWorld, speed: float = 1.0
@@ -37,7 +37,7 @@ class Create2Server:
         """Serve ``robot``, which lives in ``world``, on ``line``."""
         self.robot, self._line, self._world, self._speed = robot, line, world, speed
         self.is_mute = self.is_deaf = False
-        """Whether the wire by which it tells is broken, and that by which it is told."""
+        """Whether the wire from the robot (mute), or the wire to it (deaf), is broken."""
         self._writing = threading.Lock()
         self._is_over = threading.Event()
         self._threads = [
@@ -61,7 +61,7 @@ class Create2Server:
         while not self._is_over.is_set():
             came = self._line.read(_LOOK)
             if self.is_deaf or not self._line.set_rate(self.robot.baud):
-                continue  # of another rate no byte is understood
+                continue  # at another rate no byte is understood
             for told in reader.take(came):
                 with self._world.lock:
                     answer = self.robot.do(told)

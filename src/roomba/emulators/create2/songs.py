@@ -8,7 +8,7 @@ from typing import Final
 MOST: Final = 5
 MOST_NOTES: Final = 16
 _NOTE: Final = 64.0
-"""A second has so many of the units in which notes are long."""
+"""Units of a note's length in a second."""
 
 
 @dataclass(slots=True)
@@ -23,7 +23,7 @@ class Songs:
     _left: float = 0.0
 
     def keep(self, number: int, notes: bytes) -> None:
-        """Keep a song; one of a number or a length that there is not is passed over."""
+        """Keep a song; one with a number or a length that is not allowed is passed over."""
         if number < MOST and 2 <= len(notes) <= 2 * MOST_NOTES:
             self.notes[number] = notes
 

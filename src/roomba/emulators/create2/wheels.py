@@ -31,7 +31,7 @@ class RequestedWheels:
     _right: float = 0.0
 
     def drive(self, velocity: int, radius: int) -> None:
-        """Drive along a curve: ``radius``, mm, is to its middle, to the left above 0."""
+        """Drive along a curve of ``radius``, mm; above 0 its middle is to the left."""
         velocity = _within(velocity, FASTEST)
         if radius not in STRAIGHT:
             radius = _within(radius, _FARTHEST)
@@ -53,7 +53,7 @@ class RequestedWheels:
         self._right, self._left = 1e-3 * self.right, 1e-3 * self.left
 
     def drive_pwm(self, right: int, left: int) -> None:
-        """Give each wheel its share of the power, of 255; unloaded, speeds go with it (assumed)."""
+        """Give each wheel its power, of 255; without load its speed is in proportion (assumed)."""
         scale = FASTEST / _MOST_PWM
         self.halt()
         self._right = 1e-3 * scale * _within(right, _MOST_PWM)

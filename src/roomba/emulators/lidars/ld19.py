@@ -1,7 +1,8 @@
 """An LD19 made up: frames, byte for byte, of what a simulated robot's lidar sees.
 
-It turns clockwise, ten times a second. The simulated lidar measures all of its beams at once, again
-at each step of the world; frames have those towards which it looks, of the step that is nearest.
+It turns clockwise, ten times a second. The simulated lidar measures all of its beams at once, at
+each step of the world. A frame has the beams towards which the lidar looks, of the step that is
+nearest in time.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a made-up lidar sends, onto its line: by a thread, as a line takes its time."""
+"""A thread that sends a made-up lidar's bytes onto its line, since a line takes its time."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import Final
 from roomba.emulators.pseudo_terminal import PseudoTerminal
 
 _MOST: Final = 40
-"""Pieces that wait; what is more is lost, as where nothing listens."""
+"""Pieces that wait at most; further ones are lost, as on a line that nothing reads."""
 _LOOK: Final = 0.1
-"""s; between two looks for whether it is to end."""
+"""s between two checks of whether the thread is to end."""
 
 
 class LidarSender:

@@ -1,10 +1,9 @@
 """A made-up bridge of OpenNeato: an HTTP server before a made-up Neato.
 
-It hands commands on, one at a time (``POST /api/serial?cmd=…``), and tells some of what the robot
-tells as JSON, which it asks for at most once a second. It starts, pauses and ends the robot's own
-cleans (``POST /api/clean?action=…``); home it does not send it: the made-up robot drives there by
-no program of its own. Source: OpenNeato's description of its API,
-user guide and firmware.
+It hands commands on, one at a time (``POST /api/serial?cmd=…``). Some of the robot's answers it
+also tells as JSON; it asks the robot for each at most once a second. It starts, pauses and ends the
+robot's own cleans (``POST /api/clean?action=…``), but does not send it home: the made-up robot has
+no program for that. Source: OpenNeato's description of its API, user guide and firmware.
 """
 
 from __future__ import annotations
@@ -26,11 +25,11 @@ from roomba.emulators.neato.server import LATENCY
 _REST: Final = 0.05
 """s between two commands on the robot's line."""
 _BYTE: Final = 10.0 / 115_200
-"""s; that line's rate."""
+"""s for a byte on that line."""
 _QUEUE: Final = 16
 """Commands that wait at most."""
 _KEPT: Final = 1.0
-"""s for which an answer is told again (1 to 30 s, by its kind; here one for all)."""
+"""s for which an answer is kept and told again (by the firmware 1 to 30 s, by its kind)."""
 _END: Final = "\x1a"
 _NO_ERROR: Final[Mapping[str, object]] = {
     "hasError": False,
@@ -40,7 +39,7 @@ _NO_ERROR: Final[Mapping[str, object]] = {
     "displayMessage": "",
 }
 _CELLS: Final = 4
-"""Of a line of a scan."""
+"""Cells of a line of a scan."""
 
 _CLEANS: Final[Mapping[str, Callable[[OwnCleaning], None]]] = {
     "house": OwnCleaning.press_start,
@@ -48,7 +47,7 @@ _CLEANS: Final[Mapping[str, Callable[[OwnCleaning], None]]] = {
     "pause": OwnCleaning.pause,
     "stop": OwnCleaning.end,
 }
-"""What an action does: as the firmware does it, which goes on with a clean that is paused."""
+"""What each action does: as in the firmware, where a start resumes a clean that is paused."""
 
 Label = tuple[str, type]
 _FIELDS: Final[Mapping[str, tuple[str, Mapping[str, Label]]]] = {
@@ -90,11 +89,11 @@ _FIELDS: Final[Mapping[str, tuple[str, Mapping[str, Label]]]] = {
         },
     ),
 }
-"""By what is asked for: the robot's command, and of each field the robot's label and kind."""
+"""For each address: the robot's command, and of each JSON field the robot's label and the type."""
 
 
 class NeatoBridge:
-    """Serves a robot at ``address`` until :meth:`end`; ``speed`` of its seconds pass in one."""
+    """Serves a robot at ``address`` until :meth:`end`, ``speed`` times as fast as real time."""
 
     def __init__(self, robot: NeatoRobot, port: int = 0, speed: float = 1.0) -> None:
         """Bind a port of this machine's own address, 0: any; raises OSError when it is taken."""
@@ -157,7 +156,7 @@ class NeatoBridge:
         """Let the robot begin, pause or end a clean; return whether there is such an action."""
         if action not in _CLEANS:
             return False
-        # Not between a question for the state and its answer, which would be kept as news.
+        # Not between a question for the state and its answer, which would be kept though it is old.
         with self._keeping:
             with self._world.lock:
                 self.robot.clean(_CLEANS[action])
@@ -165,7 +164,7 @@ class NeatoBridge:
         return True
 
     def told(self, what: str) -> Mapping[str, object] | None:
-        """Return what it tells as JSON of something, None where there is no such thing."""
+        """Return the JSON values of ``/api/`` + ``what``; None where there is no such address."""
         if what == "lidar":
             return _scan_of(self._recent("GetLDSScan"))
         if what == "state":

@@ -26,17 +26,17 @@ _LEAST_TURN: Final = 1.2
 _MORE_TURN: Final = 1.6
 """rad that it turns more, at most: another part of it each time, so as not to go round for ever."""
 _GOLDEN: Final = 0.618
-"""The share of that by which one turn differs from the one before."""
+"""Share of ``_MORE_TURN`` by which each turn differs from the one before."""
 _FIRST_RADIUS, _LAST_RADIUS = 150.0, 700.0
 """mm, of the spiral's half turns: some 1.4 m wide, and a robot’s width more."""
 _WIDER: Final = 60.0
-"""mm, of each half turn."""
+"""mm by which the radius of each half turn grows."""
 _LOW: Final = 0.2
-"""Of the battery; a clean ends there."""
+"""Level of the battery below which a clean ends."""
 
 
 class OwnState(Enum):
-    """What its own clean is about: the state that it tells on its page, and that of the robot."""
+    """The state of its own clean, as GetState tells it: that of its page, and that of the robot."""
 
     STANDBY = "UIMGR_STATE_STANDBY", "ST_C_Standby"
     """It cleans nothing."""
@@ -88,7 +88,7 @@ class OwnCleaning:
         self._run(OwnState.HOUSE)
 
     def clean_spot(self) -> None:
-        """Clean here, or go on with that."""
+        """Clean a spot here, or go on with one that is paused."""
         if self.phase is not OwnState.SPOT_PAUSED:
             self._begin_anew()
         self._run(OwnState.SPOT)
@@ -98,7 +98,7 @@ class OwnCleaning:
         self._stand(_PAUSES.get(self.phase, self.phase))
 
     def stop(self) -> None:
-        """Pause; what is paused already ends."""
+        """Pause a clean; end one that is paused already."""
         self._stand(_PAUSES.get(self.phase, OwnState.STANDBY))
 
     def end(self) -> None:

@@ -15,14 +15,14 @@ FASTEST = 300
 _BRAKING: Final = 1.0
 """m/s2, towards the end of a distance (assumed)."""
 _ARRIVED: Final = 5e-4
-"""m; half of what the robot counts in."""
+"""m; half of a millimetre, the unit of the robot's distances."""
 
 
 @dataclass(slots=True)
 class WheelDrive:
     """Distances that are left, m, and the speed that they are driven at.
 
-    ``track`` is how far the wheels are apart, m. Of a wheel's way ``rolled`` counts what it rolled.
+    ``track`` is how far the wheels are apart, m.
     """
 
     track: float

@@ -2,7 +2,8 @@
 
 Labels, order and spaces are those of real robots. Of a Botvac D5 and D6 with software 4.5.3:
 vacuula/fang's issue 1, and ``reference-dump-botvac-d6.txt`` of chrisse1/neato-FHEM; of an XV-28
-with software 3.4: the listing in brannonvann/neato. What only one robot has is made up.
+with software 3.4: the listing in brannonvann/neato. What each single robot has of its own, such as
+serial numbers, is made up.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ STEP: Final = TimingConfig().world_step
 """s of the world; commands come between two."""
 _NEWLINE: Final = "\r\n"
 _WIDTH: Final = 0.34
-"""m, of the D; of a D5."""
+"""m; how wide the body of a D5 is, which has the shape of a D."""
 _LEAST_RPM: Final = 500
 _USUAL_VACUUM: Final = 90
 """%, of VacuumOn without VacuumSpeed."""
@@ -33,7 +33,8 @@ _SWEEPING: Final = Power(brush=1200, fan=70, side_brush=1500)
 def made_up(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
     """Return a Neato's configuration for a world that knows round bodies alone.
 
-    The disc that contains the D is wider than the D is; the made-up body is as wide as that.
+    A disc around the real body, which has the shape of a D, would be wider than that body is. The
+    made-up body is a disc as wide as the D.
     """
     body = config.body.model_copy(update={"diameter": _WIDTH})
     return config.model_copy(update={"body": body})
@@ -42,8 +43,8 @@ def made_up(config: SimulatedRobotConfig) -> SimulatedRobotConfig:
 class NeatoRobot:
     """The robot: :meth:`answer` what is asked, :meth:`advance` lets time pass.
 
-    ``seen`` is what is so since then, ``cleaning`` what it does by itself. ``sound`` is the number
-    of the sound that it plays.
+    ``seen`` is what was observed after the last step, ``cleaning`` what the robot does by itself.
+    ``sound`` is the number of the sound that it plays.
     """
 
     def __init__(self, simulator: Simulator, model: Model = Model.BOTVAC) -> None:

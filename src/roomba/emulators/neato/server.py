@@ -13,7 +13,7 @@ LATENCY: Final = 0.025
 _LONGEST_LINE: Final = 512
 """Bytes; what is longer is no command."""
 _LOOK: Final = 0.1
-"""s; between two looks for whether it is to end."""
+"""s between two checks of whether the thread is to end."""
 
 
 class RobotEnd(Protocol):
@@ -27,7 +27,7 @@ class RobotEnd(Protocol):
 
 
 class NeatoServer:
-    """Answers on a line until :meth:`end`; ``speed`` of the world's seconds pass in one."""
+    """Answers on a line until :meth:`end`, ``speed`` times as fast as real time."""
 
     def __init__(self, robot: NeatoRobot, line: RobotEnd, speed: float = 1.0) -> None:
         """Serve ``robot`` on ``line``."""

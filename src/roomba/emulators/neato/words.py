@@ -36,8 +36,8 @@ class Words:
 def understood(line: str, grammars: Sequence[Grammar]) -> Words:
     """Return what a line says; raises CommandError.
 
-    Letters may be large or small, and words be cut where they stay unique: the first letters of a
-    command that is longer do not hide one that is spelled out.
+    Letters may be large or small, and words may be cut short where they stay unique. A word that is
+    spelled out is understood even if a longer one begins with it.
     """
     if line[:1].isspace() or not line.split():
         raise CommandError(f"Unknown Cmd: '{line.strip()}'")

@@ -1,6 +1,5 @@
 """The index of a bag that was cut short, made of its chunks: its recorder was killed, or its copy
-was not whole. What of the last chunk is torn is cut off.
-"""
+was not whole. The torn part of the last chunk is cut off."""
 
 from __future__ import annotations
 
@@ -36,7 +35,7 @@ _UNPACKED: Final[dict[bytes, Callable[[bytes], bytes]]] = {
     b"bz2": bz2.decompress,
     b"lz4": lz4.frame.decompress,
 }
-"""What makes a chunk's data plain, by its field ``compression``; rosbags brings lz4."""
+"""Functions that unpack a chunk's data, by its field ``compression``; rosbags brings lz4."""
 _BROKEN: Final = (
     LookupError,
     ValueError,
@@ -46,7 +45,7 @@ _BROKEN: Final = (
     MemoryError,
     struct.error,
 )
-"""What readers raise of a chunk that is broken within."""
+"""Errors that readers raise for a chunk that is broken within."""
 
 
 class BagError(RoombaError):
@@ -97,8 +96,8 @@ class _Content:
 class _WholeChunks:
     """The chunks of a bag that are whole, and where the last of them and its index end.
 
-    One that is broken within stays in the file, and the index does not name it; what it told of
-    connections before it broke counts for those that follow.
+    A chunk that is broken within stays in the file, but the index does not name it. The connections
+    that it tells before the break count for the chunks that follow.
     """
 
     def __init__(self, file: BinaryIO) -> None:
@@ -131,7 +130,7 @@ class _WholeChunks:
 
     @property
     def messages(self) -> int:
-        """How many messages they have whose connection is known."""
+        """How many messages of known connections the chunks have."""
         return sum(
             count
             for info in self.infos
@@ -159,10 +158,10 @@ def needs_mending(path: Path) -> bool:
 
 
 def mend_bag(path: Path, named: Path | None = None) -> Mended:
-    """Give a bag its index; raises BagError if it cannot be mended, OSError if not be written.
+    """Give a bag its index; raises BagError if that is impossible, OSError if it cannot write.
 
-    Whole messages of a chunk that is torn are kept, unless it is packed. Errors call it ``named``,
-    as the bag that it is a copy of.
+    Whole messages of a chunk that is torn are kept, unless it is packed. Errors call the bag
+    ``named``, the one that it is a copy of.
     """
     name = named or path
     with path.open("r+b") as file:
@@ -207,7 +206,7 @@ def _content_of(chunk: _Record) -> tuple[_Content, bool]:
 def _torn_chunk(file: BinaryIO, at: int) -> tuple[_Content, bytes] | None:
     """Return what is whole of a chunk that has no whole index, and its record.
 
-    None if there is none, or nothing in it.
+    None if there is no such chunk, or nothing whole in it.
     """
     file.seek(at)
     header, told = _sized(file), file.read(4)
@@ -266,7 +265,7 @@ def _records(file: BinaryIO) -> Iterator[_Record]:
 
 
 def _sized(file: BinaryIO) -> bytes | None:
-    """Return the bytes that a size stands before; None where they are not all there."""
+    """Return the bytes that follow their size; None where they are not all there."""
     told = file.read(4)
     size = int.from_bytes(told, "little")
     if len(told) < 4 or size > _LARGEST:

@@ -19,7 +19,7 @@ from roomba.recordings.packed import refuse_pipe
 from roomba.recordings.readings import LogError
 
 _VERSION: Final = 9
-"""Of the form of ROS 2's bags: the first that has the types of messages in it."""
+"""The version of ROS 2's bags: the first one that has the types of messages in it."""
 _LONGEST_REASON: Final = 200
 """Characters of what a reader says of a damaged bag."""
 _OTHER: Final = "something else"
@@ -37,7 +37,8 @@ class Form(Enum):
 def export_bag(source: Path, target: Path, form: Form) -> Mended | None:
     """Write a recording in another form; raises LogError, BagError, or OSError.
 
-    Of a bag that was cut short a copy is mended before, and what came of that is returned.
+    A bag that was cut short is copied, and the copy mended first: that result is returned, else
+    None.
     """
     _require_recording(source)
     if target.exists():
@@ -84,7 +85,7 @@ def _convert(source: Path, made: Path, form: Form) -> None:
             )
     except OSError:
         raise
-    # What a damaged bag makes a reader stumble over has no end of kinds.
+    # A damaged bag may make a reader raise an error of any kind.
     except Exception as error:
         reason = str(error).strip().partition("\n")[0][:_LONGEST_REASON] or type(error).__name__
         raise LogError(f"it is damaged, and cannot be exported: {reason}") from error

@@ -23,7 +23,7 @@ class Ring:
     """Messages of the last ``seconds`` by their times, of ``most_bytes`` at most.
 
     The newest message of each latched source is kept as well, however old: a map, or where sensors
-    are. Of that one only the newest counts, so this is bounded too.
+    are. Only one message of each source is kept so, so this is bounded, too.
     """
 
     def __init__(self, seconds: float, most_bytes: int) -> None:
@@ -56,7 +56,7 @@ class Ring:
                     break
 
     def messages(self) -> list[Message]:
-        """Return all of them; what was latched before the others comes first, at their begin."""
+        """Return all of them; those latched before the others come first, with the first time."""
         with self._lock:
             kept = list(self._messages)
             there = set(map(id, kept))
@@ -79,7 +79,7 @@ def save(messages: list[Message], path: Path) -> None:
 
 
 def keep_newest(folder: Path, pattern: str, most_files: int, most_bytes: int) -> list[Path]:
-    """Remove the oldest files of a pattern until as many and as much is left; return those removed.
+    """Remove a pattern's oldest files until few and small enough are left; return those removed.
 
     The newest one stays, however large it is.
     """

@@ -1,7 +1,8 @@
 """A bag of ROS 1 that a kill leaves whole: it grows by chunks, each written at once.
 
-What was flushed is in the file, whatever happens to the program. Only the index at the end comes
-with :meth:`BagWriter.close`; :mod:`roomba.recordings.bag_format.mending` makes it of the chunks.
+What was flushed is in the file, even if the program is killed. Only the index at the end is written
+by :meth:`BagWriter.close`; after a kill :mod:`roomba.recordings.bag_format.mending` makes it of the
+chunks.
 """
 
 from __future__ import annotations
@@ -108,7 +109,7 @@ class BagWriter:
         self._size = 0
 
     def _append(self, data: bytes) -> None:
-        """Write to the end; what a full disk took of it is taken back."""
+        """Write to the end; if the disk becomes full, the part that was written is taken back."""
         at = self._at
         try:
             for begin in range(0, len(data), _LARGEST_CHUNK):

@@ -1,7 +1,7 @@
 """Lines of CARMEN logs, each a reading.
 
-What is read of a line, of those that a drive needs; three words at its end are when it was
-measured, by which computer, and when it was recorded, s::
+These parts are read, of the kinds of lines that a drive needs. Three words at the end of a line are
+when it was measured, s, by which computer, and when it was recorded, s::
 
     ODOM x y theta tv rv accel
     FLASER readings [range ...] laser_x laser_y laser_theta odom_x odom_y odom_theta

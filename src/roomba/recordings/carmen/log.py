@@ -24,13 +24,12 @@ from roomba.recordings.times.untimed import spread_times, tell_nothing
 
 BASE: Final = "base_link"
 _ECHO: Final = 0.998
-"""What is as far as this share of the largest range of a log met nothing: lidars say so by their
-largest numbers, of which a SICK has several.
-"""
+"""Share of a log's largest range; a beam that is as long or longer met nothing. Lidars say so by
+their largest numbers, of which a SICK has several."""
 _NEAREST: Final = 0.02
 """m; 0 is another way to say that nothing was met."""
 _SAME_PLACE, _SAME_TURN = 0.005, 0.005
-"""m, rad; poses of the laser and the robot that are so constant tell where it is mounted."""
+"""m, rad; if the laser's pose on the robot varies by less, that is where it is mounted."""
 
 
 class CarmenLog:
@@ -149,11 +148,12 @@ class CarmenLog:
             if has_odometry:
                 channels.append(Channel(word, Kind.ODOMETRY, "odometry", count))
         others = (Channel(word, None, "other lines", n) for word, n in self._other.items())
-        # By the odometry that scans bring along each one's own place is known.
+        # Odometry that comes with the scans is listed first: it tells the place of each scan
+        # itself.
         return [*sorted(channels, key=lambda each: each.name == "ODOM"), *others]
 
     def _mount_by_poses(self, word: str) -> Pose | None:
-        """Return where the laser is by the poses of scans; None if they are equal or differ."""
+        """Return where the laser is by the poses of scans; None if it is at 0, or varies."""
         mounts = [
             line.odometry.inverse().compose(line.laser)
             for line in self._lines

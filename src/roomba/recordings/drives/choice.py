@@ -36,7 +36,7 @@ _OPTIONS: Final = {Kind.SCAN: "--scan", Kind.ODOMETRY: "--odom", Kind.GYRO: "--i
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What is to be read: names of channels, and where the lidar is on the robot; None: see.
+    """What is to be read: names of channels, and where the lidar is on the robot; None: find out.
 
     ``laser_is_upside_down`` says how it hangs where ``laser`` says where; None: as recorded.
     ``beside`` are the kinds that are read, too, where they are there.
@@ -100,7 +100,7 @@ def _odometry_and_gyro(
     scan: Channel,
     notes: list[str],
 ) -> list[Channel]:
-    """Return the channels of how it moved, of the robot that has the scan; [] if there are none."""
+    """Return odometry and gyro of the robot that has the scan; [] if there is no odometry."""
     is_missing = not any(channel.kind is Kind.ODOMETRY for channel in channels)
     if is_missing and wanted.odometry is None:
         notes.append("no odometry was recorded: it goes by scans alone")
@@ -117,7 +117,7 @@ def _required(
     beside: str,
     notes: list[str],
 ) -> Channel:
-    """Return a channel of a kind, of several the one most like that ``beside`` it."""
+    """Return a channel of a kind; of several the one whose name is most like ``beside``."""
     fitting = [channel for channel in channels if channel.kind is kind]
     named = wanted.name(kind)
     if named is not None or not fitting:
@@ -139,9 +139,9 @@ def _gyro(
     odometry: str,
     notes: list[str],
 ) -> list[Channel]:
-    """Return the gyro's channel: of those that were not named only a usual one is taken.
+    """Return the gyro's channel; if none was named, only one with a usual name is taken.
 
-    One of another name may be of a camera, and measure about an axis that is not the vertical.
+    A gyro with another name may be a camera's, and measure about an axis that is not the vertical.
     """
     if wanted.gyro is not None:
         return [_named(paths, channels, Kind.GYRO, wanted.gyro)]
@@ -201,7 +201,7 @@ def _listed(channels: Sequence[Channel]) -> str:
 
 
 def _likeness(channel: Channel, beside: str, usual: str) -> tuple[bool, bool, bool, int]:
-    """Return how likely a channel is the one: by the name of another one, the usual one, size."""
+    """Return how likely a channel is the one: by names ``beside`` and ``usual``, and size."""
     name = channel.name
     is_same_robot = bool(beside) and name.rpartition("/")[0] == beside.rpartition("/")[0]
     return name == beside, is_same_robot, name.endswith(usual), channel.messages

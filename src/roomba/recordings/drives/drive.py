@@ -40,7 +40,7 @@ from roomba.recordings.times.stamps import (
 from roomba.recordings.times.untimed import times_by_order
 
 _DRIFTED: Final = 0.1
-"""s; by so much more the delay of a channel grows than the odometry's if its clock is another."""
+"""s; if a channel's delay grows by more than this beside the odometry's, its clock is off."""
 _GAP: Final = 1.0
 """s between two logs from which it is told."""
 _ODOMETRY: Final = "odom"
@@ -57,12 +57,12 @@ class LoggedDrive:
         """Open; raises LogError."""
         wanted = wanted or Wanted()
         self.keeps_odometry = wanted.odometry is not None
-        """Whether it does not go by scans alone: odometry was named."""
+        """Whether odometry was named, which then is not given up for scans alone."""
         self.keeps_gyro = wanted.gyro is not None
         """Whether a gyro was named, which counts even if it is doubtful."""
         self.counts = StampCounts()
         self.refused: Counter[str] = Counter()
-        """How many messages of what could not be used."""
+        """How many messages could not be used, by what they are."""
         self._reasons: dict[str, str] = {}
         self._remarks: list[str] = []
         self._sweep: Sweep | None = None
@@ -71,7 +71,7 @@ class LoggedDrive:
             self._logs = [_entered(stack, path) for path in paths]
             channels = _together(self._logs)
             self.names = frozenset(channel.name for channel in channels)
-            """Of all channels, also of those that are not read."""
+            """The names of all channels, also of those that are not read."""
             self._chosen = self._chosen_of(paths, channels, wanted)
             self._frames = self._told_frames()
             self._mounting = Mounting(self._logs, self._frames.body, wanted)
@@ -132,7 +132,7 @@ class LoggedDrive:
         return self._mounting.is_told
 
     def take_mount(self, shown: Mount) -> None:
-        """From now on read scans as of a lidar that is so mounted, where nothing tells."""
+        """Read scans from now on as of a lidar mounted as ``shown``, where nothing tells."""
         self._mounting.take(shown)
 
     def leave_odometry(self, reason: str) -> None:
@@ -155,11 +155,11 @@ class LoggedDrive:
         self._times, self._arrivals, self._owners, self._order = self._timed()
 
     def take_sweep(self, sweep: Sweep) -> None:
-        """Read all scans from now on by ``sweep`` instead of what the driver tells of it."""
+        """Read all scans from now on by ``sweep`` instead of the times that the driver tells."""
         self._sweep = sweep
 
     def leave_beams(self, fixed: Mask) -> None:
-        """From now on leave out beams, [beams], and no others: a thing on the robot hides them."""
+        """Leave out ``fixed`` beams, [beams], and no others, from now on: a thing hides them."""
         self._unhidden = UnhiddenScans(fixed)
 
     def remark(self, remark: str) -> None:
@@ -180,9 +180,9 @@ class LoggedDrive:
         return len(self._order)
 
     def readings(self) -> Iterator[Reading]:
-        """Yield what was measured, in the order of time; of a time odometry before scans.
+        """Yield what was measured, in the order of time; at equal times odometry before scans.
 
-        Where odometry is rarer than scans there is more of it: see :func:`filled`.
+        Where odometry is rarer than scans, more of it is added: see :func:`filled`.
         """
         return filled(self._measured())
 
@@ -239,7 +239,7 @@ class LoggedDrive:
         return Frames(next(worlds, _ODOMETRY), next(bodies, BODIES[0]))
 
     def _timed(self) -> tuple[Floats, Floats, Ints64, Ints64]:
-        """Return times and arrivals, s, numbers of logs of all messages, the order to read them."""
+        """Return all messages' times and arrivals, s, the numbers of their logs, their order."""
         parts = [self._timed_log(log) for log in self._logs]
         sizes = [len(times) for times, *_ in parts]
         times, arrivals = (np.concatenate([part[at] for part in parts]) for at in (0, 1))
@@ -284,7 +284,7 @@ class LoggedDrive:
         return times, recorded, numbers
 
     def _take_units(self, channel: Channel, mask: Mask, stamps: Floats, arrivals: Floats) -> None:
-        """Take the stamps of a channel, in place, for what they are if they are no seconds."""
+        """Convert the stamps of a channel to seconds, in place, if they are in another unit."""
         unit, name = unit_of(stamps[mask], arrivals[mask])
         if unit != 1.0:
             stamps[mask] /= unit
@@ -295,8 +295,8 @@ class LoggedDrive:
     ) -> None:
         """Let ``arrivals``, in place, go on as the stamps of the odometry do.
 
-        The clock of the recorder may go at another rate than that of the robot: what was recorded
-        was played, or simulated, faster or slower than it happens.
+        The clock of the recorder may go at another rate than that of the robot, as where a drive
+        was recorded while it was played, or simulated, faster or slower than in real time.
         """
         pairs = [(stamps[own == at], arrivals[own == at]) for at in range(len(channels))]
         drift = self._reference(channels, [drift_of(*pair) for pair in pairs])
@@ -308,9 +308,9 @@ class LoggedDrive:
     def _even_rates(
         self, channels: Sequence[Channel], own: Ints64, stamps: Floats, arrivals: Floats
     ) -> None:
-        """Let stamps, in place, go on as arrivals do, by a clock that is fast or slow.
+        """Correct stamps, in place, of a clock that is fast or slow beside the arrivals.
 
-        Arrivals go on as the stamps of the odometry do.
+        The arrivals go by the clock of the odometry already.
         """
         spent = float(np.ptp(arrivals)) if len(arrivals) else 0.0
         for at, channel in enumerate(channels):
@@ -345,7 +345,7 @@ class LoggedDrive:
         return keys.index((channel.name, channel.kind))
 
     def _reference(self, channels: Sequence[Channel], delays: Sequence[float | None]) -> float:
-        """Return the delay of the odometry, or else of what has one."""
+        """Return the delay of the odometry, or else the first one that is known, or else 0."""
         of_odometry = [
             delay
             for channel, delay in zip(channels, delays, strict=True)

@@ -1,9 +1,9 @@
-"""Beams that a thing hides which goes with the robot: a bracket, a screen, what it carries.
+"""Beams that are hidden by a thing on the robot: a bracket, a screen, what it carries.
 
-The lidar sees such a thing at the same bearings and ranges wherever the robot is. Scans fit each
-other best there if the robot is taken to stand, so that such beams must not count. Along a corridor
-walls beside the robot stay as far away as well, but not when it turns: scans of other headings are
-compared, and only those of which other beams show that the robot did turn.
+The lidar sees such a thing at the same bearings and ranges wherever the robot is. By these beams
+scans fit each other best if the robot is taken to stand, so they must not count. Along a corridor
+the walls beside the robot stay as far away, too, but not when it turns. So scans of different
+headings are compared, and only where other beams show that the robot did turn.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from roomba.arrays import Floats, Mask
 from roomba.recordings.readings import LidarScan
 
 _TURNED: Final = 0.5
-"""rad; between two scans that are compared: then a wall that was met squarely is 14 % farther."""
+"""rad between two scans that are compared: a wall that was met squarely is then 14 % farther."""
 _SAME: Final = (0.04, 0.03)
 """m, and share of the range, by which two ranges of one thing differ at most: noise of lidars."""
 _FARTHEST: Final = 2.0
@@ -32,7 +32,7 @@ _MOSTLY: Final = 0.9
 
 
 def fixed_beams(ranges: NDArray[np.float32], headings: Floats) -> Mask:
-    """Return which beams a thing hides that goes with the robot, [beams].
+    """Return which beams, [beams], are hidden by a thing on the robot.
 
     ``ranges`` is [scans, beams], m, in the order of time, and ``headings`` [scans], rad, not
     wrapped, are those by odometry. What is not finite met nothing.
@@ -56,14 +56,14 @@ def fixed_beams(ranges: NDArray[np.float32], headings: Floats) -> Mask:
 
 
 class UnhiddenScans:
-    """Makes scans of which fixed beams tell nothing: as if they met what is too near."""
+    """Makes scans in which the fixed beams tell nothing, as if they met something too near."""
 
     def __init__(self, fixed: Mask) -> None:
-        """``fixed`` [beams] are those; a scan of another number of beams stays as it is."""
+        """Take the ``fixed`` beams, [beams]; a scan of another number of beams stays as it is."""
         self._fixed = fixed
 
     def of(self, scan: LidarScan) -> LidarScan:
-        """Return a scan without what they show: -inf, as REP 117 has it for what is too near."""
+        """Return a scan with -inf at the fixed beams, which is REP 117's value for too near."""
         if len(scan.ranges) != len(self._fixed):
             return scan
         return LidarScan(np.where(self._fixed, np.float32(-np.inf), scan.ranges), scan.lidar)

@@ -21,7 +21,7 @@ class Mounting:
     """Tells where frames are on the frame ``body``; ``notes`` says what was doubtful."""
 
     def __init__(self, logs: Sequence[Log], body: str, wanted: Wanted) -> None:
-        """Take the transforms of logs; where the lidar was ``wanted`` to be, it is."""
+        """Take the transforms of logs; a mount of the lidar that is ``wanted`` takes precedence."""
         self._body = body
         self._laser, self._is_upside_down = wanted.laser, wanted.laser_is_upside_down
         self._mounts = Mounts()
@@ -43,7 +43,7 @@ class Mounting:
         return not self._untold
 
     def take(self, shown: Mount) -> None:
-        """From now on a lidar of which nothing is told is mounted so, as the drive shows."""
+        """Use ``shown``, by the drive, from now on for a lidar of which nothing is told."""
         self._shown = shown
 
     def of(self, frame: str, kind: Kind) -> Mount:

@@ -70,7 +70,7 @@ def is_relations(head: bytes) -> bool:
 
 
 def _told_old(path: Path, head: bytes) -> str:
-    """Return what makes a bag of today of an old one; only ``rosbag`` reads them."""
+    """Return the refusal of an old bag, with what converts it: only ``rosbag`` reads it."""
     version = head.split(b"\n", 1)[0].rpartition(b"V")[2][:8].decode(errors="replace").strip()
     return (
         f"{path}: expected a bag of ROS 1, version 2.0, got an old one of version {version}; "

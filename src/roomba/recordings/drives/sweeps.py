@@ -31,7 +31,7 @@ class Sweep:
 
 
 class SweptScans:
-    """Makes the scans that are measured in the order in which they are listed."""
+    """Makes scans whose beams are listed in the order in which they were measured."""
 
     def __init__(self, sweep: Sweep) -> None:
         """Take how the scans were measured."""

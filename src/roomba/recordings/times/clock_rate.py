@@ -18,20 +18,20 @@ _LEAST: Final = 50
 """Messages; of fewer no rate is told."""
 _UNITS: Final = {1e3: "ms", 1e6: "µs", 1e9: "ns"}
 _SAME_UNIT: Final = 0.05
-"""So much, as a share, a rate may be off that of a unit."""
+"""Share by which a rate may be off that of a unit."""
 _EVEN: Final = 0.2
-"""Share of what a delay grew by; so far off the mean of both ends it may be in the middle."""
+"""Share of a delay's growth by which its middle may be off the mean of both ends."""
 _FASTEST: Final = 0.05
-"""Share; no clock is more fast or slow."""
+"""Share by which a clock may be fast or slow; no clock is more."""
 _PARTS: Final = 10
 _ONE: Final = 0.05
-"""Parts of a channel, and the share by which the rate of each is off the one of all at most."""
+"""Parts of a channel, and the share by which the rate of each may be off that of all of it."""
 _SAME_RATE: Final = 0.02
-"""Share by which the rates of two channels differ at most that the recorder's clock is off."""
+"""Share by which the rates of two channels may differ if the recorder's clock is what is off."""
 
 
 def unit_of(stamps: Floats, arrivals: Floats) -> tuple[float, str]:
-    """Return how many units of a channel's stamps are a second, and their name; (1.0, "s").
+    """Return how many units of a channel's stamps make a second, and their name; else 1.0, "s".
 
     ``stamps``, in those units, and ``arrivals``, s, are [n], in the order of recording.
     """
@@ -46,19 +46,19 @@ def unit_of(stamps: Floats, arrivals: Floats) -> tuple[float, str]:
 
 
 def drift_of_recorder(reference: float, drifts: Sequence[float]) -> float:
-    """Return by how much all that was recorded goes on at another rate, s in a second; else 0.
+    """Return by how much the recorder's clock drifts beside all channels, s in a second; else 0.
 
-    ``drifts`` are those of all channels, and ``reference`` is that of the one whose clock counts:
-    another channel has to tell the same.
+    ``drifts`` are those of all channels, and ``reference`` is that of the channel whose clock
+    counts. At least one other channel must have the same drift.
     """
     near = [abs(drift - reference) < _SAME_RATE * abs(1.0 - reference) for drift in drifts]
     return reference if sum(near) > 1 else 0.0
 
 
 def drift_of_played(stamps: Floats, arrivals: Floats) -> float:
-    """Return the same as :func:`drift_of`, but also more than what a clock drifts.
+    """Return the same as :func:`drift_of`, but also a drift that is larger than any clock's.
 
-    All along the channel the stamps have to go on at one rate.
+    The stamps must go on at one rate all along the channel.
     """
     valid = valid_stamps(stamps)
     count = int(np.count_nonzero(valid))

@@ -15,9 +15,9 @@ _SET_BACK: Final = 1.0
 _LASTING: Final = 10
 """Messages; if so many are earlier than what was recorded before, the clock was set back."""
 _CUTS: Final = 4
-"""Ends of parts that were moved, for each that was; of a clock that was set back they are many."""
+"""Cuts at most for each part that was moved; a clock that was set back makes many more."""
 _JOINT: Final = 5.0
-"""Usual steps; no farther apart are two parts of one recording where it was cut."""
+"""Usual steps, at most, between two parts of one recording where it was cut."""
 
 
 def gone_on(times: Floats, kinds: Sequence[Hashable]) -> Floats:
@@ -31,10 +31,10 @@ def gone_on(times: Floats, kinds: Sequence[Hashable]) -> Floats:
 def clock_shifts(times: Floats, kinds: Sequence[Hashable]) -> Floats:
     """Return what to add to times of recording, s: they go on where the clock was set back.
 
-    The times are in the order of recording, of messages of some ``kinds``. Only beside others of
-    its own kind a message is an earlier one: some logs are written kind by kind. What is added
-    stays the same until the clock is set back again. It is nothing where the parts of a recording
-    merely lie in another order: by their own times each fits beside the others.
+    The times are in the order of recording, of messages of some ``kinds``. A message counts as
+    earlier only beside others of its own kind: some logs are written kind by kind. What is added
+    stays the same until the clock is set back again. It is 0 where the parts of a recording merely
+    lie in another order, so that by their own times each fits beside the others.
     """
     shifts = _shifts_where_set_back(times, kinds)
     if not shifts.any():

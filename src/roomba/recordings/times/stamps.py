@@ -17,17 +17,16 @@ from roomba.arrays import Floats, Ints64, Mask
 CLOCKS: Final = 1.0
 """s; delays between stamp and arrival that differ by more are of two clocks."""
 _EARLY: Final = 0.1
-"""s; so long before its stamp no message of one clock is recorded."""
+"""s; if there is one clock, no message is recorded so long before its stamp."""
 JUMP: Final = 0.4
 """s; a step between stamps that differs more from that between arrivals is a jump of the clock."""
 _COARSE: Final = 0.2
 """Share of stamps equal to the one before, from which a clock is too coarse to go by."""
 _SHORT: Final = 12
-"""Messages; so few stamps of a clock that jumps may each be wrong by something else."""
+"""Messages; in a piece of so few, each stamp may be wrong by another amount."""
 _HOLE: Final = (0.5, 2.5)
-"""Shares of the short and the long steps that are usual; so far from the next ones are the stamps
-of messages that came late.
-"""
+"""Shares of the usual short and long steps: at least and at most so far from the next stamps are
+those of messages that came late."""
 _SHORT_STEP, _LONG_STEP = 0.1, 0.9
 """Quantiles of the steps: drivers may send at once what came while they were busy."""
 _AT_ONCE: Final = 0.5
@@ -38,7 +37,7 @@ _INFORMATIVE: Final = 0.5
 
 @dataclass(slots=True)
 class StampCounts:
-    """How many messages of how many had what wrong with their stamps."""
+    """How many messages there were, and in how many of them which fault of the stamp."""
 
     messages: int = 0
     without: int = 0
@@ -164,12 +163,13 @@ def _is_coarse(stamps: Floats, arrivals: Floats) -> bool:
 
 
 def _unjumped(times: Floats, expected: Floats) -> int:
-    """Shift the pieces of ``times`` in which a clock was wrong; return of how many messages.
+    """Shift the pieces of ``times`` in which a clock was wrong; return how many messages that was.
 
-    A piece begins where the step from one to the next differs from that of what was ``expected``
-    by arrivals, and is the less usual one of both: messages that were held up and then came all at
-    once have usual stamps. Late ones have stamps where the others leave a hole; in a short piece
-    that is asked of each one.
+    A piece begins where the step from one time to the next differs from the step that was
+    ``expected`` by arrivals, and is the less usual one of both. So messages that were held up and
+    then came all at once stay as they are: their stamps are usual. Messages that are late have
+    stamps where the others leave a hole, and stay as well; in a short piece that is checked for
+    each one.
     """
     if len(times) < 3:
         return 0
@@ -197,7 +197,7 @@ def _unjumped(times: Floats, expected: Floats) -> int:
 
 
 def _mend_each(times: Floats, expected: Floats, ordered: Floats, hole: Floats) -> int:
-    """Let each of some ``times`` be as ``expected`` that is not just late; return how many."""
+    """Set each of some ``times`` that is not just late to the ``expected`` one; return how many."""
     piece = np.sort(times)
     is_late = np.array(
         [

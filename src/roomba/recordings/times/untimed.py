@@ -24,16 +24,16 @@ _STEP: Final = 10.0
 
 
 def tell_nothing(times: Floats) -> bool:
-    """Whether most of the ``times`` of scans, s, in the order of recording, equal the last one."""
+    """Whether most ``times`` of scans, s, in the order of recording, equal the one before."""
     return int(np.count_nonzero(np.diff(times) == 0.0)) > _EQUAL * len(times)
 
 
 def times_by_order(stamps: Floats, arrivals: Floats) -> Floats | None:
     """Return times of a channel's messages, s, by their order; None where its times tell.
 
-    Both are in the order of recording; where neither tells messages apart, that of more different
-    times counts. With hardly any none does: what other channels came between is not known. What is
-    returned is by the clock of the ``arrivals``.
+    Both are in the order of recording. Where neither tells messages apart, the one with more
+    different times counts. With hardly any of them the order is no help, as it is not known what
+    came between on other channels. What is returned is by the clock of the ``arrivals``.
     """
     if not (tell_nothing(stamps) and tell_nothing(arrivals)):
         return None
@@ -58,7 +58,7 @@ def spread_times(times: Floats, is_scan: Mask) -> Floats:
 
 
 def _by_ticks(times: Floats) -> Floats:
-    """Return ``times``, s, that never go back with the equal ones spread up to the next."""
+    """Return ``times``, s, which never go back, with equal ones spread evenly up to the next."""
     ticks = _ticks(times)
     if len(ticks) < 2 or len(ticks) < _TICKS * len(times):
         return np.asarray(times[0] + _STEP * np.arange(len(times)), np.float64)
