@@ -1,4 +1,4 @@
-"""``./roomba record``: the graph as a bag that a kill leaves whole, or what was before a mishap."""
+"""``./roomba record``: a bag of the graph that outlasts a kill, or what was before a mishap."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ _MOST_SECONDS: Final = 3600.0
 _FLUSH: Final = 0.4
 """s of wall time; no message is longer in memory alone."""
 _LOOK: Final = 1.0
-"""s of wall time between two looks for new topics."""
+"""s of wall time between two flushes: a kill loses the messages of that time at most."""
 _PAUSE: Final = 0.05
 _UNDER_WAY: Final = 0.2
-"""s that are still recorded when it was told to end: messages are on their way."""
+"""s that are still recorded after the recorder was told to end: messages are on their way."""
 _AFTER: Final = 2.0
 """s of wall time that are recorded after something went wrong."""
 _REST: Final = 30.0
@@ -54,7 +54,7 @@ _PATTERN: Final = "wrong-*.bag"
 
 
 class Recording:
-    """All that comes, in one bag; flushed in time."""
+    """One bag of all messages that come; it is flushed in time."""
 
     def __init__(self, path: Path) -> None:
         """Begin the bag; raises OSError."""
@@ -65,7 +65,7 @@ class Recording:
         self.messages = 0
 
     def take(self, message: Message) -> None:
-        """Write a message; what a disk refuses is told by :meth:`tick`."""
+        """Write a message; the next :meth:`tick` raises what the disk refused."""
         with self._lock:
             if self._error is not None:
                 return
@@ -86,14 +86,14 @@ class Recording:
                 self._bag.flush()
 
     def close(self) -> str:
-        """Close the bag; return what is told of it. Raises OSError."""
+        """Close the bag; return a sentence for the user about it. Raises OSError."""
         with self._lock:
             self._bag.close()
         return f"{self._bag.path}: {self.messages} messages, {self._bag.size / 1e6:.1f} MB"
 
 
 class BlackBox:
-    """The last seconds before something went wrong, and what came in the two after it, saved."""
+    """Saves the last seconds before each mishap, and the two seconds after it."""
 
     def __init__(self, folder: Path, seconds: float) -> None:
         """Keep nothing yet; raises OSError if there can be no such folder."""
@@ -115,7 +115,7 @@ class BlackBox:
                 self._room -= len(message.raw)
             reason = self._wrongs.heard(message)
             if reason and not self._reason and now >= self._rests_until:
-                # What the ring has now: by a fast clock it would lose much of it until it is saved.
+                # Copied now: on a fast clock the ring would drop much of it before it is saved.
                 self._mishap, self._room = self._ring.messages(), _MOST_BYTES
                 self._reason, self._due = reason, now + _AFTER
 
@@ -129,7 +129,7 @@ class BlackBox:
         self._save()
 
     def close(self) -> str:
-        """Save what is still to be saved; return what is told. Raises OSError."""
+        """Save a mishap that is not saved yet; return a sentence for the user. Raises OSError."""
         if self._reason:
             self._save()
         return f"{self._folder}: {self.saved} mishaps saved"
@@ -185,7 +185,7 @@ def _begun(wanted: argparse.Namespace) -> Recording | BlackBox:
 
 
 def _record(ear: GraphEar, kept: Recording | BlackBox) -> None:
-    """Hear the graph until a signal, or the master's word, ends it; raises OSError."""
+    """Record the graph until a signal or the master ends this process; raises OSError."""
     looked = -_LOOK
     while not told_to_end():
         now = time.monotonic()

@@ -17,19 +17,19 @@ from roomba_ros.runtime.graph.master import master
 from roomba_ros.runtime.subscriptions import subscribe
 
 _CAMERA: Final = "/camera/"
-"""Part of the names of topics that are only drawn while they are heard, and are large."""
+"""Part of the names of camera topics; their pictures are large, and drawn only for subscribers."""
 _AGAIN: Final = "/rosout_agg"
-"""The topic that repeats what all nodes tell on another one."""
+"""The topic that repeats the log messages of all nodes (``/rosout``)."""
 _QUEUE: Final = 1000
 """Messages of a topic that wait while others are written."""
 _EARLIEST: Final = 1_000_000
-"""ns; a bag knows no time 0, at which a clock may begin anew."""
+"""ns; a bag has no time 0, but a clock may begin there."""
 
 
 class GraphEar:
-    """Subscribes to the topics that there are, and to those that come.
+    """Subscribes to all topics of the graph, also to those that are advertised later.
 
-    The robot goes on as it would: but what is only told while it is heard is told.
+    The robot behaves as without it, but also publishes what it publishes only for subscribers.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class GraphEar:
     ) -> None:
         """Hear nothing yet; ``only`` these topics.
 
-        Without any it is all but those of cameras, and the one that repeats the log.
+        Without ``only`` all topics are heard but those of cameras and the one that repeats the log.
         """
         self._take, self._only, self._has_camera = take, set(only), has_camera
         self._heard: dict[str, rospy.Subscriber] = {}
@@ -53,7 +53,7 @@ class GraphEar:
         return sorted(self._heard)
 
     def look(self) -> None:
-        """Subscribe to what came since the last look; a master that is gone is asked later."""
+        """Subscribe to topics that are new since the last look; does nothing without a master."""
         try:
             found = self._master.getPublishedTopics("/")
         except (rosgraph.MasterException, OSError):

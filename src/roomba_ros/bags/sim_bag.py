@@ -49,7 +49,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 class SimBag:
-    """A bag of one run; a context that gives what is to be shown the robot as it goes on."""
+    """A bag of one run, as a context; call it with the robot to write what that tells now."""
 
     def __init__(self, path: Path, setup: TrialSetup) -> None:
         """Begin the bag; raises OSError."""
@@ -123,7 +123,7 @@ class SimBag:
 
 
 def coverage_on_map(setup: TrialSetup) -> OccupancyMap:
-    """Return what was truly swept over the map's own cells: half of a cell and more counts."""
+    """Return what was swept, on the map's cells: one counts if half its wanted floor was."""
     frame = setup.home.frame
     factor = setup.robot.context.frame.rows // frame.rows
 

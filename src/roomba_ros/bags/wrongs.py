@@ -1,4 +1,4 @@
-"""When something goes wrong: the robot says so, is held, or a process of it ended."""
+"""Notices mishaps: the robot reports an error, is held, or one of its processes ended."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ _TELLERS: Final[dict[str, Callable[[bytes], str]]] = {
     "emergency_stop": held_or_troubled,
     "vacuum/state": failure_of,
 }
-"""Topics, and what makes of their messages the reason; empty when all is well."""
+"""By topic the function that reads the reason from its messages; empty when all is well."""
 
 
 class Wrongs:
-    """Notices what begins to be wrong, by the topic that tells it."""
+    """Notices when a topic begins to report something wrong."""
 
     def __init__(self) -> None:
         """Know of nothing yet."""
@@ -27,7 +27,7 @@ class Wrongs:
         self._said: dict[str, str] = {}
 
     def heard(self, message: Message) -> str:
-        """Return what is wrong since this message, as ``topic: reason``; empty if nothing new is.
+        """Return what this message newly reports wrong, as ``topic: reason``; empty if nothing.
 
         Raises MessageError for a broken message.
         """

@@ -1,4 +1,4 @@
-"""The body's last link: what reaches the wheels, and from whom."""
+"""The last link before the wheels: which twist reaches them, and from which node."""
 
 from __future__ import annotations
 

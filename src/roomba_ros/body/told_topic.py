@@ -1,4 +1,4 @@
-"""A topic on which is told what is so: now and then, and a change at once."""
+"""A topic that tells a state: at a steady rate, and at once when the state changes."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ _REPEATED_AFTER: Final = 0.1
 class ToldTopic(Generic[_Told]):
     """Publishes ``message(now, told)`` every ``period`` ticks; at once when ``changes(told)`` does.
 
-    What did not change is not repeated oftener than 10 times a second of wall time, however fast
-    the clock; without ``changes`` each message is new. Without a subscriber none is made.
+    On a fast clock, an unchanged state is repeated at most 10 times a second of wall time. Without
+    ``changes`` each message counts as new. Without a subscriber no message is made.
     """
 
     def __init__(
@@ -46,5 +46,5 @@ class ToldTopic(Generic[_Told]):
             self._publisher.publish(self._message(now, told))
 
     def _is_due(self) -> bool:
-        """Whether a message is new, or the last one is not repeated too soon on a fast clock."""
+        """Whether the message counts as new, or the last one is old enough by wall time."""
         return self._changes is None or self._repeated.is_over()

@@ -1,4 +1,4 @@
-"""The topics of any body, simulated or not: message, rate, and when at once."""
+"""The topics of any body, simulated or real: messages, rates, and which are sent at a change."""
 
 from __future__ import annotations
 
@@ -55,8 +55,9 @@ class ToldTopics:
     ) -> None:
         """Connect all of them.
 
-        A body that measures more than its brain is told adds that: ``hazards`` are the types of
-        HazardDetection that hold, ``battery`` makes the message of a time, s.
+        A body that measures more than the readings hold passes functions for it: ``hazards``
+        returns the types of HazardDetection that hold, ``battery`` the battery's message at a time,
+        s.
         """
         self._lidar, self._laser = config.lidar, frame_id("laser")
         base, odom = frame_id("base_link"), frame_id("odom")
@@ -127,7 +128,7 @@ class ToldTopics:
         ]
 
     def tell(self, now: float, tick: int, told: Readings) -> None:
-        """Publish what is due at a tick; ``told`` was so at ``now``, s of the ROS clock."""
+        """Publish what is due at a tick; ``told`` are the readings at ``now``, s, ROS clock."""
         for topic in self._topics:
             topic.tell(now, tick, told)
         if told.scan is not None and self._scan.get_num_connections() > 0:
@@ -135,6 +136,6 @@ class ToldTopics:
 
     def _tell_scan(self, began: float, scan: ScanReading) -> None:
         message = scan_message(began, scan.ranges, self._lidar, self._laser)
-        # As it turned, which may be a little slower than its data sheet says.
+        # The lidar's real speed of rotation, which may be a little slower than its data sheet says.
         message.time_increment = scan.lidar.time_increment
         self._scan.publish(message)

@@ -27,7 +27,7 @@ from roomba_ros.runtime.subscriptions import subscribe
 class TurnCameraService:
     """Keeps a picture of each of five angles up to date: one every 3 s while the robot travels.
 
-    On a fast clock it takes hardly more of them by wall time.
+    On a fast clock it takes hardly more pictures in a second of wall time.
 
     Services: ``turn_camera`` (TurnCamera: the newest picture of the angle nearest to the wish).
     Calls: ``camera/capture`` (TurnCamera) of the robot's camera.
@@ -113,7 +113,7 @@ class TurnCameraService:
                 raise PictureError(f"{error}; and {second}") from second
 
     def _take_or_old(self, angle: int) -> NDArray[np.uint8]:
-        """Take the first picture of this run; without a camera the last good one counts."""
+        """Take the first picture of this run; without a camera use the last good picture."""
         try:
             return self._take(angle)
         except PictureError as error:

@@ -24,7 +24,7 @@ from roomba_ros.runtime.graph.staying import stay_in_graph
 from roomba_ros.runtime.node import wait_for_clock
 
 _LOOK = 1.0
-"""s of wall time between two looks whether an errand has ended, when nothing is heard of it."""
+"""s of wall time without news after which the client looks whether the errand has ended."""
 
 _News = TypeVar("_News", covariant=True)
 _Report = TypeVar("_Report", covariant=True)
@@ -33,9 +33,9 @@ _Report = TypeVar("_Report", covariant=True)
 class RoombaClient:
     """Tells the robot what to do and waits for it; reports say how it went.
 
-    What is asked of a robot that does not answer raises RobotUnavailableError, within seconds; what
-    makes no sense on any map, such as seven passes, RequestRefusedError.
-    Ctrl-C ends a walk, but only the waiting for a clean: the robot goes on with that.
+    A request raises RobotUnavailableError, within seconds, if the robot does not answer, and
+    RequestRefusedError if it makes no sense on any map, such as seven passes. Ctrl-C ends a walk.
+    It also ends the waiting for a clean, but the robot goes on cleaning.
     """
 
     def __init__(self, robot: RobotClient) -> None:

@@ -41,9 +41,10 @@ from roomba_ros.runtime.calls import call_service
 from roomba_ros.runtime.subscriptions import subscribe
 
 OLDEST_VACUUM_STATE: Final = 6.0
-"""s of wall time; it is told every second, but a long plan may hold it up for some."""
+"""s of wall time; the state is published every second, but a long plan may delay it by some."""
 _SIMULATION_DEADLINE: Final = 1.0
-"""s of wall time in which a simulation's service is found; a real robot has none."""
+"""s of wall time in which the service of a simulation is found; a real robot has no such
+service."""
 _IS_OBEYED: Final[dict[str, Callable[[VacuumSnapshot], bool]]] = {
     "pause": lambda vacuum: vacuum.phase == Phase.PAUSED,
     "resume": lambda vacuum: vacuum.phase not in HELD,
@@ -51,18 +52,11 @@ _IS_OBEYED: Final[dict[str, Callable[[VacuumSnapshot], bool]]] = {
         vacuum.phase in AT_REST or (vacuum.phase == Phase.EMERGENCY and vacuum.wanted == 0.0)
     ),
 }
-"""By an order whether a state may come after it; any other one is from before."""
+"""By order: whether a state can follow it; a state that cannot is from before the order."""
 
 
 class RosVacuum(CleaningClient):
-    """The robot in this node's namespace, as a vacuum cleaner.
-
-    Subscribes: ``vacuum/state``, ``rooms``, ``clean/{feedback,result,status}``, ``dock/…``,
-    ``undock/…``, ``explore/…``. Publishes: ``clean/{goal,cancel}``, ``dock/…``, ``undock/…``,
-    ``explore/…``.
-    Calls: ``pause``, ``resume``, ``stop``, ``locate``, ``empty_bin``, ``sim/empty_bin``,
-    ``change_rooms``.
-    """
+    """The robot in this node's namespace, used as a vacuum cleaner."""
 
     def __init__(self) -> None:
         """Connect nothing yet."""
@@ -144,7 +138,7 @@ class RosVacuum(CleaningClient):
             return self._vacuum
 
     def rooms(self, timeout: float = 5.0) -> tuple[str, ...]:
-        """Return the names of the map's rooms, which are told once."""
+        """Return the names of the map's rooms; the topic is latched, so one message is enough."""
         with self._told:
             if not self._told.wait_for(lambda: self._rooms is not None, timeout):
                 raise RobotUnavailableError(

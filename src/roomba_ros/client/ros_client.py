@@ -43,16 +43,11 @@ from roomba_ros.runtime.subscriptions import subscribe
 OLDEST_NEWS = 3.0
 """s of wall time; the robot tells its state at least 5 times a second, older news is none."""
 _REST_WITHIN = 1.0
-"""s of wall time after its first position; what it did not tell by then is not waited for."""
+"""s of wall time after the first position; the speed and dirt are not waited for any longer."""
 
 
 class RosRobot(RosVacuum):
-    """A robot in this node's namespace, and what :class:`RosVacuum` is.
-
-    Subscribes: ``dirt``, ``position``, ``localization``, ``speed``, ``station_pose``,
-    ``walk_to_point/{feedback,result,status}``.
-    Publishes: ``walk_to_point/{goal,cancel}``. Calls: ``make_plan``.
-    """
+    """The robot in this node's namespace: a :class:`RosVacuum` that also walks."""
 
     def __init__(self) -> None:
         """Connect nothing yet."""
@@ -129,7 +124,7 @@ class RosRobot(RosVacuum):
             return self._travelled
 
     def _is_told(self) -> bool:
-        """Whether all is new, or the position alone and the rest had its time to come."""
+        """Whether position, speed and dirt are new, or speed and dirt were waited for enough."""
         if not self._is_new("position"):
             return False
         is_over = time.monotonic() - self._located > _REST_WITHIN

@@ -72,7 +72,8 @@ class Server:
 
     def __init__(self, name: str, action: type) -> None:
         self.name = name
-        # Not the simple client: that knows its newest goal alone, and a refused one hides the rest.
+        # Not the simple client: that follows its newest goal alone, so a refused one hides the
+        # others.
         self._client = GoalClient(name, action)
         self._status_seen = -math.inf
         subscribe(f"{name}/status", GoalStatusArray, unchanged, self._on_status)
@@ -97,9 +98,10 @@ class Server:
 
 
 class _Errand(ABC, Generic[_Told, _Report]):
-    """A goal under way. One lock around sending and the answers: they may come before it is sent.
+    """A goal under way. One lock guards sending and answers: an answer may come while it is sent.
 
-    It is not cancelled when the server falls silent: the robot takes a clean up again by itself.
+    The goal is not cancelled when the server falls silent: a restarted server resumes a clean by
+    itself.
     """
 
     _after_silence = (
@@ -126,7 +128,7 @@ class _Errand(ABC, Generic[_Told, _Report]):
                 left = deadline - time.monotonic()
                 if left <= 0.0:
                     return None
-                # In slices: no event tells that the server is silent.
+                # In slices: no event tells when the server falls silent.
                 self._news.wait(min(left, 0.1))
         return None
 
@@ -183,7 +185,7 @@ class RosClean(_Errand[CleanProgress, CleanReport]):
     def _ended(self, outcome: ErrandOutcome, result: Any, message: str) -> CleanReport:
         is_given_up = outcome is ErrandOutcome.FAULT and result is not None
         if is_given_up and result.outcome == CleanResult.STOPPED:
-            # Given up with its server: there are no numbers of it.
+            # The client gave up with its server: the clean's numbers are unknown.
             result = None
         if result is None:
             newest = self._newest
@@ -224,7 +226,7 @@ class RosWalk(_Errand[float, WalkReport]):
     def _notice_silence(self) -> None:
         super()._notice_silence()
         if self._report is not None:
-            # Should the server wake up, the robot must not walk on unseen.
+            # The server may answer again later: the robot must not walk on unseen then.
             self.cancel()
 
 

@@ -80,7 +80,7 @@ def line_trouble_of(message: LineTrouble) -> Reason:
 
 
 def _hindrance_of(code: int) -> Hindrance:
-    """Return the hindrance of a code; NONE if it is none that is known here."""
+    """Return the hindrance of a code; NONE for an unknown code."""
     return HINDRANCES.get(code, Hindrance.NONE)
 
 
@@ -98,14 +98,14 @@ def progress_of(message: CleanFeedback) -> CleanProgress:
 
 
 def outcome_of(code: int) -> ErrandOutcome:
-    """Return what the code of a result means to a client; FAULT if it is none."""
+    """Return the outcome that a result's code means; FAULT for an unknown code."""
     named = (outcome for outcome, its_code in OUTCOMES.items() if its_code == code)
     found = next(named, None)
     return ErrandOutcome.FAULT if found is None else ErrandOutcome(found.value)
 
 
 def clean_end_of(message: CleanResult, outcome: ErrandOutcome, reason: str) -> CleanReport:
-    """Return the end of a clean; ``reason`` is why, where the result itself does not say it."""
+    """Return the end of a clean; ``reason`` is used where the result has no message of its own."""
     return CleanReport(
         outcome=outcome,
         message=message.message or reason,
@@ -123,7 +123,7 @@ def clean_end_of(message: CleanResult, outcome: ErrandOutcome, reason: str) -> C
 
 
 def _missed_of(message: MissedArea) -> MissedFloor:
-    """Return floor that was missed; without the code of a reason that is none."""
+    """Return a missed area; its code is empty for a reason that is unknown here."""
     codes = [word_of(reason) for reason, code in REASONS.items() if code == message.reason]
     at, code = message.at, codes[0] if codes else ""
     return MissedFloor(message.area, at.x, at.y, message.room, message.message, code)
@@ -144,7 +144,7 @@ def exploration_end_of(
 
 
 def times_of(message: TimeSpentMessage) -> TimeSpent:
-    """Return where the time of a clean went; all 0 if the message has what is no time."""
+    """Return where the time of a clean went; all 0 if a number in the message is no valid time."""
     times = {name: float(getattr(message, name)) for name in NAMES}
     if not all(0.0 <= value < math.inf for value in times.values()):
         return NOT_COUNTED
@@ -152,7 +152,7 @@ def times_of(message: TimeSpentMessage) -> TimeSpent:
 
 
 def room_dirt_of(messages: Sequence[RoomDirtMessage]) -> tuple[RoomDirt, ...]:
-    """Return how dirty rooms were; without those of which the message makes no sense."""
+    """Return how dirty rooms were; rooms with invalid numbers are left out."""
     return tuple(
         RoomDirt(each.room, each.share, each.grains)
         for each in messages
@@ -161,7 +161,7 @@ def room_dirt_of(messages: Sequence[RoomDirtMessage]) -> tuple[RoomDirt, ...]:
 
 
 def open_edges_of(messages: Sequence[OpenEdgeMessage]) -> tuple[OpenEdge, ...]:
-    """Return where a map still ends; without those edges of which the message makes no sense."""
+    """Return where a map still ends; edges with invalid numbers are left out."""
     return tuple(
         OpenEdge(each.length, each.at.x, each.at.y, EDGE_REASONS[each.reason])
         for each in messages
@@ -173,7 +173,7 @@ def open_edges_of(messages: Sequence[OpenEdgeMessage]) -> tuple[OpenEdge, ...]:
 
 
 def doubt_of(message: Localization) -> str:
-    """Return why the robot does not know its place better; empty if it knows it."""
+    """Return why the robot does not know its pose better; empty if it knows it."""
     return knowledge_of(message).reason
 
 

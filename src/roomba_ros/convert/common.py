@@ -169,7 +169,7 @@ def path_of(message: Path) -> NDArray[np.float64]:
 def map_message(
     now: float, known: OccupancyMap, frame_id: str, *, is_growing: bool = False
 ) -> OccupancyGrid:
-    """Return an occupancy map as a message; one that ``is_growing`` was never loaded: 0 s."""
+    """Return an occupancy map as a message; one that ``is_growing`` has load time 0."""
     message = OccupancyGrid(header=header(now, frame_id))
     if not is_growing:
         message.info.map_load_time = max(message.header.stamp, genpy.Time(0, 1))

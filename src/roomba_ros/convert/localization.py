@@ -21,13 +21,13 @@ STATES = {
     Knowledge.LOST: Localization.LOST,
 }
 SAME_TIME = 0.06
-"""s; a gyro sample so near to an odometry's time is of the same motion."""
+"""s; a gyro sample belongs to an odometry message if their stamps are no farther apart."""
 _PLANAR = (0, 1, 5)
 """Of a covariance's six axes x, y, z and the turns about them: x, y and the turn about z."""
 _CORNERS = 24
-"""Of the outline of the body: within 1 % of its circle."""
+"""Corners of the body's outline: within 1 % of its circle."""
 _LEAST_DEVIATION = (0.1, 0.1)
-"""m, rad; of a pose whose sender does not say how sure it is."""
+"""m, rad; deviations of a pose whose sender does not say how sure it is."""
 
 
 def localization_message(now: float, estimate: Estimate, frame_id: str) -> Localization:
@@ -48,7 +48,7 @@ class ToldPlace(NamedTuple):
     knowledge: Knowledge
     reason: str = ""
     deviation: float = 0.05
-    """Of a place of which nothing else is told: localizers of others are off by centimetres."""
+    """The default where nothing else is told: other packages' localizers are off by centimetres."""
 
 
 def knowledge_of(message: Localization) -> ToldPlace:

@@ -1,4 +1,4 @@
-"""How far a map is, what would be changed of it, and what is clean and dirty on it, as messages."""
+"""A map's progress, its offered changes, and its clean and dirty floor, as messages."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def is_growing_of(message: Mapping) -> bool:
 
 
 def update_message(now: float, changes: Iterable[Change], frame_id: str) -> MapUpdate:
-    """Return what of a map would be changed as a message."""
+    """Return the changes of a map that are offered, as a message."""
     return MapUpdate(
         header(now, frame_id),
         [

@@ -57,7 +57,7 @@ def known_cells_of(message: OccupancyGrid) -> OccupancyMap:
 
 
 def covered_cells_of(message: OccupancyGrid) -> OccupancyMap:
-    """Return what is clean as visits, 0 or 1: a cell counts from one half on."""
+    """Return the cleaned cells as visits, 0 or 1: a cell counts from half of it on."""
     share = map_of(message)
     return OccupancyMap(share.frame, (share.values >= 50).astype(np.int8))
 
@@ -77,7 +77,7 @@ def battery_seconds_of(message: BatteryState) -> float:
 
 
 def charges_of(message: BatteryState) -> bool:
-    """Return whether the battery fills; a driver may tell its status and no current."""
+    """Return whether the battery charges; some drivers tell the status and no current."""
     is_charging = message.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING
     return bool(is_charging or message.current > 0.0)
 

@@ -29,9 +29,9 @@ from roomba_ros.convert.errors import MessageError, require_finite
 _RED = 8
 _GREEN = 4
 _HALO = 1
-"""Bits of the code that Create 2's receiver has for the station's beams."""
+"""Bits of the infrared code of Create 2's receiver, one for each beam of the station."""
 _BEAMS = 160
-"""Codes from this one on, but for the bits above, are of the station."""
+"""Codes of the station begin here; the bits above say which of its beams are received."""
 
 
 class OdometryReading(NamedTuple):
@@ -57,14 +57,14 @@ class GyroReading(NamedTuple):
 
 
 class Sides(NamedTuple):
-    """Whether something holds on the left, and on the right."""
+    """Whether a sensor triggers on the left, and on the right."""
 
     left: bool
     right: bool
 
     @property
     def any(self) -> bool:
-        """Whether it holds on a side."""
+        """Whether it triggers on either side."""
         return self.left or self.right
 
 
@@ -173,7 +173,7 @@ def code_of_beams(beams: StationBeams) -> int:
 
 
 def emptying_of(message: EmptyingStation) -> EmptyingTold:
-    """Return what a station tells that empties the bin."""
+    """Return the readings of a station that empties the bin."""
     return EmptyingTold(message.is_at_work, bag_of(message))
 
 

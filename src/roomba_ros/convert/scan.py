@@ -1,4 +1,4 @@
-"""Scans as values: the ranges of one, and the lidar that it is of."""
+"""Scan messages as values: the ranges, and the model of the lidar that measured them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roomba_ros.convert.mounts import Mount, Mounts
 
 
 class ScanDecoder:
-    """Turns messages into scans; the model of the lidar is made anew only when that changed."""
+    """Turns messages into scans; makes a new model of the lidar only when its numbers change."""
 
     def __init__(self, mount_of: Callable[[str], Mount]) -> None:
         """``mount_of`` tells where the frame of a scan is on the robot."""
@@ -27,15 +27,15 @@ class ScanDecoder:
     def on_robot(mounts: Mounts, base: str) -> ScanDecoder:
         """Return a decoder for a robot whose body is the frame ``base``.
 
-        A lidar of which ``mounts`` do not tell is in the middle of the robot, and looks ahead.
+        A lidar that ``mounts`` do not contain is taken to sit in the robot's middle, looking ahead.
         """
         return ScanDecoder(lambda frame: mounts.mount(base, frame) or Mount())
 
     def decode(self, message: LaserScan) -> ScanReading:
-        """Return a scan, of time 0 if that was not told.
+        """Return a scan; its time is 0 if the message has no stamp.
 
-        Ranges that are not finite met nothing, or failed (REP 117). Raises MessageError for a scan
-        that can be none.
+        A range that is not finite means that the beam met nothing, or failed (REP 117). Raises
+        MessageError for an impossible scan.
         """
         ranges = np.array(message.ranges, np.float32)
         _require_scan(message, ranges)
@@ -66,7 +66,7 @@ def _lidar(message: LaserScan, mount: Mount) -> LidarModel:
 
 
 def _require_scan(message: LaserScan, ranges: NDArray[np.float32]) -> None:
-    """Raise MessageError for a scan that can be none."""
+    """Raise MessageError for an impossible scan."""
     fault = scan_fault(
         ranges,
         message.angle_min,

@@ -1,4 +1,4 @@
-"""What a body tells, what a simulated one measures beside, and its home's truth, as messages."""
+"""Readings of any body, further sensors of a simulated one, and its home's truth, as messages."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ _GRAVITY = 9.80665
 _NOT_MEASURED = 1e6
 """A variance so large that no reader takes it for a measurement."""
 _UNKNOWN = -1.0
-"""In the first element of a covariance: there is no such measurement."""
+"""The first element of a covariance of something that is not measured."""
 
 
 def body_message(now: float, told: Readings, bin_capacity: float, frame_id: str) -> BodyState:
@@ -133,18 +133,14 @@ def joints_message(now: float, seen: Observation, wheel_radius: float, track: fl
 
 
 def battery_message(now: float, told: Readings, config: BatteryConfig) -> BatteryMessage:
-    """Return the battery of a body that tells its level, and whether current comes in, alone.
-
-    Charges are in Ah at its nominal voltage, the percentage is 0..1 as ROS says; what is not
-    measured is NaN.
-    """
+    """Return the battery of a body that tells only its level, and whether it is being charged."""
     return _battery(now, told.battery, config)
 
 
 def measured_battery_message(
     now: float, battery: BatteryState, config: BatteryConfig
 ) -> BatteryMessage:
-    """Return the same of a battery that is measured: with voltage, current and temperature."""
+    """Return the battery of a body that also measures voltage, current and temperature."""
     message = _battery(now, battery, config)
     message.voltage = battery.voltage
     message.temperature = battery.temperature

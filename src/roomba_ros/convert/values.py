@@ -1,6 +1,6 @@
-"""Single values of messages; each function raises MessageError for an invalid one.
+"""Messages of a single value as values; each function raises MessageError for an invalid one.
 
-Nodes that need no more than these load neither arrays nor maps.
+They stand apart so that small nodes load neither arrays nor maps.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ def unchanged(message: Any) -> Any:
 
 
 def data_of(message: Any) -> Any:
-    """Return what a Bool, a String or a UInt16 holds: each value of its type means something."""
+    """Return the content of a Bool, a String or a UInt16; no value of these is invalid."""
     return message.data
 
 
 def code_of(codes: Mapping[int, Member], member: Member) -> int:
-    """Return the code of a member of an enumeration, of the members by their codes."""
+    """Return the code of a member of an enumeration; ``codes`` are the members by their codes."""
     return next(code for code, each in codes.items() if each is member)

@@ -37,18 +37,18 @@ from roomba_ros.runtime.parameters import read_robot_config
 from roomba_ros.runtime.subscriptions import subscribe
 
 _PERIOD = 0.05
-"""s of the ROS clock between two commands while the robot is driven by hand."""
+"""s of the ROS clock between two twists while a person drives the robot by hand."""
 _REPEATED = ("sensors", "wheels")
-"""Parameters that a run is repeated with, where they are not as usual."""
+"""Parameters that belong to the command that repeats a run, where they differ from the defaults."""
 _ANY = -1
-"""The port that stands for the first one that is free."""
+"""The value of ``~port`` for the first free port."""
 
 
 class DashboardNode:
     """Serves the page, and prints its address with the token that commands need.
 
-    With a socket that :data:`PAGE_SOCKET` names it serves there: that of an isolated robot is
-    reached from outside.
+    If :data:`PAGE_SOCKET` names a socket, the node serves there: the socket of an isolated robot,
+    which is reached from outside its network.
 
     Upkeep and plans are those of :class:`LiveHousehold`; subscribes ``person_at_home``.
 
@@ -64,8 +64,9 @@ class DashboardNode:
     period = _PERIOD
 
     def start(self) -> None:
-        """Connect and serve; raises RoombaError when no port is free, or the smart home's file says
-        what cannot be.
+        """Connect and serve; raises RoombaError.
+
+        It is raised when no port is free, or for a wrong file of the smart home.
         """
         config, keeper = read_robot_config(), _keeper()
         self._robot = GraphRobot(config)
@@ -88,7 +89,7 @@ class DashboardNode:
         self._smart_home = _smart_home(self._robot)
         if self._smart_home is not None:
             self._smart_home.start()
-        # Not to the log, which every program on the graph can read.
+        # Printed, not logged: every program on the graph can read the log.
         address, *others = addresses_of(bound, guard.token, os.environ.get(OUTSIDE_ADDRESS, ""))
         print(f"The page: {address}", flush=True)
         for other in others:
@@ -102,11 +103,11 @@ class DashboardNode:
             rospy.logwarn("whether a person is at home: %s", refusal)
 
     def tick(self, _: float) -> None:
-        """Drive as the hand on the page wants."""
+        """Publish the twist that the person on the page wants, if there is one."""
         self._robot.tick()
 
     def stop(self) -> None:
-        """Stop what it drives, leave the smart home, and keep what is not kept yet."""
+        """Stop the drive, leave the smart home, and save what is not saved yet."""
         self._robot.stop_hand()
         if self._smart_home is not None:
             self._smart_home.stop()
@@ -131,7 +132,7 @@ def _smart_home(robot: GraphRobot) -> Switched | None:
 
 def _open_once(address: str) -> None:
     """Open the page on the desktop, unless an earlier one of this node did."""
-    # In a network of its own no browser would reach the page: that is outside.
+    # An isolated robot has a network of its own, from which no browser reaches the page.
     if PAGE_SOCKET in os.environ or not rospy.get_param("~open", False):
         return
     rospy.set_param("~open", False)
@@ -139,7 +140,7 @@ def _open_once(address: str) -> None:
 
 
 def _bound() -> socket.socket:
-    """Return the socket that this node was given, or one of a port of this network."""
+    """Return the socket that this node was given, or a new one that listens in this network."""
     given = os.environ.get(PAGE_SOCKET)
     if given is not None:
         return socket.socket(fileno=int(given))

@@ -14,11 +14,7 @@ from roomba_ros.runtime.calls import call_service
 
 
 class GraphMaps:
-    """That half of a :class:`roomba.client.observed.MapKeeper`.
-
-    Calls: ``map/list``, ``map/save``, ``map/load``, ``map/remove``, ``map/update/accept``,
-    ``map/update/refuse``, ``map/update/undo``.
-    """
+    """The half of a :class:`roomba.client.observed.MapKeeper` that handles maps, over ROS."""
 
     def start(self) -> None:
         """Connect."""

@@ -49,7 +49,7 @@ from roomba_ros.runtime.parameters import LiveSeedParameters
 _REFUSED_WITHIN: Final = 1.0
 """s of wall time within which an action server refuses a goal that it will not take."""
 _STOPS: Final = 3
-"""Times that a stop is sent before the drive is left to others."""
+"""How often a stop is sent before this node leaves the drive to others."""
 
 
 class GraphRobot(GraphMaps):
@@ -98,7 +98,7 @@ class GraphRobot(GraphMaps):
         self._services = {name: rospy.ServiceProxy(name, kind) for name, kind in kinds.items()}
 
     def tick(self) -> None:
-        """Keep on driving as the hand wants, or stop when it let go."""
+        """Repeat the twist of the person who drives by hand, or stop when that person let go."""
         self._parameters.refresh()
         with self._hand_lock:
             if time.monotonic() - self._hand_heard < HAND_SILENCE:
@@ -112,7 +112,7 @@ class GraphRobot(GraphMaps):
         self._publish(twist)
 
     def stop_hand(self) -> None:
-        """Publish one standstill, and take no more twists of the hand."""
+        """Publish one standstill, and take no more twists of the person who drives by hand."""
         with self._hand_lock:
             self._hand_heard = -math.inf
             if self._drive is not None:
@@ -121,8 +121,8 @@ class GraphRobot(GraphMaps):
     def _publish(self, twist: Twist) -> None:
         """Publish a twist.
 
-        ``cmd_vel`` is advertised for that, and dropped after the last stop, so that other writers
-        are alone on it.
+        ``cmd_vel`` is advertised only until the last stop is sent, so that afterwards other writers
+        are the only publishers of that topic.
         """
         if self._drive is None:
             self._drive = rospy.Publisher("cmd_vel", TwistMessage, queue_size=1, tcp_nodelay=True)
@@ -269,7 +269,7 @@ class GraphRobot(GraphMaps):
         self._call("remove_zone", name)
 
     def ignore_low_thing(self, x: float, y: float) -> None:
-        """Offer no zone any more of what was felt there."""
+        """Stop offering a zone for what the robot felt there."""
         self._call("ignore_low_thing", x, y)
 
     def rename_room(self, name: str, new_name: str) -> None:
@@ -324,7 +324,7 @@ class GraphRobot(GraphMaps):
         self._call("sim/inject_fault", fault, value, x, y, theta)
 
     def _acts(self) -> tuple[str, ...]:
-        """Return what can be done to a simulated home; nothing to a real one."""
+        """Return what can be done to a simulated home; empty for a real one."""
         if not is_offered("sim/inject_fault"):
             return ()
         return tuple(act.value for act in view.PlayAct)

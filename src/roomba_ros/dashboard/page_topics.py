@@ -1,4 +1,4 @@
-"""What the graph tells that a page shows, and how much of it is new."""
+"""The newest messages of the graph that a page shows, and which of them are new."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ class PageTopics:
         return self._pose
 
     def truth(self) -> TruthView | None:
-        """Return what is really so; None where no simulation tells it."""
+        """Return the simulation's truth; None without a simulation."""
         is_old = time.monotonic() - self._true_pose_heard > _OLDEST_POSE
         pose, home = self._true_pose, self._true_home
         if pose is None or home is None or is_old:
@@ -183,7 +183,7 @@ class PageTopics:
             return self._home
 
     def reached(self, vacuum: VacuumSnapshot) -> VacuumSnapshot:
-        """Return a state with why the robot cannot be reached, if so: its mission does not know."""
+        """Return a state with why the robot is unreachable: its mission does not know that."""
         why = self.unreached
         return replace(vacuum, message=why.text, hindrance=why.hindrance) if why else vacuum
 
@@ -271,5 +271,5 @@ def _lies_as(before: GridLayer, frame: GridFrame) -> bool:
 
 
 def _one() -> OneSender:
-    """Return what lets one node tell of the body at a time, as all nodes take it."""
+    """Return a rule that accepts one node as the body at a time, as in all nodes."""
     return OneSender(SELDOM_SILENT_AFTER)

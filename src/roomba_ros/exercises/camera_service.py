@@ -21,11 +21,11 @@ _SIZE: Final = (48, 64)
 COLOURS: Final = {
     -30: (200, 20, 80), -15: (20, 200, 100), 0: (20, 80, 220), 15: (200, 140, 20), 30: (60, 200, 99)
 }  # fmt: skip
-"""By angle, degrees: blue, green, red; none is one of them with red and blue exchanged."""
+"""By angle, degrees: blue, green, red; with red and blue swapped no colour equals another one."""
 _CHOSEN: Final = (0.0, 8.0, 7.0, -8.0, -22.4, -23.0, 22.4, -90.0, 400.0)
 _DRAWN: Final = 6
 _WIDE: Final = 45.0
-"""degrees to each side, among which angles are drawn."""
+"""degrees to each side; the angles that are asked for at random lie within."""
 
 
 def asked() -> list[tuple[float, int]]:

@@ -16,11 +16,11 @@ from roomba.commands.exercise.verdict import expect, judged
 from roomba_ros.exercises.graph import OwnGraph
 
 _QUIET: Final = 0.5
-"""s in which nothing is to be told, before the sensor felt anything."""
+"""s in which the node must publish nothing, as the sensor has not measured yet."""
 _LOOK: Final = 2.0
 """s in which messages are counted."""
 _BETWEEN: Final = (0.17, 0.25)
-"""s from a message to the next in the median; a fifth is asked for."""
+"""s between two messages, as their median; five a second are asked for."""
 
 
 def check(file: Path) -> str:

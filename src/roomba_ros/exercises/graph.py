@@ -81,10 +81,10 @@ class OwnGraph:
         self.wait_for(is_there, _UP, f"your program to be the node {node}")
 
     def wait_for(self, is_so: Callable[[], object], seconds: float, expected: str) -> None:
-        """Wait until something is so.
+        """Wait until a condition is true.
 
-        Raises NotYetError after so many s of wall time, with what is in the graph instead; at once
-        when the learner's program has ended.
+        Raises NotYetError after so many s of wall time, with what the graph has in its place; at
+        once when the learner's program has ended.
         """
         end = time.monotonic() + seconds
         while not is_so():
@@ -125,10 +125,7 @@ def _others(state: Any) -> list[str]:
 
 
 def _connections_of(node: str, state: Any) -> str:
-    """Return in words what a node publishes, hears and serves, by names and types of its own.
-
-    Of what all nodes have only the log is left out.
-    """
+    """Return in words what a node publishes, hears and serves, names and types, without the log."""
     asked = node_at(master(_CHECK).lookupNode(node))
     parts = {
         "publishes": _typed(asked.getPublications(_CHECK)),

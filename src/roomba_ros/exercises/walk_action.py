@@ -35,13 +35,13 @@ _NEAR: Final = 0.06
 _LONG: Final = 12.0
 """s that a walk of 1 m may take."""
 _HEARD: Final = 2.0
-"""s in which a node hears the robot that listens from its start on."""
+"""s in which a node that subscribes at its start must hear the robot's position."""
 _OFF_TIME: Final = 0.5
 """s by which time_spent may be off."""
 _OFF_DISTANCE: Final = 0.2
 """m by which distance may be off: the robot drives on while it is told."""
 _LEAST: Final = 3
-"""Feedback for a walk of 2 s."""
+"""Feedback messages that a walk of 2 s must send at least."""
 _CANCELLED: Final = 1.0
 """s in which a walk that is cancelled is to be over; half a second is asked for."""
 _NAMES: Final = {
@@ -86,10 +86,10 @@ class ToyRobot:
 
 
 class Walks:
-    """The client: sends goals, and keeps what is told of the newest one."""
+    """The client: sends goals, and keeps the feedback and result of the newest one."""
 
     def __init__(self, graph: OwnGraph, robot: ToyRobot) -> None:
-        """Connect; ``robot`` tells what is left in truth."""
+        """Connect; ``robot`` tells the true distance that is left."""
         self._graph, self._robot = graph, robot
         self._client = actionlib.SimpleActionClient("walk_to_point", WalkToPointAction)
         graph.wait_for(self._has_server, 10.0, "an action walk_to_point")

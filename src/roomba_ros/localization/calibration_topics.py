@@ -22,7 +22,7 @@ from roomba_ros.runtime.parameters import folder_of
 _PERIOD: Final = 20
 """Ticks between two messages: a second."""
 _KEPT_EVERY: Final = 50
-"""Windows of motion, about a metre each, after which what was measured is written down."""
+"""Windows of motion, about a metre each, after which the calibration is saved."""
 
 
 class CalibrationTopics:
@@ -51,7 +51,7 @@ class CalibrationTopics:
         self._correction = rospy.Publisher("lidar_correction", Pose2D, queue_size=1, latch=True)
 
     def begin(self, knower: Localizer | Mapper, base: float) -> None:
-        """Let a localizer or a mapper go on with what was kept; wheels are ``base`` m apart."""
+        """Let a localizer or a mapper use the saved calibration; wheels are ``base`` m apart."""
         knower.belief["calibration"]["base"] = base
         kept = None
         try:
@@ -79,7 +79,7 @@ class CalibrationTopics:
             self._keep(Calibration.of(knower.belief))
 
     def _keep(self, measured: Calibration) -> None:
-        """Write down what was measured; a disk that hangs does not stop the robot."""
+        """Save the calibration in a thread: a disk that hangs must not stop the robot."""
         self._kept = measured.windows
         path, is_busy = self._path, self._writer is not None and self._writer.is_alive()
         if path is None or is_busy:

@@ -1,4 +1,4 @@
-"""Recognition of the present floor among the robot's saved maps, on ROS, by the newest scans."""
+"""Recognizes by the newest scans on which of its saved maps the robot is, on ROS."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class FloorSearch:
         )
 
     def tick(self) -> FloorPlace | None:
-        """Look a little further; return the floor, and the place on it, once it is clear."""
+        """Compare a little further; return the floor and the place on it, once they are clear."""
         seen, localizer = self._place.seen, self._place.localizer
         if seen is not None and localizer is not None:
             self._recognition.see(seen.lidar.view(seen.ranges), localizer.reckoned)
@@ -46,6 +46,6 @@ class FloorSearch:
         return self._recognition.place
 
     def has_failed(self, now: float) -> bool:
-        """Whether the robot was never on this floor, as far as can be told."""
+        """Whether the robot is on none of the saved floors, as far as can be told by now."""
         is_late = not 0.0 <= now - self._since <= self._longest
         return is_late or self._recognition.verdict is FloorVerdict.NEW

@@ -1,4 +1,4 @@
-"""The pose that the master keeps, so that a node that was killed comes back knowing it."""
+"""The pose kept on the parameter server, by which a restarted node knows where the robot is."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ the ``run`` of the robot in which that is so."""
 
 
 class KeptPose:
-    """Writes the pose in a thread of its own: a master that hangs must not stop the robot."""
+    """Keeps the pose, written by a thread of its own: a hanging master must not stop the robot."""
 
     def __init__(self, period: float, placing: PlacingConfig) -> None:
         """Keep nothing yet; it is written each ``period`` s of wall time."""
@@ -29,7 +29,7 @@ class KeptPose:
         self._newest: Pose | None = None
         self._written: Pose | None = None
         self.was_found = False
-        """Whether the start pose is a kept one: another process of this node was here before."""
+        """Whether the start pose is a kept one: an earlier process of this node knew the place."""
 
     def start(self) -> None:
         """Begin to write what is kept."""
@@ -38,7 +38,7 @@ class KeptPose:
 
     @property
     def is_kept(self) -> bool:
-        """Whether the master has a pose by which the next process would know the place."""
+        """Whether the master has a pose by which the next process of this node knows the place."""
         return self.was_found or self._written is not None
 
     def keep(self, map_to_odometry: Pose) -> None:
@@ -48,13 +48,13 @@ class KeptPose:
     def start_pose(self, odometry: Pose) -> tuple[Pose, tuple[float, float]]:
         """Return where a robot with this odometry is, map frame, and how unsure, m and rad.
 
-        By what was kept; else by the parameters, which say where odometry began.
+        A pose kept in this run is used; without one the parameters, which say where odometry began.
         """
         kept = _kept_in(self._run)
         self.was_found = kept is not None
         if kept is not None:
             return kept.compose(odometry), self._placing.kept
-        # Read now, not at the start: the simulator puts the robot where its home wants it.
+        # Read now, not at the start: the simulator sets them when it puts the robot into its home.
         start = read_seed_parameters()
         began = Pose(start.initial_post_x, start.initial_post_y, start.initial_post_theta)
         return began.compose(odometry), self._placing.start

@@ -31,7 +31,7 @@ from roomba_ros.senses.body_topics import BodyTopics
 
 _HEARD: Final = ("odom", "imu", "scan", "wheel_drop", "bumper", "cliff")
 _ALWAYS: Final = ("odom",)
-"""The assignment asks that ``position_pub_node`` subscribes to it."""
+"""Always subscribed to: the assignment asks that of ``position_pub_node``."""
 
 
 class LocalizationTopics:
@@ -61,15 +61,17 @@ class LocalizationTopics:
         self._place = PlaceTopics(nodes.periods, config.body.radius)
         self._calibration = CalibrationTopics()
         self.mapper: Mapper | None = None
-        """Knows the place instead of the localizer, while a map is being made."""
+        """While a map is being made, the mapper; it estimates the pose in place of the
+        localizer."""
         self.is_mapping_held = False
         """Whether the mapper must wait: its map is being finished."""
         self.seen: ScanReading | None = None
         """The newest scan that was used."""
         self.is_map_own = False
-        """Whether this node makes the map itself: what comes by the topic is left out then."""
+        """Whether this node makes the map itself: messages of the topic ``map`` are then
+        ignored."""
         self.is_asked_to_search = False
-        """Whether it was asked to find its place, and has not yet."""
+        """Whether a service asked it to find its place, and it has not found it yet."""
 
     def start(self) -> None:
         """Connect."""
@@ -95,7 +97,7 @@ class LocalizationTopics:
             return self._tick(now)
 
     def use_map(self, occupancy: OccupancyMap) -> None:
-        """Go on with another map; where the robot is on it must be found out."""
+        """Go on with another map, on which the robot's place is unknown and must be found."""
         with self._tick_lock:
             if self._localizer is not None:
                 self._localizer.use_map(occupancy)
@@ -108,8 +110,8 @@ class LocalizationTopics:
     ) -> None:
         """Go on with another map on which the robot is ``at`` a pose, m and rad unsure.
 
-        ``at`` None: at the same as before; ``deviation`` None: as sure as on any other map. The
-        place stays known.
+        ``at`` None: the pose is the same as before; ``deviation`` None: the default for another
+        map. The place stays known.
         """
         with self._tick_lock:
             if self._localizer is not None:
@@ -118,7 +120,7 @@ class LocalizationTopics:
                 )
 
     def map_with(self, mapper: Mapper | None) -> None:
-        """Let a mapper know the place from now on; None: the localizer again."""
+        """Let a mapper estimate the pose from now on; None: the localizer again."""
         with self._tick_lock:
             self.mapper, self.is_mapping_held = mapper, False
             keeper, localizer = self._keeper, self._localizer
@@ -130,7 +132,7 @@ class LocalizationTopics:
                 self._begin_map(mapper)
 
     def _begin_map(self, mapper: Mapper) -> None:
-        """Let a map begin with what was heard last, and with what is in sight."""
+        """Feed a new mapper with the readings of the last tick, and with the newest scan."""
         for readings in self._heard:
             mapper.move(readings.time, readings.odometry, readings.turning)
         if self.seen is not None:
@@ -172,13 +174,16 @@ class LocalizationTopics:
 
     @property
     def place(self) -> Pose:
-        """Where the robot is by what was told and its wheels, map frame: before there is a map."""
+        """Where the robot is, map frame, by start pose and wheels; known before there is a map."""
         assert self._localizer is not None
         return self._localizer.pose
 
     @property
     def place_heard_from(self) -> Pose:
-        """Where it was at the first of the readings with which a map begins, map frame."""
+        """Where the robot was, map frame, at the first of those readings.
+
+        They are the readings of the last tick, with which a new map begins.
+        """
         return self._heard_from
 
     @property
@@ -197,11 +202,11 @@ class LocalizationTopics:
 
     @property
     def is_place_kept(self) -> bool:
-        """Whether another process of this node would know the place, and that it was here."""
+        """Whether a restarted node would know the place."""
         return self._kept.is_kept
 
     def _begin(self, readings: Readings) -> None:
-        """Begin where the first odometry was told."""
+        """Make the localizer at the first odometry, which tells where it begins."""
         start, deviation = self._kept.start_pose(readings.odometry)
         config = self._config
         self._localizer = Localizer(
@@ -223,10 +228,10 @@ class LocalizationTopics:
             localizer.use_map(new_map)
 
     def _follow(self, keeper: PlaceKeeper, localizer: Localizer, readings: Readings) -> None:
-        """Go on to where the robot is now, by what its body tells."""
+        """Follow the robot by what its body tells."""
         self._newest = readings
         if self.mapper is not None:
-            # It goes on from there, by wheels and gyro, when the map is whole.
+            # The localizer goes on from there, by wheels and gyro, when the map is finished.
             localizer.lift(readings.is_lifted)
             localizer.move(readings.time, readings.odometry, readings.turning)
         if self.is_mapping_held:

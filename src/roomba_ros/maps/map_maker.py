@@ -23,12 +23,12 @@ from roomba_ros.runtime.background import Background
 
 
 class MapMaker:
-    """Begins a map where the robot stands, lets it grow, and makes it whole.
+    """Begins a map where the robot stands, lets it grow, and finishes it.
 
-    ``station`` is where the station is, looking into it, map frame, once the robot stood on it;
-    ``is_docked`` is
-    whether it does now, as the last :meth:`note_station` said. ``has_dock`` is whether the robot
-    ever told of a dock: the station of one that does not is where its map began.
+    ``station`` is the pose of the station, looking into it, map frame, once the robot stood on it;
+    ``is_docked`` is whether the robot stands on it now, as the last :meth:`note_station` said.
+    ``has_dock`` is whether the body ever sent a dock status. For a body that did not, the place
+    where the map began is taken for the station.
     """
 
     def __init__(
@@ -67,9 +67,9 @@ class MapMaker:
         rospy.loginfo("the robot begins a map of its own")
 
     def take_up(self) -> bool:
-        """Go on with the map that a process which was killed was making; tell whether there is one.
+        """Go on with the map that a killed process was making; return whether there is one.
 
-        Needs odometry, which went on since.
+        Needs odometry that went on since then.
         """
         kept = self._memory.recall()
         if kept is None:
@@ -86,7 +86,7 @@ class MapMaker:
         return True
 
     def note_station(self, is_docked: bool) -> bool:
-        """Remember where the station is while the robot stands on it; tell whether that is new."""
+        """Remember the station's pose while the robot stands on it; return whether it is new."""
         self.is_docked = is_docked
         mapper = self._place.mapper
         if mapper is None or not (is_docked and mapper.version):
@@ -95,12 +95,12 @@ class MapMaker:
             self._remember_station(mapper, mapper.pose)
             return True
         if mapper.estimate.knowledge is Knowledge.LOST and not self._place.is_mapping_held:
-            # It was carried home.
+            # The robot was carried home.
             mapper.told(self._config.body.docked_at(self.station))
         return False
 
     def keep(self, now: float) -> None:
-        """Remember the map, if it is time to, and once its place is remembered as well."""
+        """Remember the map, if it is due, and only once a restarted node would know the place."""
         mapper = self._place.mapper
         if mapper is None or self._place.is_mapping_held or not self._place.is_place_kept:
             return
@@ -112,31 +112,31 @@ class MapMaker:
             self._memory.keep(now, state, self.station, self._station_from_start)
 
     def grown(self, now: float) -> OccupancyMap | None:
-        """Return the map as it is by now, if it is time to tell it."""
+        """Return the map as it is now, if it is time to publish it."""
         if self._drawing is None or self._place.is_mapping_held:
             return None
         return self._drawing.draw(now)
 
     def finish(self) -> None:
-        """Make the map whole, in the background; the robot should stand meanwhile."""
+        """Finish the map in the background; the robot should stand meanwhile."""
         mapper = self._place.mapper
         if mapper is None or self._place.is_mapping_held:
             return
-        # Its place is told on, by the wheels, but nothing is added any more.
+        # The mapper still tells the pose, by the wheels, but adds nothing to the map.
         self._place.is_mapping_held = True
         if self.station is None and not self.has_dock:
             self._remember_station(mapper, mapper.start)
         self._background.do("the map does not become whole", lambda: self._finish(mapper))
 
     def take_whole(self) -> OccupancyMap | None:
-        """Return the whole map, once, as soon as it is; the localizer goes on with it."""
+        """Return the finished map, once, as soon as it is there; the localizer goes on with it."""
         with self._lock:
             whole, self._whole = self._whole, None
         mapper = self._place.mapper
         if whole is None or mapper is None:
             return None
         if self._station_from_start is not None:
-            # To be whole the map was turned a little.
+            # Finishing turned the map a little.
             self.station = mapper.start.compose(self._station_from_start)
         self._place.go_on(whole, mapper.pose, self._placing.on_finished)
         self._place.map_with(None)
@@ -144,7 +144,7 @@ class MapMaker:
         return whole
 
     def _remember_station(self, mapper: Mapper, docked: Pose) -> None:
-        """Remember the station of a robot that stands, or stood, docked at a pose, map frame."""
+        """Remember the station by the pose of a robot that stands, or stood, docked; map frame."""
         self.station = self._config.body.docked_at(docked)
         self._station_from_start = mapper.start.inverse().compose(self.station)
 

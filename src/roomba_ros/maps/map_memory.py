@@ -1,4 +1,4 @@
-"""The robot's own map while it has no name, remembered on disk, in case this node is killed."""
+"""The robot's own unnamed map, saved on disk so that it survives a kill of this node."""
 
 from __future__ import annotations
 
@@ -25,16 +25,17 @@ from roomba_ros.runtime.background import Background
 from roomba_ros.runtime.parameters import robot_name, robot_run
 
 FOLDER: Final = ".being_made"
-"""In the maps' folder, where no map's name can be."""
+"""A folder in that of the maps; no map can have this name."""
 _BEING_MADE: Final = "being made"
 _WHOLE: Final = "whole"
-"""What of the memory's work the newest alone is done of; the second is its folder, too."""
+"""Subjects of the background's work, of which only the newest counts; the latter is a folder,
+too."""
 
 
 class MapMemory:
-    """A map that is being made, or a whole one that was not saved: a folder for each robot.
+    """Saves a map that is being made, or a finished one without a name; each robot has a folder.
 
-    It counts in the run of the robot that it is of, and no later.
+    A saved map counts only in the run of the robot in which it was made.
     """
 
     def __init__(self, config: MemoryConfig, background: Background) -> None:
@@ -54,11 +55,11 @@ class MapMemory:
 
     @property
     def is_there(self) -> bool:
-        """Whether a map that was being made was left behind, of whichever run."""
+        """Whether a map that was being made was left behind, by any run."""
         return self._path.exists()
 
     def recall(self) -> KeptMap | None:
-        """Return the map that this run of the robot was making when this node ended, if it was."""
+        """Return the unfinished map that a killed node of this run was making; None without one."""
         try:
             kept = load_mapper(self._path, rospy.logwarn)
             if kept is None or kept.run != self._run:
@@ -73,9 +74,9 @@ class MapMemory:
         return kept
 
     def is_due(self, now: float, version: int, *, is_lost: bool) -> bool:
-        """Whether it is time to remember a map of this version: another one, after a while.
+        """Whether it is time to save a map of this version: a new one, a while after the last.
 
-        Once also that it went well with it.
+        It is also due once when the node has run well for a while with a map that it took up.
         """
         went_well = self._taken_up > 0 and time.monotonic() - self._since >= self._config.goes_well
         is_news = (version, is_lost) != self._kept or went_well
@@ -114,7 +115,7 @@ class MapMemory:
         )
 
     def recall_whole(self) -> StoredMap | None:
-        """Return the whole map without a name that this run of the robot went by, if it did."""
+        """Return the finished map without a name that this run used; None without one."""
         try:
             return self._whole.load(self._run) if self._run in self._whole.names() else None
         except (MapStoreError, OSError) as error:
@@ -131,7 +132,7 @@ class MapMemory:
         )
 
     def _replace_by(self, stored: StoredMap, times_kept: int) -> None:
-        """If the disk refuses, the one that was being made is still there."""
+        """Save the finished map; if that fails, the one that was being made stays saved."""
         if self._run:
             self._whole.save(self._run, stored)
         if times_kept == self._times_kept:  # no other map is being made by now

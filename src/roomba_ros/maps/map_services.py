@@ -29,9 +29,9 @@ from roomba_ros.maps.map_wish import GIVEN, NONE, OWN
 from roomba_ros.maps.own_map import NO_STATION, OwnMap
 
 _BECOMES_WHOLE: Final = 5.0
-"""s of wall time that a map is waited for which is about to be whole."""
+"""s of wall time to wait for a map that is about to be finished."""
 _LOOK: Final = 0.05
-"""s of wall time between two looks whether it is."""
+"""s of wall time between two looks whether the map is finished."""
 _IS_GIVEN: Final = (
     "the robot was given its map: start it with map:=none (it makes a new one), map:=own (the one "
     "it made of this floor), or map:= and the name of a saved one"
@@ -47,12 +47,7 @@ class _Changed(NamedTuple):
 
 
 class MapServices:
-    """Answers; what is refused says why, and changes nothing.
-
-    Services: ``map/finish`` (Trigger: the map is whole as it is), ``map/save``, ``map/load``,
-    ``map/remove`` (NameMap), ``map/list`` (ListMaps), ``map/update/accept``,
-    ``map/update/refuse``, ``map/update/undo`` (Trigger).
-    """
+    """Answers the services of maps; a refused request gets the reason, and changes nothing."""
 
     def __init__(
         self,
@@ -102,7 +97,7 @@ class MapServices:
         return "the map becomes whole"
 
     def _save(self, name: str) -> str:
-        """Save the map by a name; names of rooms and zones of an older one of it go on."""
+        """Save the map by a name; an older map of that name hands on room names and zones."""
         if name in (GIVEN, NONE, OWN):
             raise MapStoreError(f"expected a name but {name!r}, which says how to begin (map:=…)")
         own = self._own
@@ -119,7 +114,7 @@ class MapServices:
                     f"does not go by them ({error}): mend that, and save it again"
                 )
         with own.lock:
-            # Meanwhile another call may have loaded another map.
+            # Another call may have loaded another map meanwhile.
             if own.occupancy is stored.occupancy:
                 own.name = name
                 own.remember()
@@ -129,9 +124,9 @@ class MapServices:
         return f"saved as {name} in {self._shelf.folder}"
 
     def _whole_map(self) -> tuple[str, StoredMap]:
-        """Return the name of the map and all of it; wait a little for one that becomes whole.
+        """Return the map's name and the map; wait a little for one that is about to be finished.
 
-        The end of an exploration is told, then its map is made whole, then its rooms are found.
+        The exploration's end is told first; then the map is finished, and then its rooms are found.
         """
         deadline = time.monotonic() + _BECOMES_WHOLE
         while True:
@@ -147,7 +142,7 @@ class MapServices:
             time.sleep(_LOOK)
 
     def _load(self, name: str) -> str:
-        """Go on with a saved map; unless its place there is known the robot finds it out."""
+        """Go on with a saved map; the robot finds its place on it, unless that is known."""
         own, stored = self._own, self._shelf.load(name)
         with own.lock:
             if self._maker.is_growing:
@@ -156,7 +151,7 @@ class MapServices:
             if self._maker.is_docked:
                 at = stored.station
             elif own.occupancy is not None and own.occupancy.frame == stored.occupancy.frame:
-                # Another state of the same map.
+                # It is another state of the same map.
                 at = self._place.known_place
             own.use(name, stored, at)
         own.settle()
@@ -172,7 +167,7 @@ class MapServices:
         return f"{name} is removed"
 
     def _accept(self) -> str:
-        """Change the map as it was offered, its rooms with it; a saved one is saved."""
+        """Apply the offered change to the map and its rooms; a map that has a name is saved."""
         own = self._own
         with own.lock:
             name, before, proposed = own.name, own.stored(), self._changes.proposed()

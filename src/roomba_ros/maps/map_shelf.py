@@ -69,9 +69,10 @@ class MapShelf:
         self._store.save(name, stored)
 
     def taken_over(self, name: str, stored: StoredMap) -> StoredMap:
-        """Return a map that was made anew, with what people did to the saved one of this name.
+        """Return a newly made map with the names and zones of the saved one of this name.
 
-        Raises MapStoreError if that is of another floor, or too broken to compare: it is kept.
+        Raises MapStoreError if the saved map is of another floor or cannot be read: it is not
+        replaced then.
         """
         assert stored.rooms is not None
         old = self._old(name)
@@ -89,7 +90,7 @@ class MapShelf:
         return StoredMap(stored.occupancy, stored.station, carried.rooms, zones)
 
     def go_by(self, stored: StoredMap) -> None:
-        """Let rooms and zones of the map that there is be these; raises OSError and RoombaError."""
+        """Use a stored map's rooms and zones from now on; raises OSError and RoombaError."""
         assert stored.rooms is not None
         self._rooms.use(stored.rooms)
         save_zones(stored.zones, map_digest(stored.occupancy), self._zones_path(stored.occupancy))
@@ -108,7 +109,7 @@ class MapShelf:
         self._store.remove(name)
 
     def keep_beside(self, stored: StoredMap) -> None:
-        """Write a map's rooms and zones where they are looked up by the map."""
+        """Save a map's rooms and zones under the map's digest, by which they are looked up."""
         occupancy = stored.occupancy
         rooms_path, zones_path = self._rooms.path_of(occupancy), self._zones_path(occupancy)
         try:

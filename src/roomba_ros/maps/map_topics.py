@@ -1,4 +1,4 @@
-"""The robot's own maps on ROS: begun or recognised, made whole, and looked through for changes."""
+"""The robot's own maps on ROS: begun or recognized, finished, and checked for changes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _EXPLORE: Final = "the map is being made: explore, or walk about"
 
 
 class MapTopics:
-    """Tells the robot's own map; when it is given one it does nothing but say so.
+    """Publishes the robot's own map; for a robot with a given map it publishes only that fact.
 
     Publishes: what :class:`OwnMap` tells (the map 1 Hz while it grows), and :class:`ChangeTopics`.
     Subscribes: ``dock_status``, and what :class:`OwnMap` hears.
@@ -82,7 +82,7 @@ class MapTopics:
             self._background.start()
         self._own.start(is_own=self._is_own)
         if not (self._is_own and self._memory.is_there):
-            # Otherwise an exploration would take the map for whole before it is resumed.
+            # Otherwise an exploration would take the map for finished before it is resumed.
             self._own.say(rospy.get_time(), is_growing=False)
         subscribe("dock_status", DockStatus, is_docked_of, self._on_dock)
         self._services.start(is_own=self._is_own)
@@ -92,7 +92,7 @@ class MapTopics:
         return bool(self._wish != GIVEN)
 
     def tick(self, now: float, estimate: Estimate) -> None:
-        """Begin, grow, recognise, or look for changes; tell what is new."""
+        """Begin, grow or recognize a map, or look for changes; publish what is new."""
         if not self._is_own:
             return
         own, maker = self._own, self._maker
@@ -109,7 +109,7 @@ class MapTopics:
             own.say(now, is_growing=maker.is_growing)
 
     def _begin(self, now: float) -> None:
-        """Take up what was begun, load what is wished, know this floor again, or begin anew."""
+        """Resume an unfinished map, load the wished one, recognize this floor, or begin anew."""
         if self._search is None and self._take_up():
             return
         if self._wish == NONE:
@@ -119,7 +119,7 @@ class MapTopics:
         else:
             try:
                 stored = self._shelf.load(self._wish)
-                # A node that comes back in the same run finds the robot where it was.
+                # A node that is restarted in the same run finds the robot where it was.
                 at = self._place.place if self._place.was_here_before else None
                 self._own.use(self._wish, stored, at)
             except (MapStoreError, OSError) as error:
@@ -128,7 +128,7 @@ class MapTopics:
                 self._maker.begin()
 
     def _take_up(self) -> bool:
-        """Go on with what this node had when it was killed in this run; tell whether it had any."""
+        """Resume the map that a killed process of this run had; return whether it had one."""
         if not self._place.was_here_before:
             return False
         if self._maker.take_up():
@@ -167,7 +167,7 @@ class MapTopics:
         whole = maker.take_whole()
         if whole is not None:
             own.message = self._trouble = ""
-            # The station first: by where it was and is, others carry over what they noted.
+            # Publish the station first: from its old and new pose other nodes move what they noted.
             own.tell_station(maker.station)
             own.tell_whole(whole)
             own.remember()

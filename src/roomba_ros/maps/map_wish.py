@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Final
 
 GIVEN: Final = "given"
-"""A map that others tell."""
+"""A map that another node publishes."""
 NONE: Final = "none"
-"""A new one of its own."""
+"""A new map that the robot makes."""
 OWN: Final = "own"
-"""The own one of this floor."""
+"""The robot's own map of this floor, recognized among the saved ones."""
 FOLDER: Final = "maps"
 """Where saved maps are, unless another folder is given."""
 

@@ -27,12 +27,12 @@ from roomba_ros.runtime.background import Background
 from roomba_ros.runtime.subscriptions import subscribe
 
 _SETTLED: Final = 2.0
-"""s of wall time; the master is told within milliseconds."""
+"""s of wall time to wait until all is saved; what the master keeps takes milliseconds."""
 NO_STATION: Final = "the map is being made: put the robot on its station, so that it knows it"
 
 
 class OwnMap:
-    """Holds and tells the map that the robot goes by; hold ``lock`` to change more than one thing.
+    """Holds and publishes the map that the robot uses; hold ``lock`` to change several things.
 
     ``occupancy`` is None before there is one, ``name`` is that by which it is saved, ``message``
     what people should know or do.
@@ -63,7 +63,7 @@ class OwnMap:
         self._said: tuple[object, ...] = ()
 
     def start(self, *, is_own: bool) -> None:
-        """Connect; nothing but whose map it is is told of one that is not the robot's own."""
+        """Connect; if the map is not the robot's own, ``mapping`` is all that is published."""
         self._is_own = is_own
         self._mapping = rospy.Publisher("mapping", Mapping, queue_size=1, latch=True)
         if is_own:
@@ -75,7 +75,7 @@ class OwnMap:
         subscribe("zones", ZoneArray, zones_of, self._on_zones)
 
     def use(self, name: str, stored: StoredMap, at: Pose | None = None) -> None:
-        """Go on with a stored map; the robot is ``at`` a pose of it, or must find out."""
+        """Go on with a stored map; the robot is ``at`` a pose on it, or must find its place."""
         self._take(name, stored)
         if at is not None:
             self._place.go_on(stored.occupancy, at)
@@ -84,7 +84,7 @@ class OwnMap:
         self._tell(stored)
 
     def use_changed(self, name: str, stored: StoredMap) -> None:
-        """Go on with a map of which some is other than before: the robot is where it was."""
+        """Go on with a changed version of the map; the robot's pose on it stays the same."""
         self._take(name, stored)
         self._place.go_on(stored.occupancy, None)
         self._tell(stored)
@@ -109,7 +109,7 @@ class OwnMap:
         return StoredMap(occupancy, self.station, rooms, self._zones)
 
     def remember(self) -> None:
-        """Let this node come back with this whole map if it is killed: by name if it has one."""
+        """Let a restarted node use this finished map again: by its name, if it has one."""
         if self.name:
             self._background.do("the map's name is not remembered", self._remember_name)
             self._memory.forget_whole()
@@ -117,7 +117,7 @@ class OwnMap:
             self._memory.keep_whole(StoredMap(self.occupancy, self.station))
 
     def settle(self) -> None:
-        """Wait, but not for ever, until what is to be remembered is: then people may be told."""
+        """Wait, for some seconds at most, until all is saved: only then tell people that it is."""
         self._background.wait(_SETTLED)
 
     def _remember_name(self) -> None:
@@ -134,7 +134,7 @@ class OwnMap:
         self.tell_again()
 
     def tell_again(self) -> None:
-        """Tell the whole map once more: who keeps zones looks for those that it took over."""
+        """Publish the map once more: nodes then look for zones that were saved for it meanwhile."""
         assert self.occupancy is not None
         self._publisher.publish(map_message(rospy.get_time(), self.occupancy, "map"))
 
@@ -153,7 +153,7 @@ class OwnMap:
             self._station_publisher.publish(pose_message(rospy.get_time(), station, "map"))
 
     def say(self, now: float, *, is_growing: bool) -> None:
-        """Tell whose map it is, when that is news."""
+        """Publish whose map it is and its state, if that is new."""
         said = (is_growing, self.name, round(self._known), self.message)
         if said != self._said:
             self._said = said

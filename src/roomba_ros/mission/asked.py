@@ -1,4 +1,4 @@
-"""What can be asked of the mission, how each is obeyed or refused, and the goal under way."""
+"""Orders for the mission: how each is obeyed or refused, and the goal under way."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class GoalUnderWay:
     def take_over(self, goal: MissionGoal, mission: Mission) -> None:
         """Be at a goal that the mission has just begun."""
         old, self.goal = self.goal, goal
-        # Of what was under way; no client waits for one that was resumed after an error.
+        # Results of the errand before; none is awaited of one that was resumed after an error.
         ended = Ended.taken_from(mission)
         if old is not None:
             self.later(partial(old.stopped, ended, OVERTAKEN))
@@ -67,7 +67,7 @@ class GoalUnderWay:
         return True, _DONE.get(event, event.value)
 
     def recall(self, reason: str) -> bool:
-        """Let the orders that wait never begin; return whether any waited."""
+        """Cancel the orders that wait; return whether any waited."""
         recalled = tuple(self.waiting)
         self.waiting.clear()
         for order in recalled:
@@ -75,17 +75,17 @@ class GoalUnderWay:
         return bool(recalled)
 
     def later(self, answer: Callable[[], object]) -> None:
-        """Tell an answer when answers are told."""
+        """Keep an answer until :meth:`answer` sends it."""
         self._answers.append(answer)
 
     def answer(self) -> None:
-        """Tell what came of what was obeyed."""
+        """Send the answers to the orders that were obeyed."""
         answers, self._answers = self._answers, []
         for tell in answers:
             tell()
 
     def follow(self, mission: Mission, senses: Senses) -> Ended:
-        """Tell the end of what ended; return the results of what did, asked for or not."""
+        """Report the goal's end, if it has ended; return the results, also those without a goal."""
         ended = Ended.taken_from(mission)
         if self.goal is not None and self.goal.follow(mission, senses, ended):
             self.goal = None
@@ -108,18 +108,18 @@ class Order(ABC):
     """Something that was asked of the mission."""
 
     waits: ClassVar[bool] = False
-    """Whether it waits while no errand may begin."""
+    """Whether the order waits while no new errand may begin."""
 
     @abstractmethod
     def obey(self, under_way: GoalUnderWay, mission: Mission, senses: Senses) -> None:
-        """Let the mission do it; ``under_way`` tells the answer later."""
+        """Let the mission obey; ``under_way`` sends the answer later."""
 
     @abstractmethod
     def refuse(self, reason: str) -> None:
-        """Tell why it is not done."""
+        """Tell the client why the order is refused."""
 
     def recall(self, reason: str) -> None:
-        """Tell why it does not begin, though it was not wrong."""
+        """Tell the client why the order does not begin, though nothing was wrong with it."""
         self.refuse(reason)
 
 
@@ -168,7 +168,7 @@ class Cancel(Order):
 
 
 class _Answered(Order):
-    """What is asked by service; the caller waits for the answer."""
+    """An order by service; the caller waits for the answer."""
 
     answer: queue.SimpleQueue[tuple[bool, str]]
 
@@ -182,7 +182,7 @@ class _Answered(Order):
 
     @abstractmethod
     def _done(self, under_way: GoalUnderWay, mission: Mission, senses: Senses) -> tuple[bool, str]:
-        """Do it; return whether it was done, and what came of it."""
+        """Obey; return whether it was done, and what came of it."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Planning contexts are made in the background: each takes a while, and the mission goes on."""
+"""Makes planning contexts in the background: each takes a while, and the mission must go on."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ MOST_FINE_CELLS: Final = 40_000_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ContextInputs:
-    """What a context is made of; ``zones`` is None where they cannot be read, which is told."""
+    """The inputs of a context; ``zones`` None: they cannot be read, and ``unreadable`` says why."""
 
     occupancy: OccupancyMap
     digest: str
@@ -43,9 +43,9 @@ class ContextInputs:
 
 
 class ContextMaker:
-    """Makes a context of what is known when its turn comes; of many that are wanted the last.
+    """Makes contexts of what is known when their turn comes; of several requests only the last.
 
-    ``lock`` guards what a context is made of as well: it is held to want one.
+    ``lock`` also guards the inputs of a context: hold it to request one.
     """
 
     def __init__(
@@ -57,7 +57,10 @@ class ContextMaker:
         lock: threading.Lock,
         inputs: Callable[[], ContextInputs | None],
     ) -> None:
-        """Make none yet; ``inputs`` tells, by the lock, what is known now, None if too little."""
+        """Make none yet; ``inputs`` returns what is known now, None if too little is.
+
+        It is called with the lock held.
+        """
         self._robot, self._mission, self._docking = robot, mission, docking
         self._background, self._lock, self._inputs = background, lock, inputs
         self._wanted = self._tried = 0
@@ -65,7 +68,7 @@ class ContextMaker:
         self._is_edited = False
         self._made: KnownHome | None = None
         self._field: tuple[OccupancyMap, SurfaceField] | None = None
-        """The newest one, and the map that it is of; only the background looks at it."""
+        """The newest map with its surface field; only the background's thread uses it."""
         self.trouble = ""
         """Why there is no context of this map, in words; empty while one may still come."""
 
@@ -76,7 +79,7 @@ class ContextMaker:
 
     @property
     def is_changing(self) -> bool:
-        """Whether another context is being made than the one in use, but for more map."""
+        """Whether a context that differs by more than new floor of a growing map is being made."""
         with self._lock:
             is_another = self._wanted != self._tried or self._made is not None
             return is_another and self._is_edited
@@ -99,7 +102,7 @@ class ContextMaker:
             self._make_soon()
 
     def tick(self) -> None:
-        """Let what was to wait be made, if it waited long enough; hold the lock."""
+        """Begin the context that was to wait, if it waited long enough; hold the lock."""
         if self._make_after is not None and time.monotonic() > self._make_after:
             self._make_soon()
 
@@ -120,7 +123,7 @@ class ContextMaker:
             rospy.logwarn(trouble)
         rospy.logdebug("a context was made in %.2f s", time.monotonic() - began)
         with self._lock:
-            # If a newer one is wanted, it waits already.
+            # If a newer one was requested meanwhile, it is in the queue already.
             if wanted == self._wanted:
                 self._tried, self._made, self.trouble = wanted, made, trouble
 
@@ -139,11 +142,12 @@ class ContextMaker:
             _rooms(inputs.outlines, inputs.occupancy),
             inputs.zones,
             is_growing=inputs.digest == GROWING,
-            # The main loop plans, and gives no other sign of life meanwhile.
+            # The main loop waits for the plan, so the plan's stages give the sign of life.
             stages=OUR_STAGES.telling(HEART.beat),
         )
         if not context.is_growing:
-            # It takes a while, and the mission shall not wait for it.
+            # Computed here, in the background: it takes a while, and the mission shall not wait for
+            # it.
             _ = context.coverage
         return KnownHome(context, field, inputs.digest)
 

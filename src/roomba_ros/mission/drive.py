@@ -38,7 +38,10 @@ class MissionDrive:
     """
 
     def __init__(self, config: RobotConfig, ending: float) -> None:
-        """Connect nothing yet; a cancelled walk, or looking around, may drive ``ending`` s more."""
+        """Connect nothing yet.
+
+        After the mission cancels a walk, or stops looking around, those may drive for ``ending`` s.
+        """
         self._config, self._ending = config, ending
         self._stops_left = 0
         self._looks = self._empties = False
@@ -73,7 +76,7 @@ class MissionDrive:
             publisher.publish(GoalID())
 
     def follow_clock(self, now: float) -> None:
-        """Tell what time it is, s of the robot's clock."""
+        """Take the time, s of the robot's clock."""
         if self._jumps.at(now):
             self._others_may_until = self._others_drove = -math.inf
         self._now = now
@@ -82,18 +85,18 @@ class MissionDrive:
     def taken_by(self) -> str:
         """Why the mission must leave the drive to another program; empty when it need not.
 
-        That program may be a walk that this mission did not end, one that tells ``cmd_vel``, or one
-        that lets the robot stand.
+        That program may be a walk that this mission did not end, a sender of ``cmd_vel``, or one
+        that stops the robot by speed 0.
         """
         if self._now - self._others_drove < self._config.body.command_timeout:
             return _OTHERS
-        # A walk that is cancelled brakes by this.
+        # A cancelled walk brakes by speed 0, too.
         if self._cruise_speed == 0.0 and self._now >= self._others_may_until:
             return _STANDS
         return ""
 
     def drive(self, twist: Twist | None, *, looks_around: bool) -> None:
-        """Ask for a twist; None: leave the drive to others, after a stop."""
+        """Ask for a twist; None: stop, and then leave the drive to others."""
         if looks_around:
             self._others_may_until = self._now + self._ending
         if looks_around or self._looks:
@@ -126,7 +129,7 @@ class MissionDrive:
             self._command.publish(TwistMessage())
 
     def _on_other_command(self, _: Twist) -> None:
-        # Standstill as well: it holds the drive as any other twist does.
+        # A standstill counts as well: it holds the drive as any other twist does.
         if self._now >= self._others_may_until:
             self._others_drove = self._now
 

@@ -1,4 +1,4 @@
-"""What the robot felt on its maps, on ROS: one file for each map, read and written."""
+"""What the robot felt on each of its maps: one file for each map, read and written."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Felt = TypeVar("Felt")
 
 @dataclass(frozen=True, slots=True)
 class FeltKind(Generic[Felt]):
-    """What is felt, in words, how its files end, and how they are read and written."""
+    """What was felt, such as carpets: in words, with its files' ending, reader and writer."""
 
     words: str
     ending: str
@@ -46,7 +46,7 @@ LOW_THINGS: Final = FeltKind(
 
 
 class FeltOnMaps(Generic[Felt]):
-    """Remembers one kind for each map; a map that is being made is no map to remember it for."""
+    """Remembers one kind for each finished map; nothing is saved for a map that is being made."""
 
     def __init__(self, kind: FeltKind[Felt], background: Background, folder: Path) -> None:
         """Touch nothing yet; files are kept in ``folder``, by the maps' digests."""

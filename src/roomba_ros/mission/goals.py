@@ -63,7 +63,7 @@ class MissionGoal(ActionGoal):
     """One thing that the mission is to do."""
 
     def check(self) -> None:
-        """Of most goals it is enough that they came."""
+        """Check the goal's message; most goals hold nothing to check."""
 
     @abstractmethod
     def begin(self, mission: Mission, senses: Senses) -> None:
@@ -79,7 +79,7 @@ class MissionGoal(ActionGoal):
 
     @abstractmethod
     def _result(self, message: str) -> Any:
-        """Return the action's result for what was not done, and why."""
+        """Return the action's result for an errand that was not done; ``message`` says why."""
 
     def accept(self) -> None:
         """Tell that it has begun."""

@@ -28,10 +28,9 @@ from roomba_ros.runtime.background import Background
 from roomba_ros.runtime.subscriptions import subscribe
 
 _LAST_EDIT: Final = 0.1
-"""s of wall time without another edit, after which a context is made; of many edits there is one.
+"""s of wall time after the last edit until a context is made: many edits in a row make only one.
 
-Until there is one the robot stands.
-"""
+Until then the robot stands."""
 
 
 class HomeTopics:
@@ -61,7 +60,7 @@ class HomeTopics:
         self._map_came = 0.0
         self._station: Pose | None = None
         self._grown_by: Pose | None = None
-        """Where the station is on the newest map that is being made."""
+        """Where the station is on the newest map that is being made; None for any other map."""
         self._outlines: RoomOutlines | None = None
         self._is_mapped: bool | None = None
         self._held: tuple[float, ToldMap] | None = None
@@ -77,7 +76,7 @@ class HomeTopics:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """The topics without which there is no context and that were not heard yet."""
+        """The topics that a context needs and that were not heard yet."""
         heard = {"map": self._map, "station_pose": self._station}
         return tuple(topic for topic, value in heard.items() if value is None)
 
@@ -88,7 +87,7 @@ class HomeTopics:
 
     @property
     def is_changing(self) -> bool:
-        """Whether another context is being made than the one in use, but for more map."""
+        """Whether a context that differs by more than new floor of a growing map is being made."""
         return self._maker.is_changing
 
     def take(self) -> KnownHome | None:
@@ -96,7 +95,7 @@ class HomeTopics:
         return self._maker.take()
 
     def tick(self) -> None:
-        """Let the first context be made as soon as all that it takes was heard."""
+        """Request the first context as soon as all its inputs were heard."""
         held = self._held
         if held is not None and time.monotonic() > held[0] + self._deadlines.mapping:
             self._take_held()
@@ -109,7 +108,7 @@ class HomeTopics:
             self._maker.tick()
 
     def _inputs(self) -> ContextInputs | None:
-        """Return what a context is made of, None while that was not heard; hold the lock."""
+        """Return the inputs of a context; None while one is missing; hold the lock."""
         if self._map is None or self._station is None:
             return None
         zones, unreadable = self._zones.zones, self._zones.unreadable
@@ -118,7 +117,7 @@ class HomeTopics:
         )
 
     def _make_anew(self, wait: float = 0.0) -> None:
-        """Let another context be made after an edit, if there was to be one; hold the lock."""
+        """Request a context after an edit, unless the first one is still to come; hold the lock."""
         if self._maker.has_begun:
             self._maker.make(wait=wait)
 
@@ -128,14 +127,14 @@ class HomeTopics:
 
     def _on_map(self, told: ToldMap) -> None:
         if not told.was_loaded and self._is_mapped is None:
-            # It may be one that is being made; its maker says so, if there is one.
+            # It may be unfinished: if it is, the node that makes it says so on ``mapping``.
             with self._lock:
                 self._held = (time.monotonic(), told)
             return
         self._hear_map(told, time.monotonic())
 
     def _take_held(self) -> None:
-        """Take the map that waited to be known for a whole or a growing one."""
+        """Take the map that waited until ``mapping`` told whether it is finished or growing."""
         with self._lock:
             held, self._held = self._held, None
         if held is not None:
@@ -143,7 +142,7 @@ class HomeTopics:
 
     def _hear_map(self, told: ToldMap, came: float) -> None:
         occupancy = told.occupancy
-        # A map that is being made was never loaded; other people's may not say when they were.
+        # A growing map has load time 0, but other packages' finished maps may have that, too.
         is_growing = bool(self._is_mapped) and not told.was_loaded
         digest = GROWING if is_growing else map_digest(occupancy)
         with self._lock:
@@ -156,14 +155,14 @@ class HomeTopics:
             self._zones.follow_map(digest, self._old_in_new())
             self._grown_by = self._station if is_growing else None
             if not is_first:
-                # Rooms of this map are told after it.
+                # The rooms of this map come after it.
                 self._outlines = None
                 self._maker.make(is_edited=not is_growing)
 
     def _old_in_new(self) -> Pose:
-        """Return where the frame of a map that was being made lies in that of the whole one.
+        """Return where the frame of the map that was being made lies in the finished one's frame.
 
-        Where the station is in the whole one is told before the map.
+        The station's pose on the finished map is published before that map.
         """
         before, now = self._grown_by, self._station
         return Pose() if before is None or now is None else old_in_new(before, now)

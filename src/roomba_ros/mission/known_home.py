@@ -9,7 +9,7 @@ from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.matching.surface_field import SurfaceField
 
 GROWING: Final = "growing"
-"""The digest of maps that are being made."""
+"""The digest of every map that is being made."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,6 +24,6 @@ class KnownHome:
     digest: str
 
     def is_edit_of(self, before: KnownHome) -> bool:
-        """Whether station or zones are others than before: that is obeyed at once."""
+        """Whether station or zones differ from ``before``: such a change is obeyed at once."""
         now, then = self.context, before.context
         return (now.station, now.zones) != (then.station, then.zones)

@@ -59,7 +59,7 @@ class MissionMemory:
             dirt.learned[:] = learned
 
     def recall_errand(self, mission: Mission, senses: Senses) -> Checkpoint | None:
-        """Let a mission go on where it was killed; return where that was, None if it does not."""
+        """Resume the errand of a killed mission; return its checkpoint, None without one."""
         try:
             found = load_checkpoint(self._checkpoint, self._run, rospy.logwarn)
             if found is None:
@@ -77,9 +77,9 @@ class MissionMemory:
         return found
 
     def keep(self, mission: Mission, senses: Senses, goal: Goal | None) -> None:
-        """Remember the errand and whose goal it is, if it is time to; forget it when there is none.
+        """Save the errand and its client's goal, if due; forget them when there is none.
 
-        A change is remembered at once.
+        A change is saved at once.
         """
         now, wall = (mission.state.phase, goal), time.monotonic()
         if now == self._last and wall - self._saved < self._config.errand:

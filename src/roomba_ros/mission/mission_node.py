@@ -47,7 +47,7 @@ from roomba_ros.senses.senses import HeardSenses
 
 NAME = "mission_node"
 _NEEDED = ("odom", "battery_state", "dock_status")
-"""The body's topics without which nothing can be begun."""
+"""The topics of the body without which no errand can begin."""
 _HEARD = (
     *_NEEDED,
     "imu",
@@ -152,17 +152,17 @@ class MissionNode:
         self._finish_map(ended, is_waited_for=step.wants_whole_map)
         self._remember(mission, senses, has_learned=ended.clean is not None)
         if ended.clean is not None or ended.exploration is not None:
-            # What planning left in pieces would stay for good.
+            # Planning leaves many free pieces of heap, which would stay with the process for good.
             give_back()
 
     def stop(self) -> None:
-        """Stop the drive; what was ordered comes to no end."""
+        """Stop the drive; the goals under way are given up."""
         self._drive.stop()
         self._orders.give_up("the mission node was told to end")
         self._background.wait(1.0)
 
     def _sense(self, now: float) -> Senses | None:
-        """Return what is sensed, and look for what the map does not show."""
+        """Return what is sensed, and look in the scan for things that the map does not show."""
         senses = self._senses.at(now)
         self._senses.show(self._mapped.lookout)
         if senses is None or self._senses.missing(*_NEEDED):
@@ -172,7 +172,7 @@ class MissionNode:
         return senses
 
     def _wait(self, now: float) -> None:
-        """Tell what is not there yet."""
+        """Tell what is still missing."""
         missing = self._context.missing + self._senses.missing(*_NEEDED)
         reason = self._context.trouble or (
             f"waits for {listed(missing)}" if missing else "gets to know its map"
@@ -181,7 +181,7 @@ class MissionNode:
         self._topics.wait(now, reason)
 
     def _follow_home(self, now: float, senses: Senses | None) -> None:
-        """Take over another context, or begin another mission for another map."""
+        """Take over a new context, or begin a new mission for another map."""
         self._context.tick()
         if senses is None:
             return
@@ -204,7 +204,7 @@ class MissionNode:
         self._begin(home, senses)
 
     def _grow(self, mission: Mission, senses: Senses, before: KnownHome, home: KnownHome) -> None:
-        """Let the mission go on with more of the map, when that makes a difference to it."""
+        """Let the mission go on with another state of its map, if that matters to it."""
         if home.context.occupancy is before.context.occupancy:
             mission.use_context(home.context)
         elif home.context.is_growing and not (
@@ -218,14 +218,14 @@ class MissionNode:
         self._home, self._newer = home, None
 
     def _remember_by(self, home: KnownHome, mission: Mission, senses: Senses) -> None:
-        """Remember by the whole map, now that there is one, what is under way."""
+        """Save the errand under way by the finished map, which takes the growing map's place."""
         assert self._memory is not None
         before, self._memory = self._memory, self._memory_by(home.digest)
         self._memory.keep(mission, senses, self._orders.goal)
         before.forget_errand()
 
     def _begin(self, home: KnownHome, senses: Senses) -> None:
-        """Begin a mission for a map; it goes on with what was under way there."""
+        """Begin a mission for a map; resume the errand that was under way there."""
         mission = self._mapped.begin(home.context, home.field, senses)
         self._memory = self._memory_by(home.digest)
         if not home.context.is_growing:
@@ -237,7 +237,7 @@ class MissionNode:
             self._drive.take()
 
     def _recall_growing(self, mission: Mission, senses: Senses) -> Checkpoint | None:
-        """Take up what was under way on this map while it was being made."""
+        """Resume the errand that was under way on this map while it was being made."""
         if mission.context.is_growing:
             return None
         memory = self._memory_by(GROWING)
@@ -254,7 +254,7 @@ class MissionNode:
         return MissionMemory(folder, digest, self._nodes.memory, self._background)
 
     def _watch_disk(self) -> None:
-        """Let it be told while the disk is full."""
+        """Report while the disk is full."""
         memory, now = self._nodes.memory, time.monotonic()
         if now - self._looked_at_disk < memory.free_space_period:
             return
@@ -266,17 +266,17 @@ class MissionNode:
 
     def _step(self, mission: Mission, senses: Senses) -> MissionStep:
         if self._context.is_changing and mission.state.drives:
-            # Zones are obeyed at once: until they are known it stands.
+            # Edited zones are obeyed at once: until they are in use the robot stands.
             return MissionStep()
         step = mission.tick(senses)
         is_late = self._senses.place.is_late(senses.now, self._longest_silence)
-        # Docking goes by the station's beams.
+        # Docking needs no pose: it goes by the station's beams.
         if is_late and mission.state.phase is not Phase.DOCKING:
             return replace(step, twist=STANDSTILL)
         return step
 
     def _finish_map(self, ended: Ended, *, is_waited_for: bool) -> None:
-        """Tell the map's maker to finish it when all was seen."""
+        """Ask the maker of the map to finish it once everything was explored."""
         is_explored = ended.exploration is not None and ended.exploration.is_completed
         since = time.monotonic() - self._finished
         if is_explored or (is_waited_for and since > self._nodes.periods.finish):

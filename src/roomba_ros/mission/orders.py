@@ -81,13 +81,13 @@ class MissionOrders:
         rospy.Service("change_rooms", ChangeRooms, self._on_rooms)
 
     def ask(self, asked: Order) -> None:
-        """Take what the next :meth:`obey` is to do."""
+        """Queue an order for the next :meth:`obey`."""
         self._asked.append(asked)
 
     def hold(self, reason: str) -> None:
         """Take an emergency stop for a reason; an empty reason releases it."""
         if reason:
-            # A release leaves this to the tick that takes it, perhaps at this moment.
+            # Kept for the next tick even if a release comes before it.
             self._engaged = reason
         self._emergency = reason
 
@@ -97,7 +97,7 @@ class MissionOrders:
         return None if self._under_way.goal is None else self._under_way.goal.identity
 
     def adopt(self, goal: Goal | None) -> None:
-        """Serve the goal of an errand that was taken up: its client waits for the end of it."""
+        """Resume an errand's goal from before a restart: its client waits for the end."""
         if goal is None or self._serves:
             return
         identity = GoalIdentity(*goal)
@@ -114,15 +114,16 @@ class MissionOrders:
             server.start()
 
     def refuse(self, reason: str) -> None:
-        """Refuse what was ordered: there is no mission yet."""
+        """Refuse all queued orders: there is no mission yet."""
         while self._asked:
             self._asked.popleft().refuse(reason)
 
     def obey(self, mission: Mission, senses: Senses, *, begins: bool = True) -> None:
-        """Let the mission do what was ordered since the last call; unless it ``begins`` goals wait.
+        """Let the mission obey the queued orders; goals stay queued unless it ``begins`` errands.
 
-        So a clean after an edit of zones finds these in use, and no order waits for that. A goal
-        that waits ends when the robot is told to stop or to pause: it is not to set off after that.
+        So a clean that follows an edit of zones begins with the new zones, and no other order
+        waits. A queued goal ends when the robot is told to stop or pause: it must not set off after
+        that.
         """
         self._obey_emergency_stop(mission, senses)
         waiting = self._under_way.waiting = []
@@ -143,7 +144,7 @@ class MissionOrders:
         return self._under_way.follow(mission, senses)
 
     def tell(self, state: VacuumState) -> None:
-        """Tell the progress to the client of the present errand."""
+        """Send the progress to the client of the errand under way."""
         if self._under_way.goal is not None:
             self._under_way.goal.tell(state)
 
@@ -152,7 +153,7 @@ class MissionOrders:
         self._under_way.give_up(reason)
 
     def _obey_emergency_stop(self, mission: Mission, senses: Senses) -> None:
-        """Hold the mission, or release it; one that was held between two ticks was held, too."""
+        """Hold the mission or release it; a stop counts that came and went between two ticks."""
         engaged, self._engaged = self._engaged, ""
         reason = self._emergency or engaged
         if reason and mission.state.phase is not Phase.EMERGENCY:

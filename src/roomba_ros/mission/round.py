@@ -19,7 +19,7 @@ from roomba_ros.mission.topics import MissionTopics
 
 
 class MissionRound:
-    """Ticks a mission between its orders and what is told of it."""
+    """One tick of a mission: its orders before it, and its messages after it."""
 
     def __init__(
         self,
@@ -36,11 +36,12 @@ class MissionRound:
     ) -> tuple[MissionStep, Ended]:
         """Obey, answer, act and tell; return what the mission wants, and what ended.
 
-        Unless it ``begins`` new errands wait.
+        New errands wait unless it ``begins`` them.
         """
         self._orders.obey(mission, senses, begins=begins)
         self._give_way(mission, senses)
-        # Before the answers, and before the step: that may take long to plan.
+        # Before the answers, whose callers find the new state; and before the step, which may plan
+        # long.
         self._tell(now, mission, senses)
         self._orders.answer()
         step = self._step(mission, senses)

@@ -37,7 +37,7 @@ from roomba_ros.runtime.subscriptions import subscribe
 STARTING: Final = "starting"
 """The phase that is told until there is a mission."""
 _DRAWN = 0.003
-"""m; a path that is shown is as near to that which is driven."""
+"""m; the published path is as near to the driven one, with fewer points."""
 
 
 class MissionTopics:
@@ -112,7 +112,7 @@ class MissionTopics:
         return state
 
     def _on_trouble(self, trouble: str) -> None:
-        """Tell at once: a simulated clock stands while a node is stopped, and no tick comes."""
+        """Publish at once: a simulated clock stands while a node is stopped, so no tick comes."""
         self._trouble = trouble
         newest = self._newest
         if newest is not None:
@@ -160,9 +160,9 @@ class MissionTopics:
 
 
 def with_trouble(trouble: str, own: Reason) -> Reason:
-    """Return what is told with what is wrong with the robot's processes, empty for nothing.
+    """Return the reason with the trouble of the robot's processes, if there is any, before it.
 
-    That comes first, and without a word of the mission: it may be the reason of all else.
+    A trouble has no hindrance, and comes first: it may be the cause of all else.
     """
     return Reason("; ".join(filter(None, (trouble, own.text)))) if trouble else own
 
@@ -184,7 +184,7 @@ def state_of(now: float, mission: Mission, senses: Senses) -> VacuumState:
     if senses.knowledge.is_usable:
         state.room = mission.context.room_at(senses.pose.x, senses.pose.y)
     if mission.cleaning is not None:
-        # Counted once: it is a look at every cell of the floor.
+        # Stored once: each call looks at every cell of the floor.
         state.covered = mission.cleaning.ledger.clean_area
         state.wanted = mission.cleaning.ledger.coverage.wanted_area
         state.fraction = share_of(state.covered, state.wanted)

@@ -38,7 +38,7 @@ _SAME: Final = Pose()
 class ZoneEdits:
     """Keeps the zones of the newest map; edits are saved at once.
 
-    Those of a map that is being made count in this run of the robot, and go on in the whole map.
+    Zones of a map that is being made count only in this run, and move to the finished map.
     Publishes: ``zones`` (ZoneArray, latched), ``zones/markers`` (MarkerArray, latched, for RViz).
     Services: ``set_zone`` (SetZone), ``remove_zone`` (RemoveZone).
     """
@@ -48,12 +48,13 @@ class ZoneEdits:
         self._folder, self._lock, self._on_edit = folder, lock, on_edit
         self._digest = self._growing = ""
         self.zones: Zones | None = None
-        """None before a map, and when they cannot be read: then nothing is cleaned."""
+        """None before there is a map, and when the zones cannot be read: then nothing is
+        cleaned."""
         self.unreadable = ""
         """Why zones cannot be read, and what to do."""
 
     def start(self) -> None:
-        """Connect what tells; nothing can be edited yet."""
+        """Advertise the topics; nothing can be edited yet."""
         robot, run = robot_name(), robot_run()
         self._growing = f"{GROWING}-{robot}-{run}"
         self._forget_other_runs(robot, run)
@@ -68,8 +69,8 @@ class ZoneEdits:
     def follow_map(self, digest: str, old_in_new: Pose = _SAME) -> None:
         """Go on with the zones of another map; hold the lock.
 
-        More of a map that is being made has the same zones. When that is whole, its frame lay at
-        ``old_in_new`` in the new one.
+        A map that grows keeps its zones. When it is finished, its old frame lies at ``old_in_new``
+        in the frame of the finished map.
         """
         before, self._digest = self._digest, digest
         if digest == before == GROWING:
@@ -82,9 +83,9 @@ class ZoneEdits:
         self._tell()
 
     def look_again(self) -> bool:
-        """Return whether other zones are kept by now, and go on with them; hold the lock.
+        """Read the zones again; return whether they changed; hold the lock.
 
-        A map that is told again may have taken some over.
+        Zones may have been saved for a map before it is published once more.
         """
         kept = self._kept(self._digest)
         if kept == self.zones:
@@ -94,7 +95,7 @@ class ZoneEdits:
         return True
 
     def _carry_over(self, old_in_new: Pose) -> None:
-        """Let zones of the map that was being made go on in the whole one, if it has none."""
+        """Move the zones of the map that was being made to the finished one, if it has none."""
         growing = self._kept(GROWING)
         if growing is None or self.zones is None:
             return
@@ -128,7 +129,7 @@ class ZoneEdits:
             rospy.logerr("zones of a map that was being made are not forgotten: %s", error)
 
     def _forget_other_runs(self, robot: str, run: str) -> None:
-        """Remove what earlier runs of the robot left of maps that never became whole."""
+        """Remove the zones of unfinished maps of the robot's earlier runs."""
         for path in self._folder.glob(f"{GROWING}-{robot}-*"):
             if not run or not path.name.startswith(self._growing):
                 with contextlib.suppress(OSError):

@@ -1,4 +1,4 @@
-"""A screen that no person sees: Xvfb, whose picture is a file."""
+"""A screen without a monitor: Xvfb, which writes its picture into a file."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from roomba.errors import RoombaError
 _START: Final = 20.0
 """s of wall time in which it is there."""
 _HEADER: Final = struct.Struct(">25I")
-"""Of a window dump of X: sizes of header and of the picture, and how a pixel is stored."""
+"""The header of X's window dump: sizes of header and picture, and how a pixel is stored."""
 _COLOUR: Final = 12
-"""Bytes of an entry of its table of colours."""
+"""Bytes of an entry of the dump's table of colours."""
 
 
 class VirtualScreen:
-    """A display of X for programs with windows; a context that ends it."""
+    """An X display for programs with windows, as a context that ends it."""
 
     def __init__(self, width: int, height: int) -> None:
         """Start it, ``width`` by ``height`` pixels; raises RoombaError."""

@@ -47,9 +47,9 @@ def class_of(kind: str) -> type:
 
 
 def require_generated(kind: str, folder: str) -> None:
-    """Raise MessageError unless a type has code that was generated, in ``msg`` or ``srv``.
+    """Raise MessageError unless a type has generated code in the package's ``msg`` or ``srv``.
 
-    What is looked for by its name is imported, and any package runs code then.
+    A type is imported by its name, and importing an arbitrary package would run its code.
     """
     package, _, name = kind.partition("/")
     is_name = _TYPE.fullmatch(kind) is not None

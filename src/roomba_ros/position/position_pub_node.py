@@ -33,7 +33,7 @@ from roomba_ros.runtime.parameters import (
 from roomba_ros.runtime.subscriptions import subscribe
 
 _AHEAD = 10.0
-"""m; to a point so far in the direction of a heading it turns on the spot."""
+"""m; how far ahead the point lies towards which the robot turns for a wanted heading."""
 _STOP_REPEATS = 3
 """Ticks for which a stop is repeated before the drive is left to others."""
 
@@ -41,9 +41,9 @@ _STOP_REPEATS = 3
 class PositionPubNode:
     """Knows the robot's pose and drives the robot to its setpoint, however far that is.
 
-    When it does not know the pose any more it forgets the setpoint. It looks around as long as a
-    walk or a mission goes on, or until its place is found if a service asked for that. The map's
-    rooms are here as well: a process of their own would need 80 MB more (ADR 7).
+    When the pose is unknown, the node forgets the setpoint. The robot then looks around while a
+    walk or a mission is under way, or, if a service asked to find the place, until that is found.
+    The node also finds the map's rooms: a process of their own would need 80 MB more (ADR 7).
 
     Publishes: ``cmd_vel`` (Twist, 20 Hz while it drives), and what :class:`LocalizationTopics` and
     :class:`RoomTopics` tell.
@@ -99,7 +99,7 @@ class PositionPubNode:
         self._maps.tick(now, estimate)
         self._drop_vanished_wish(now)
         if self._held.reason:
-            # Releasing the stop is no order to drive on.
+            # To release the stop is no order to drive on.
             self._forget_wish()
             twist = None
         elif not estimate.knowledge.is_usable:
@@ -120,7 +120,7 @@ class PositionPubNode:
     def _drop_vanished_wish(self, now: float) -> None:
         with self._lock:
             has_vanished = self._setpoint.drop_if_lost(now, self._wishes.get_num_connections())
-        # A walk that has arrived sends no more.
+        # A walk that has arrived sends no more setpoints.
         if has_vanished and not self._loop.arrived:
             rospy.logwarn(
                 "the sender of change_position vanished or froze while it drove; stopping"
@@ -128,7 +128,7 @@ class PositionPubNode:
             self._stops_left = _STOP_REPEATS
 
     def _is_fresh(self, now: float, heard: float) -> bool:
-        """Whether the newest message of a stream, heard at a time, s, still counts."""
+        """Whether the newest message of a stream, heard at ``heard``, s, is new enough to count."""
         return is_recent(now, heard, self._config.control.stream_timeout)
 
     def _forget_wish(self) -> None:
@@ -148,13 +148,13 @@ class PositionPubNode:
         if not self._loop.arrived:
             return None if self._gives_up(now, estimate.pose.distance_to(*target)) else twist
         if self._stops_left == 0:
-            # Other programs may steer now; nothing drives it back here.
+            # Other programs may steer now: this node does not drive the robot back to the setpoint.
             with self._lock:
                 self._setpoint.fulfilled(now)
         return None
 
     def _gives_up(self, now: float, distance: float) -> bool:
-        """Whether the setpoint, so many m off, is out of reach; it is forgotten then."""
+        """Whether to give up the setpoint, so many m off, as out of reach; it is forgotten then."""
         with self._lock:
             is_given_up = self._setpoint.drop_if_out_of_reach(now, distance)
         if is_given_up:
@@ -167,7 +167,7 @@ class PositionPubNode:
         return is_given_up
 
     def _twist_to_heading(self, pose: Pose, heading: float) -> Twist:
-        """Return what is wanted to turn on the spot."""
+        """Return the twist that turns the robot on the spot to a heading, rad."""
         x, y = pose.x + _AHEAD * math.cos(heading), pose.y + _AHEAD * math.sin(heading)
         return Twist(0.0, self._loop.tick(pose, (x, y), 0.0).angular)
 
@@ -179,7 +179,7 @@ class PositionPubNode:
         return self._place.look_around(now) if is_allowed else None
 
     def _command_drive(self, twist: Twist | None) -> None:
-        """Ask for a twist; after the last one ask to stop a few times, and leave the drive then."""
+        """Publish a twist; after the last one, stop a few times and then leave the drive."""
         if twist is not None:
             self._stops_left = _STOP_REPEATS
             self._command.publish(twist_message(twist))

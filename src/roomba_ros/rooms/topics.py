@@ -54,7 +54,7 @@ class RoomTopics:
         self._rooms: Rooms | None = None
         self._before: Rooms | None = None
         self.is_growing: Callable[[], bool] = lambda: False
-        """Tells whether the map is being made; the maker of maps puts its answer here."""
+        """Returns whether the map is being made; the maker of maps sets this function."""
 
     def start(self) -> None:
         """Connect."""
@@ -77,10 +77,10 @@ class RoomTopics:
 
     def _on_map(self, occupancy: OccupancyMap | None) -> None:
         if occupancy is None:
-            # Its rooms are found when it is whole.
+            # Rooms are found when the map is finished.
             self._publisher.publish(RoomArray())
             return
-        # Cut here and not by a tick: nothing waits for rooms, and the robot's place does not.
+        # Found here and not in a tick: nothing waits for rooms, but the robot's pose must not wait.
         with self._lock:
             self._map, self._rooms, self._before = occupancy, self._kept(occupancy), None
             if self._rooms is None:
@@ -94,7 +94,7 @@ class RoomTopics:
             return self._rooms
 
     def use(self, rooms: Rooms) -> None:
-        """Go on with these rooms of the map that there is, and save them; raises OSError."""
+        """Use these rooms for the present map, and save them; raises OSError."""
         with self._lock:
             if self._map is None or rooms.frame != self._map.frame:
                 return

@@ -1,4 +1,4 @@
-"""What the master and the nodes tell of the graph; all of it may take a while."""
+"""The master's and the nodes' answers about the graph; each call may take a while."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _LONGEST_HEADER: Final = 4096
 
 
 def master() -> Any:
-    """Return the master as this node asks it; raises OSError when it does not answer in time."""
+    """Return a proxy of the master; its calls raise OSError if no answer comes in time."""
     return answering_master(rospy.get_name())
 
 

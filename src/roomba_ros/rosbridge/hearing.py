@@ -19,7 +19,7 @@ _MOST_UNREAD: Final = 50
 
 
 class Heard:
-    """A message that came; the first program that gets it makes it JSON, for all of them."""
+    """A message; it becomes JSON once, for all programs that get it."""
 
     def __init__(self, message: Any) -> None:
         """Take a message."""
@@ -38,8 +38,8 @@ class Heard:
 class Topic:
     """One topic that programs hear. All but :meth:`_hear` runs in the thread of the server.
 
-    rospy gives a latched message to each of its subscribers once. Here is one for all programs, so
-    it is kept for those that come later.
+    rospy delivers a latched message to each subscription once. All programs share one subscription
+    here, so the message is kept for programs that come later.
     """
 
     def __init__(self, name: str, kind: type, loop: asyncio.AbstractEventLoop) -> None:
@@ -53,7 +53,7 @@ class Topic:
         self._subscriber = rospy.Subscriber(name, kind, self._hear, queue_size=_MOST_UNREAD)
 
     def add(self, listener: Callable[[Heard], None]) -> None:
-        """Give a listener what comes, and at once what is latched."""
+        """Give a listener the messages from now on, and the latched ones at once."""
         self.listeners.add(listener)
         with self._lock:
             kept = list(self._latched.values())
@@ -109,7 +109,7 @@ class Topics:
         topic.add(listener)
 
     def leave(self, name: str, listener: Callable[[Heard], None]) -> None:
-        """Give it nothing more; a topic without listeners is not heard any more."""
+        """Give a listener nothing more; a topic without listeners is unsubscribed."""
         topic = self._topics.get(name)
         if topic is None:
             return

@@ -1,4 +1,4 @@
-"""What waits for one program: the newest of each topic, and never a queue without end."""
+"""The messages that wait for one program: of each topic the newest, in bounded queues."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roomba_ros.rosbridge.limits import MOST_WAITING, MOST_WAITING_BYTES
 class HearingWish:
     """How a program wants to hear a topic: ``throttle`` s between two messages at least.
 
-    ``length`` is how many may wait, 0 for what is usual: one if it is throttled, else twenty.
+    ``length`` is how many messages may wait; 0 means the default: one if throttled, else twenty.
     """
 
     throttle: float
@@ -30,7 +30,7 @@ class HearingWish:
 
 
 class Listening:
-    """One topic of one program; several of its subscriptions get each message once."""
+    """One topic of one program, which gets each message once, also with several subscriptions."""
 
     def __init__(self, name: str, wake: asyncio.Event) -> None:
         """Take the name by which the program knows the topic."""

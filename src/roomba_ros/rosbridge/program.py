@@ -47,14 +47,14 @@ _FAULTS: Final = (
     xmlrpc.client.Error,
     ExpatError,
 )
-"""What operations may fail by; a program hears of it, and goes on."""
+"""Errors by which an operation may fail; the program is told, and the connection goes on."""
 _NEEDS_TOKEN: Final = (
     "expected the token of the printed address: ws://…/rosbridge?token=TOKEN, or the operation auth"
 )
 
 
 class SenselessError(MessageError):
-    """What was said means nothing at all."""
+    """What the program sent is no operation at all."""
 
 
 class Program:
@@ -84,13 +84,13 @@ class Program:
         }
 
     async def tell(self) -> None:
-        """Send what it hears, each topic's newest when the last was taken, for ever."""
+        """Send for ever what the program subscribed to; a slow one gets only the newest."""
         while True:
             for text in await self._outbox.next():
                 await self._socket.send_text(text)
 
     async def listen(self) -> None:
-        """Do what it says, until too much of that means nothing."""
+        """Obey the program's operations, until too many messages in a row are none."""
         garbage = 0
         while garbage < MOST_GARBAGE:
             said = await self._socket.receive()
@@ -103,12 +103,12 @@ class Program:
             except SenselessError as error:
                 garbage += 1
                 await self._tell_status("error", str(error))
-            # Messages that are there already come without waiting: others have their turn, too.
+            # Received messages come here without waiting: give the other programs their turn.
             await asyncio.sleep(0)
         await self._socket.close(SENSELESS, "expected operations of rosbridge as JSON")
 
     def close(self) -> None:
-        """Undo all that it asked for."""
+        """Undo the program's subscriptions, advertisements and calls."""
         for task in self._calls:
             task.cancel()
         for name, listening in self._outbox.topics.items():
@@ -174,7 +174,7 @@ class Program:
         self._outbox.topics[name], self._names[name] = listening, resolved
 
     async def _kind_of(self, name: str, operation: dict[str, Any]) -> str:
-        """Return the type of a topic: of the graph, or else as the program says."""
+        """Return the type of a topic, by the graph, else by the program's operation."""
         said = operation.get("type") or ""
         if not isinstance(said, str):
             raise MessageError("type: expected a text")
@@ -225,7 +225,7 @@ class Program:
             self._shared.publishers.unadvertise(name)
 
     async def _call_service(self, operation: dict[str, Any]) -> None:
-        """Begin a call; others go on meanwhile."""
+        """Begin a call of a service; other operations go on meanwhile."""
         name = _text(operation, "service")
         if len(self._calls) >= MOST_CALLS:
             await self._answer(operation, None, f"expected at most {MOST_CALLS} calls at a time")

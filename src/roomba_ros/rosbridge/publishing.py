@@ -36,7 +36,7 @@ class _Advertised:
     kind: type
     arrivals: _Arrivals
     expected: int
-    """Subscribers that there were when it was advertised: the first message waits for them."""
+    """Subscribers at the time of advertising; the first message waits until they are connected."""
     programs: int = 0
     is_heard: bool = False
 
@@ -75,7 +75,7 @@ class Publishers:
         advertised.programs -= 1
         if advertised.programs == 0:
             del self._advertised[name]
-            # It waits for its threads.
+            # In a thread: to unregister waits for the publisher's own threads.
             threading.Thread(target=advertised.publisher.unregister, daemon=True).start()
 
     async def _new(self, name: str, kind: str, is_latched: bool) -> _Advertised:
@@ -92,7 +92,7 @@ class Publishers:
         return _Advertised(publisher, found, arrivals, expected)
 
     async def _until_heard(self, advertised: _Advertised) -> None:
-        """Wait until those are connected who subscribed before; ROS drops what comes earlier."""
+        """Wait until earlier subscribers are connected: ROS drops what is published before."""
         deadline = asyncio.get_running_loop().time() + HEARD_WITHIN
         while advertised.publisher.get_num_connections() < advertised.expected:
             advertised.arrivals.came.clear()

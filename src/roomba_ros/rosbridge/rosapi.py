@@ -94,7 +94,7 @@ def _message_details(kind: str) -> Plain:
 
 
 def _action_servers() -> Plain:
-    """Return names of actions: each has a topic of this type for the states of its goals."""
+    """Return the names of actions: those with a status topic."""
     of_goals = (
         name
         for name, kind in topic_types().items()

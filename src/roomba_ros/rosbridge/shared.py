@@ -16,17 +16,17 @@ Value = TypeVar("Value")
 
 
 class Shared:
-    """Made in the thread of the server."""
+    """The shared parts; they are made in the server's thread."""
 
     def __init__(self) -> None:
         """Begin with nothing."""
-        # Of its own: calls that hang keep no thread from the page.
+        # The bridge's own threads: calls that hang take no thread away from the page.
         self._waiting = ThreadPoolExecutor(MOST_CALLS, thread_name_prefix="rosbridge")
         self.topics = Topics()
         self.publishers = Publishers(self._waiting)
 
     async def wait(self, ask: Callable[..., Value], *arguments: object) -> Value:
-        """Return an answer that may take a while; RobotUnavailableError without a master."""
+        """Return the answer of a call that may block; RobotUnavailableError without a master."""
         loop = asyncio.get_running_loop()
         try:
             return await loop.run_in_executor(self._waiting, ask, *arguments)

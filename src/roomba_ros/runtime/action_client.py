@@ -20,10 +20,11 @@ from roomba_ros.runtime.calls import SERVER_DEADLINE
 class GoalClient(actionlib.ActionClient):
     """The library's client of many goals, each of which ends once.
 
-    The library's own takes a goal for lost that is cancelled before its server heard of it: states
-    that were told meanwhile do not name it. Then the true result comes, and is an error. It begins
-    a goal anew that is cancelled after its end. And what is sent while a server is started anew
-    reaches none and never ends; here the new server gets it, for some seconds.
+    The library's client has three faults that this one mends. It takes a goal for lost that is
+    cancelled before the server heard of it, since the server's status messages do not name the goal
+    yet; the true result is an error then. It revives a goal that is cancelled after its end. A goal
+    that is sent while the server restarts reaches no server and never ends; this client sends it
+    again to the new server, for some seconds.
     """
 
     def __init__(self, name: str, action: type) -> None:
@@ -41,13 +42,13 @@ class GoalClient(actionlib.ActionClient):
 class ActionClient(actionlib.SimpleActionClient):
     """The library's client of one goal at a time, with one lock around sending and its callbacks.
 
-    Without it an answer that comes while a goal is being sent is taken for one to an older goal
-    and dropped, and the goal never ends (actionlib issue 206).
+    Without the lock, an answer that comes while a goal is being sent is taken for an answer to an
+    older goal and dropped; then the goal never ends (actionlib issue 206).
     """
 
     def __init__(self, name: str, action: type) -> None:
         """Connect to the action of that name and type."""
-        # All that the library's own does here, but for the client below.
+        # As in the library's constructor, but with the client above in place of its own.
         self._sending = threading.RLock()
         self.action_client = GoalClient(name, action)
         self.simple_state = SimpleGoalState.DONE
@@ -61,7 +62,7 @@ class ActionClient(actionlib.SimpleActionClient):
 
     def _handle_transition(self, handle: Any) -> None:
         with self._sending:
-            # News of a goal before is late and no error.
+            # News of an earlier goal is late, and no error.
             if handle == self.gh:
                 super()._handle_transition(handle)
 
@@ -77,7 +78,7 @@ def is_heard(handle: Any) -> bool:
 
 
 class GoalProgress(CommStateMachine):
-    """What a client knows of one goal: how far it is, by what its server told."""
+    """What a client knows of one goal: its state, by the messages of its server."""
 
     def __init__(self, *arguments: Any) -> None:
         """Take what the library's own takes: the goal, callbacks, and how to send and cancel."""
@@ -90,22 +91,22 @@ class GoalProgress(CommStateMachine):
         with self.mutex:
             named = {each.goal_id.id for each in statuses.status_list}
             self.is_heard = self.is_heard or self.action_goal.goal_id.id in named
-            # States from before the server had the goal say nothing about it.
+            # A status message from before the server had the goal says nothing about the goal.
             if self.is_heard:
                 super().update_status(statuses)
-            # It has ended, and its server with it before the result was told.
+            # The goal has ended, and its server ended before it sent the result.
             is_forgotten = self.action_goal.goal_id.id not in named
             if is_forgotten and self.state == CommState.WAITING_FOR_RESULT:
                 self._mark_as_lost()
 
     def update_result(self, result: Any) -> None:
-        """Hear the result of a goal, perhaps of another one."""
+        """Take a result, perhaps that of another goal."""
         with self.mutex:
             if self.state != CommState.DONE:
                 super().update_result(result)
 
     def send_again(self) -> None:
-        """Send the goal to a new server if none has heard it; one that is old is lost."""
+        """Send the goal to a restarted server, if none has heard it; an old goal is lost."""
         with self.mutex:
             if self.is_heard or self.state != CommState.WAITING_FOR_GOAL_ACK:
                 return
@@ -115,13 +116,13 @@ class GoalProgress(CommStateMachine):
                 self._mark_as_lost()
 
     def cancel_again(self) -> None:
-        """Send the cancel to a new server if none has answered it."""
+        """Send the cancel to a restarted server, if none has answered it."""
         with self.mutex:
             if self.state == CommState.WAITING_FOR_CANCEL_ACK:
                 self.send_cancel_fn(GoalID(id=self.action_goal.goal_id.id))
 
     def transition_to(self, state: int) -> None:
-        """Change the state; what has ended stays so, also when it is cancelled."""
+        """Change the state; a goal that has ended stays so, even when it is cancelled."""
         if self.state != CommState.DONE:
             super().transition_to(state)
 
@@ -142,22 +143,22 @@ class _Goals(GoalManager):
         return ClientGoalHandle(progress)
 
     def send_again(self) -> None:
-        """Send a new server the goals that none has heard."""
+        """Send a restarted server all goals that none has heard."""
         for progress in self._get_live_statuses():
             progress.send_again()
 
     def cancel_again(self) -> None:
-        """Send a new server the cancels that none has answered."""
+        """Send a restarted server all cancels that none has answered."""
         for progress in self._get_live_statuses():
             progress.cancel_again()
 
 
 class _OnServer(rospy.SubscribeListener):
-    """Calls a function when a server begins to listen to a topic."""
+    """Calls a function when a server subscribes to a topic."""
 
     def __init__(self, call: Callable[[], None]) -> None:
         self._call = call
 
     def peer_subscribe(self, *_: Any) -> None:
-        """Call it: one node more listens."""
+        """Call the function: one more node subscribes."""
         self._call()

@@ -1,4 +1,4 @@
-"""One goal of an action, as its server keeps it: what all kinds of goals have in common."""
+"""One goal of an action, as its server keeps it: the part that all kinds of goals share."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from roomba_ros.runtime.subscriptions import refuse
 _STATUS_PERIOD: Final = 0.2
 """s of wall time between two messages of the states of goals, as the library has it."""
 MOST_GOALS: Final = 200
-"""Goals, and cancels of goals to come, that a server tells of at the same time. Each message of
-states has all of them, until 5 s after their end; more that come are rejected."""
+"""Goals, and cancels of goals to come, that a server keeps at the same time. Each status message
+lists all of them, until 5 s after their end; more goals than that are rejected."""
 
 
 class GoalIdentity(NamedTuple):
-    """What tells a goal from all others: its action, its id, and its time."""
+    """What identifies a goal: its action, its id, and its time."""
 
     action: str
     identity: str
@@ -37,9 +37,9 @@ class ActionGoal(ABC):
     """One goal, from its coming to its end."""
 
     name: str
-    """Of its action."""
+    """The action's name."""
     action: type
-    """Its type."""
+    """The action's type."""
 
     def __init__(self, handle: actionlib.ServerGoalHandle) -> None:
         """Take the action library's handle of it."""
@@ -47,7 +47,7 @@ class ActionGoal(ABC):
 
     @property
     def identity(self) -> GoalIdentity:
-        """What tells it from all other goals."""
+        """What identifies the goal."""
         told = self._handle.get_goal_id()
         return GoalIdentity(self.name, str(told.id), told.stamp.secs, told.stamp.nsecs)
 
@@ -66,15 +66,17 @@ class ActionGoal(ABC):
 
 
 class SteadyActionServer(actionlib.ActionServer):
-    """The library's server, mended in three places.
+    """The library's action server, mended in three places.
 
-    It tells the states of its goals also when the clock is set: the library has a timer for that by
-    the ROS clock, which ends when that clock is set back, and clients take the server for gone.
+    It publishes the status of its goals also when the clock is set. The library has a timer of the
+    ROS clock for that, which ends when the clock is set back; clients then take the server for
+    gone.
 
-    A cancel that comes before its goal, or long after its end, may come again: the library logs
-    errors then, as it looks for the goal of each cancel that it keeps.
+    A cancel may be repeated that comes before its goal, or long after the goal's end. The library
+    logs errors then, as it looks for the goal of each cancel that it keeps.
 
-    A flood of goals or cancels would be told of in ever longer messages of states.
+    The number of goals and cancels is limited: a flood of them would make status messages ever
+    longer.
     """
 
     def initialize(self) -> None:
@@ -89,11 +91,11 @@ class SteadyActionServer(actionlib.ActionServer):
             try:
                 self.publish_status_async(None)
             except rospy.ROSException as error:
-                # The node ends, and its connections were closed first.
+                # The node is ending, and its connections were closed first.
                 rospy.logdebug("states of goals are not told: %s", error)
 
     def internal_cancel_callback(self, goal_id: GoalID) -> None:
-        """Cancel goals, of which one may not have come yet."""
+        """Cancel goals; a cancel may come before its goal."""
         with self.lock:
             if goal_id.id and not self._has_room_for(goal_id):
                 self._refuse("cancel")
@@ -113,11 +115,11 @@ class SteadyActionServer(actionlib.ActionServer):
             if goal.goal_id.id:
                 text = f"expected at most {MOST_GOALS} goals at the same time"
                 status = GoalStatus(goal.goal_id, GoalStatus.REJECTED, text)
-                # States of goals do not have it: they are to stay short.
+                # Status messages do not list this goal: they are to stay short.
                 self.result_pub.publish(self.ActionResult(status=status))
 
     def _has_room_for(self, goal_id: GoalID) -> bool:
-        """Whether it tells of this goal already, or of so few that it may tell of one more."""
+        """Whether the server keeps this goal already, or has room for one more."""
         told = self.status_list
         return len(told) < MOST_GOALS or any(each.status.goal_id.id == goal_id.id for each in told)
 

@@ -1,6 +1,7 @@
-"""Work that must not hold up ticks: one thread, and of each subject only the newest work.
+"""Work that must not hold up ticks: one thread, which does only the newest work of each subject.
 
-What the disk refuses is told once and tried again, until it is done or newer work takes its place.
+When the disk refuses work, that is logged once and tried again until it succeeds or newer work
+replaces it.
 """
 
 from __future__ import annotations
@@ -18,11 +19,11 @@ from roomba.errors import RoombaError
 RETRY: Final = 2.0
 """s of wall time until work that the disk refused is tried again."""
 _TELL_AGAIN: Final = 60.0
-"""s of wall time between two lines of the log about work that goes on being refused."""
+"""s of wall time between two lines of the log about work that is refused again and again."""
 
 
 class _NamedWork(NamedTuple):
-    """What is to be done; ``name`` says what fails then."""
+    """Work to do; ``name`` is what to log when it fails."""
 
     name: str
     do: Callable[[], object]
@@ -38,12 +39,12 @@ class _Failed(NamedTuple):
 
 
 class Background:
-    """Does what it is given, one after the other; newer work of a subject replaces what waits."""
+    """Does work one after the other; newer work of a subject replaces the work that waits."""
 
     def __init__(self) -> None:
         """Begin with nothing to do."""
         self._waiting: dict[str, _NamedWork] = {}
-        """By subject, as what failed."""
+        """Work by subject, as is what failed."""
         self._failed: dict[str, _Failed] = {}
         self._news = threading.Condition()
         self._is_at_work = False
@@ -53,9 +54,9 @@ class Background:
         threading.Thread(target=self._run, name="background", daemon=True).start()
 
     def do(self, name: str, work: Callable[[], object], subject: str = "") -> None:
-        """Do this soon, in place of what waits, or was refused, of its ``subject``.
+        """Do work soon; it replaces work of its ``subject`` that waits or was refused.
 
-        ``name`` says what fails then, and is the subject where none is told.
+        ``name`` is logged when the work fails, and is the subject if none is given.
         """
         subject = subject or name
         with self._news:
@@ -78,7 +79,7 @@ class Background:
             )
 
     def work_off(self) -> None:
-        """Do all that waits, in the caller's thread: for a caller that starts no other."""
+        """Do all waiting work in the caller's thread, where :meth:`start` was never called."""
         while self._waiting:
             self._do_next()
 
@@ -96,7 +97,7 @@ class Background:
         return max(0.0, min(failed.due for failed in self._failed.values()) - time.monotonic())
 
     def _take_due(self) -> None:
-        """Let work that was refused wait to be done again, unless newer work takes its place."""
+        """Queue refused work again when it is due, unless newer work of its subject waits."""
         for subject, failed in self._failed.items():
             if time.monotonic() >= failed.due:
                 self._waiting.setdefault(subject, failed.work)
@@ -115,7 +116,7 @@ class Background:
             self._given_up(subject)
             rospy.logwarn("%s: %s", work.name, error)
         except Exception:
-            # A fault of the program, or no memory: the next work is done all the same.
+            # A bug, or no memory: the other work is done all the same.
             self._given_up(subject)
             rospy.logerr("%s: %s", work.name, traceback.format_exc())
         finally:
@@ -124,7 +125,7 @@ class Background:
                 self._news.notify_all()
 
     def _given_up(self, subject: str) -> None:
-        """Try no work of a subject again: neither this nor what was refused before it."""
+        """Drop a subject's refused work: it is not tried again."""
         with self._news:
             self._failed.pop(subject, None)
 

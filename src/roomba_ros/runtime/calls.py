@@ -49,7 +49,7 @@ def call_service(service: rospy.ServiceProxy, *arguments: object) -> Any:
 def _wait_for(name: str) -> None:
     """Wait until a service is there; raises RobotUnavailableError.
 
-    One that is told to end waits no longer: what offers the service may have ended just before.
+    A process that is told to end stops waiting: the node of the service may have ended just before.
     """
     deadline = time.monotonic() + SERVER_DEADLINE
     while True:

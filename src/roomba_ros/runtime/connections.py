@@ -1,7 +1,7 @@
-"""Connections to a node, guarded: one that says nothing, or nothing sensible, holds up no other.
+"""Guards a node's connections: a silent or senseless one holds up no other.
 
-rospy shakes hands on the thread that accepts connections, without a time limit, and believes any
-length that it is told. There is no hook for that, so three of its functions are replaced.
+rospy shakes hands on the thread that accepts connections, without a deadline, and believes any
+length that it is told. It has no hook for that, so three of its functions are replaced.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ from roomba_ros.runtime.subscriptions import refuse
 HANDSHAKE: Final = 5.0
 """s of wall time until a connection must have said what it wants."""
 LONGEST_HEADER: Final = 1 << 20
-"""Bytes of that; the definition of a message is in it."""
+"""Bytes of the header of a connection, which includes the definition of its messages."""
 LARGEST_MESSAGE: Final = 16 << 20
-"""Bytes of a message or request; a map of 16 million cells is one."""
+"""Bytes of a message or request; a map of 16 million cells has that many."""
 _MOST_HANDSHAKES: Final = 256
-"""At the same time; more are closed at once."""
+"""Handshakes under way at the same time; further connections are closed at once."""
 _BACKLOG: Final = 128
-"""Connections that may wait to be taken."""
+"""Connections that may wait to be accepted."""
 
 _LENGTH: Final = struct.Struct("<I")
 _unguarded_socket: Final = tcpros.TCPServer._create_server_sock
@@ -48,21 +48,21 @@ _unguarded: Final = rospy.msg.deserialize_messages
 _slots = threading.BoundedSemaphore(_MOST_HANDSHAKES)
 _numbers: Final = itertools.count()
 _taken: Final[weakref.WeakKeyDictionary[socket.socket, int]] = weakref.WeakKeyDictionary()
-"""Connections to topics, by their socket, and when each was taken: the first one is 0."""
+"""Connections to topics, by socket, with the order in which they were accepted, from 0."""
 _handing_over: Final = threading.Lock()
-"""Held while a connection becomes that of a topic."""
+"""Held while a connection is handed over to its topic."""
 
 
 class NothingSaidError(ConnectionError):
-    """A connection that was closed by who opened it, and said nothing.
+    """A connection that its opener closed without having sent anything.
 
-    rospy does so with a connection to a topic that it opened twice, as all nodes start at once: no
-    fault that anyone could mend.
+    rospy does so when it has opened two connections to one topic, as happens when all nodes start
+    at once: no user can mend that.
     """
 
 
 class SupersededError(ConnectionError):
-    """A connection to a topic whose subscriber has opened another one since."""
+    """A connection to a topic whose subscriber has opened a newer one."""
 
 
 def guard_connections() -> None:
@@ -75,9 +75,9 @@ def guard_connections() -> None:
 
 
 def _listen(server: Any) -> socket.socket:
-    """Return the socket that a node listens on, with more room for those that wait.
+    """Return the socket that a node listens on, with a longer backlog.
 
-    With rospy's five a connection that comes when they are there waits a second.
+    With rospy's backlog of five, a further connection waits a second.
     """
     listening: socket.socket = _unguarded_socket(server)
     listening.listen(_BACKLOG)
@@ -144,11 +144,11 @@ def _serve_topic(
     address: tuple[str, int],
     header: dict[str, str],
 ) -> str | None:
-    """Make a connection that of its topic; return what is wrong with it.
+    """Hand a connection over to its topic; return what is wrong with it.
 
-    rospy keeps one connection for each subscriber and closes the one that was there before, and a
-    subscriber closes the earlier of two that it opened. Both must keep the same one, or none is
-    left: handshakes end in any order here, but the connection that was taken last is kept.
+    rospy keeps one connection for each subscriber and closes the earlier one, and a subscriber
+    closes the earlier of two that it opened. Both must keep the same one, or none is left.
+    Handshakes end in any order here, so the connection that was accepted last is kept.
 
     Raises SupersededError.
     """
@@ -161,7 +161,7 @@ def _serve_topic(
 
 
 def _has_later(header: dict[str, str], number: int) -> bool:
-    """Whether the same subscriber has a connection to the topic that was taken later."""
+    """Whether the topic has a connection of the same subscriber that was accepted later."""
     topic = rospy.impl.registration.get_topic_manager().get_publisher_impl(header["topic"])
     served = [] if topic is None else topic.connections
     sockets = [one.socket for one in served if one.endpoint_id == header.get("callerid")]
@@ -202,7 +202,7 @@ def _exactly(connection: socket.socket, size: int, deadline: float) -> bytes:
 
 
 def _up_to(connection: socket.socket, size: int, deadline: float) -> bytes:
-    """Read the same, or what there is of it when the connection is closed; raises OSError."""
+    """Read up to so many bytes: fewer only if the connection is closed; raises OSError."""
     read = bytearray()
     while len(read) < size:
         left = deadline - time.monotonic()
@@ -219,9 +219,9 @@ def _up_to(connection: socket.socket, size: int, deadline: float) -> bytes:
 def _deserialize(
     buffer: Any, messages: list[Any], kind: type, *limits: int | None, start: int = 0, **more: Any
 ) -> None:
-    """Make messages of what was received, as rospy does, unless one is too long.
+    """Deserialize received messages as rospy does, but refuse one that is too long.
 
-    A message begins with its length; before the answer of a service stands a byte.
+    A message begins with its length; an answer of a service has one byte before that.
     """
     if buffer.tell() >= start + _LENGTH.size:
         (length,) = _LENGTH.unpack(buffer.getbuffer()[start : start + _LENGTH.size])

@@ -1,4 +1,4 @@
-"""The C library's heap: what is free in it goes back to the system."""
+"""Returns free memory of the C library's heap to the operating system."""
 
 from __future__ import annotations
 

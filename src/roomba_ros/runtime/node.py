@@ -27,7 +27,7 @@ from roomba_ros.runtime.timing.ticker import Ticker
 
 _asked_to_end = threading.Event()
 _has_begun = threading.Event()
-"""Set when the start is over: until then no loop looks whether it is to end."""
+"""Set when the start is over; before that no loop looks whether the node is to end."""
 
 CLOCK_DEADLINE = 10.0
 """s of wall time that a node waits for the first /clock message."""
@@ -72,7 +72,7 @@ def run_node(name: str, make: Callable[[], Node]) -> None:
             node.tick(now)
             progress.tell(now)
         except (rospy.ROSException, ValueError):
-            # Another node may want this one to end: the connections are closed in another thread.
+            # Another node may shut this one down: another thread closes the connections then.
             if not rospy.core.is_shutdown_requested():
                 raise
 
@@ -83,9 +83,9 @@ def run_node(name: str, make: Callable[[], Node]) -> None:
 def settle() -> None:
     """End the start: signs of life are given from now on, and a signal only asks it to end.
 
-    What was made until now is no longer looked through for garbage: hundreds of thousands of
-    objects, of imports and compiled functions. That takes up to 0.1 s, in which nothing ticks, each
-    time when enough new ones were made.
+    Objects made until now are excluded from garbage collection: there are hundreds of thousands, of
+    imports and compiled functions. A collection of all of them takes up to 0.1 s, in which nothing
+    ticks.
     """
     _has_begun.set()
     gc.collect()
@@ -104,16 +104,16 @@ def _stop(node: Node) -> None:
 def register(name: str) -> None:
     """Become the ROS node ``name``; SIGINT and SIGTERM ask it to end, see told_to_end.
 
-    Until :func:`settle` they end it at once, and it leaves with the master what a killed node does:
-    a start may take long and looks at nothing. rospy's own handler works through the shutdown
-    inside the interrupted main thread, and hangs for ever when that thread was just asking the
-    master for something.
+    Until :func:`settle` a signal ends the node at once, without unregistering, as a kill does: a
+    start may take long and never looks whether it is to end. rospy's own handler does the shutdown
+    inside the interrupted main thread, and hangs for ever if that thread was just calling the
+    master.
     """
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _on_ending)
     guard_connections()
     send_at_once()
-    # A log that the disk refuses is no reason for a traceback with each line of it.
+    # When the disk refuses the log, each line of it would otherwise print a traceback.
     logging.raiseExceptions = False
     join_graph(name)
 
@@ -121,8 +121,8 @@ def register(name: str) -> None:
 def _on_ending(*_: object) -> None:
     _asked_to_end.set()
     if not _has_begun.is_set():
-        # What is under way may take the exception for its own. No thread: its start takes a lock
-        # that this one may hold.
+        # The interrupted code may catch the exception. A timer by signal, not a thread: to start a
+        # thread takes a lock that the interrupted code may hold.
         signal.signal(signal.SIGALRM, lambda *_: os._exit(0))
         signal.setitimer(signal.ITIMER_REAL, LEAVING)
         raise SystemExit(0)
@@ -131,7 +131,7 @@ def _on_ending(*_: object) -> None:
 def told_to_end() -> bool:
     """Whether a signal, the master or another node told this one to end.
 
-    Main loops ask again and again: that they do is this process's sign of life.
+    Main loops call it again and again; each call is this process's sign of life.
     """
     HEART.beat()
     return _asked_to_end.is_set() or bool(rospy.is_shutdown())
@@ -160,8 +160,8 @@ def wait_for_clock() -> None:
 def leave(status: int) -> NoReturn:
     """Unregister, and end the process with ``status``: at once, however long the graph may take.
 
-    rospy waits five seconds for each of its threads, of which one may be asking a node that ends
-    as well. The node's own last word is said first.
+    rospy waits five seconds for each of its threads, and one of them may be calling a node that is
+    ending too. The node has published its last message before.
     """
     too_long = threading.Timer(LEAVING, os._exit, (status,))
     too_long.daemon = True

@@ -23,10 +23,10 @@ from roomba.errors import ConfigError
 from roomba.files.shipped import CONFIGURATION
 
 _LOOK_PERIOD = 0.5
-"""s of wall time between two looks for what may have been set newly."""
+"""s of wall time between two looks for parameters that are newly set."""
 _READ_PERIOD = 0.04
-"""s of wall time between two looks of a node that is no guardian: less than a tick in real time.
-By a faster clock a look at each tick would cost a tenth of it."""
+"""s of wall time between two reads by a node that is not the guardian: less than a tick in real
+time. On a faster clock a read at each tick would take a tenth of the tick."""
 
 
 def read_seed_parameters() -> SeedParameters:
@@ -49,10 +49,10 @@ def read_robot_config() -> RobotConfig:
 
 
 def read_simulated_config() -> SimulatedRobotConfig:
-    """Return the same file's configuration with what is true of the simulated robot.
+    """Return the configuration of ``robot_config``, with what is true of the simulated robot.
 
-    Where the file has no part ``simulation``, that is the file of the parameter
-    ``simulation_config``, or the shipped one.
+    Where that file has no part ``simulation``, the file of the parameter ``simulation_config`` has
+    it, or the shipped one.
     """
     return load_simulated_config(_configuration_file("robot"), _configuration_file("simulation"))
 
@@ -85,8 +85,8 @@ def read_thing_config() -> ThingConfig:
 def read_mission_config(robot: RobotConfig) -> MissionConfig:
     """Return the configuration named by the parameter ``mission_config``, or the shipped one.
 
-    The shipped one is slowed for a robot that is slower; with one that is named ConfigError is
-    raised for speeds that the robot cannot do.
+    The shipped one is slowed down for a slower robot. A named one is not: ConfigError is raised if
+    it has speeds that the robot cannot reach.
     """
     if rospy.search_param("mission_config"):
         return load_mission_config(_configuration_file("mission"), robot.body)
@@ -129,10 +129,10 @@ def robot_name() -> str:
 
 
 def robot_run() -> str:
-    """Return the name of this run of the robot: what another run began does not go on in it.
+    """Return the name of this run of the robot: work of another run is not resumed in it.
 
-    The launch file names each start anew. Without it the master's run counts, which outlives those
-    of robots.
+    The launch file gives each start a new name. Without one the name is that of the master's run,
+    which outlives runs of the robot.
     """
     return str(rospy.get_param("robot_run", "") or rospy.get_param("/run_id", ""))
 
@@ -145,9 +145,10 @@ def package_folder() -> Path:
 class LiveSeedParameters:
     """The parameters in force: a good change is obeyed, a bad one is refused with a warning.
 
-    The master tells this node of changes; reading what is set costs no call. One node of a robot
-    is the ``guardian``: it looks at each tick, puts refused values back, and turns the report's
-    other spellings into the parameters' own names, which is what all nodes watch.
+    The master tells this node of changes, so that reading a parameter costs no call. One node of a
+    robot is the ``guardian``. It reads at each tick, restores the value before a refused one, and
+    copies values of the report's other spellings to the parameters' own names, which all nodes
+    watch.
     """
 
     def __init__(self, *, guardian: bool = False) -> None:
@@ -202,8 +203,8 @@ class LiveSeedParameters:
                 value = rospy.get_param_cached(key)
             except KeyError:
                 value = {}
-            # An empty dictionary is how the master tells that a parameter is not set; asking for
-            # such a one is a call of the master each time.
+            # By an empty dictionary the master tells that a parameter is not set; each further read
+            # of it would be a call of the master.
             if value == {}:
                 self._unset[name] = now + _LOOK_PERIOD
             else:

@@ -10,7 +10,7 @@ from typing import Final
 LINE_PERIOD: Final = 1.0
 """s between two lines of the log, at least."""
 _RECENT: Final = 10.0
-"""s; so long a refusal is news."""
+"""s; for so long a refusal counts as recent."""
 
 
 class Refusals:
@@ -48,7 +48,7 @@ class Refusals:
         return now - self._noted < _RECENT
 
     def take_line(self, now: float) -> str:
-        """Return a line about what was refused since the last line; empty if it is not due."""
+        """Return a line about refusals since the last line; empty if none is due."""
         with self._lock:
             if not self._untold or now - self._told < LINE_PERIOD:
                 return ""

@@ -1,7 +1,7 @@
-"""Which node may send on a topic that belongs to one: what others send there is refused.
+"""Which node may send on a topic: messages of any other node are refused.
 
-Each message says by which node it was sent. A node that takes the name of another is not noticed
-by this: the master ends the older one of two with the same name.
+Each message carries the name of its sender. A node that takes another node's name is not noticed
+here: the master ends the older of two nodes with the same name.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ import rospy
 from roomba_ros.convert.errors import MessageError
 
 SPEED_NODE: Final = "speed_pub_node"
-"""The node that alone decides what the drive gets, and whether it is held."""
+"""The node that alone decides the drive's twist, and whether the drive is held."""
 SUPERVISOR: Final = "supervisor_node"
 """The node that tells how the robot's processes are."""
 _SILENT_AFTER: Final = 1.0
 """s of wall time without a message, after which a node is no sender any more."""
 SELDOM_SILENT_AFTER: Final = 3.0
-"""s of wall time; the same where a message a second is usual."""
+"""s of wall time; the same for topics of one message a second."""
 
 
 class Senders(Protocol):
@@ -46,10 +46,10 @@ class OnlyFrom:
 
 
 class OneSender:
-    """Takes what the first node sends, until it is silent; notices when another one sends, too."""
+    """Accepts the node that sends first, until it is silent; notices a second sender."""
 
     def __init__(self, silent_after: float = _SILENT_AFTER) -> None:
-        """Begin without a sender; one is none any more after so many s of wall time."""
+        """Begin without a sender; one that is silent for so many s of wall time is forgotten."""
         self._lock = threading.Lock()
         self._silent_after = silent_after
         self._sender, self._heard = "", -math.inf

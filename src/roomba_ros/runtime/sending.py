@@ -1,6 +1,6 @@
-"""Messages leave at once, on the thread that publishes them, while their receiver keeps up.
+"""Sends each message at once, on the thread that publishes it, while its receiver keeps up.
 
-rospy has a thread for each receiver of each topic and wakes it for each message, which takes more
+rospy has a thread for each receiver of each topic and wakes it for each message, which takes longer
 than the sending itself. There is no hook for that, so its class is replaced.
 """
 
@@ -17,16 +17,15 @@ _NOW: Final = socket.MSG_DONTWAIT
 
 
 def send_at_once() -> None:
-    """Let all topics of this process be sent so; call before ``rospy.init_node``."""
+    """Send all topics of this process in this way; call before ``rospy.init_node``."""
     rospy.topics.QueuedConnection = OutgoingConnection
 
 
 class OutgoingConnection:
     """A connection to one receiver of a topic, in place of rospy's QueuedConnection.
 
-    The publisher never waits. A receiver that is behind gets a thread of its own until it has
-    caught up; of what waits for it meanwhile the newest ``queue_size`` messages are kept, all if
-    that is 0.
+    The publisher never waits. A receiver that falls behind gets a thread of its own until it has
+    caught up. Meanwhile the newest ``queue_size`` messages wait for it, or all if that is 0.
     """
 
     def __init__(self, connection: Any, queue_size: int) -> None:
@@ -38,13 +37,13 @@ class OutgoingConnection:
         self._error: Exception | None = None
 
     def __getattr__(self, name: str) -> Any:
-        """Be the connection in all else."""
+        """Return any other attribute of the connection."""
         if name.startswith("__"):
             raise AttributeError(name)
         return getattr(self._connection, name)
 
     def write_data(self, data: bytes) -> bool:
-        """Send a message, or keep it for later; raises what an earlier one met with."""
+        """Send a message, or queue it; raises the error that an earlier message met."""
         with self._lock:
             error, self._error = self._error, None
             if error is not None:
@@ -59,10 +58,10 @@ class OutgoingConnection:
         return True
 
     def _sent_now(self, data: bytes) -> bytes:
-        """Send as much as there is room for on the way to the receiver; return the rest."""
+        """Send as much as the socket's buffer has room for; return the rest."""
         connection = self._connection
         if connection.done or connection.socket is None:
-            connection.write_data(data)  # raises what rospy expects
+            connection.write_data(data)  # raises the error that rospy expects
             return b""
         try:
             sent = connection.socket.send(data, _NOW)
@@ -76,7 +75,7 @@ class OutgoingConnection:
         return data[sent:]
 
     def _catch_up(self, data: bytes) -> None:
-        """Send the rest of a message, and what has come since, as fast as it is received."""
+        """Send the rest of a message and all that wait, as fast as the receiver takes them."""
         while True:
             try:
                 self._connection.write_data(data)

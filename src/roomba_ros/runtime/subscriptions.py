@@ -43,8 +43,8 @@ def subscribe(
 ) -> rospy.Subscriber:
     """Give ``take`` what ``convert`` makes of each message of a topic.
 
-    A message of which one of them raises MessageError is refused: counted, and told. So is one
-    that ``senders`` do not let through; without them any node may send.
+    A message for which one of these functions raises MessageError is refused: counted and reported.
+    So is a message that ``senders`` refuse; without ``senders`` any node may send.
     """
 
     def hear(message: Any) -> None:
@@ -56,7 +56,7 @@ def subscribe(
         except MessageError as error:
             refuse(topic, error)
         except rospy.ROSException:
-            # While the node ends its own topics are closed one after the other.
+            # While the node ends, its own topics are closed one after the other.
             if not rospy.core.is_shutdown_requested():
                 raise
 
@@ -64,7 +64,7 @@ def subscribe(
 
 
 def tell_refusals() -> None:
-    """Tell from now on what this node refuses: what was not logged yet, and ``/diagnostics``."""
+    """From now on, report refused messages: as lines of the log, and on ``/diagnostics``."""
     publisher = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=1)
     threading.Thread(target=_tell, args=(publisher,), name="refusals", daemon=True).start()
 

@@ -1,4 +1,4 @@
-"""Where a node hears of the robot's body: from one message for each tick, or from single topics."""
+"""Where a node hears the body: by one message for each tick, or by single topics."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ from roomba_ros.runtime.subscriptions import subscribe
 
 
 class BodySource:
-    """Hears ``body``, and while no node tells that, the single topics.
+    """Subscribes to ``body``, or to the single topics while no node publishes ``body``.
 
-    A message wakes a process, which takes longer than what it is woken for: the body of this
-    package tells all in one message. Bodies of others, and bags, have the single topics alone.
+    Each message wakes the process, which takes longer than the work on the message. So this
+    package's bodies put all readings into one message. Other bodies, and bags, have only the single
+    topics.
 
-    Subscribes: ``body`` (BodyState), or what ``single`` does. This waits for the master: it is for
-    nodes without whose commands the drive stops, and not for the speed node.
+    Subscribes: ``body`` (BodyState), or what ``single`` does. A change of subscriptions waits for
+    the master. That is safe in nodes whose silence stops the drive, but not in the speed node.
     """
 
     def __init__(
@@ -37,8 +38,8 @@ class BodySource:
         """Connect nothing yet.
 
         ``take`` is given the readings of each message; ``single`` subscribes to the single topics.
-        ``senders`` lets one node tell of the body, and is to be that of the single ``odom`` too: no
-        other node can take the place of a body that has the single topics alone. The bin holds
+        ``senders`` accepts one node as the body. Pass the one of the single topic ``odom``: then no
+        other node can take the place of a body that has only the single topics. The bin holds
         ``bin_capacity``, g; of the messages that wait the newest ``queue_size`` are kept.
         """
         self._take, self._single, self._senders = take, single, senders
@@ -47,9 +48,9 @@ class BodySource:
         self._singles: tuple[rospy.Subscriber, ...] = ()
         self._body: rospy.Subscriber | None = None
         self._heard = -math.inf
-        """s of wall time of the newest message that could be used."""
+        """When the newest valid ``body`` came, s of wall time."""
         self.is_whole = False
-        """Whether ``body`` was told when :meth:`follow` was called last."""
+        """Whether ``body`` was published when :meth:`follow` was last called."""
 
     def start(self) -> None:
         """Connect."""
@@ -65,9 +66,9 @@ class BodySource:
         self._singles = tuple(self._single())
 
     def follow(self) -> None:
-        """Leave the single topics when the body tells all in one, or take to them again.
+        """Drop the single topics while ``body`` is published; subscribe to them otherwise.
 
-        The latter when no node tells ``body``, or none tells it so that it can be used.
+        A ``body`` counts as published only while a node publishes valid messages.
         """
         self.is_whole = self._is_told()
         if self.is_whole and self._singles:

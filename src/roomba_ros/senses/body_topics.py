@@ -1,4 +1,4 @@
-"""What the robot's body tells, as readings."""
+"""The readings of the robot's body."""
 
 from __future__ import annotations
 
@@ -40,19 +40,20 @@ from roomba_ros.senses.waiting_scans import WaitingScans
 _KEPT: Final = 40
 """Messages of the body, of odometry and of the gyro that wait for the next tick: two seconds."""
 _LONGEST_WAIT: Final = 2.0
-"""s that a reading waits at most: one that is older than another by more is of a clock set back."""
+"""s; a reading that is older than another one by more comes from before the clock was set back."""
 _QUEUE: Final = 10
 _OF_ANY: Final = frozenset(("scan",))
-"""Topics on which several nodes may tell: a robot may have two lidars, each with its frame."""
+"""Topics that several nodes may publish: a robot may have two lidars, each with its frame."""
 _BESIDE_BODY: Final = ("scan", "emptying_station", "lidar_correction")
-"""Topics that can be heard beside the single ones of the body."""
+"""Topics that can be subscribed to besides the single topics of the body."""
 
 
 class BodyTopics:
     """Makes readings of what the body tells: one for each message of it, or of odometry.
 
-    Each has the newest of all other sensors; a scan comes with the first odometry of its time or
-    later. There is one body: of two nodes that tell its state, the first counts until it is silent.
+    Each reading has the newest values of all other sensors; a scan comes with the first odometry
+    that is not older than it. There is one body: of two nodes that publish its state, the first
+    counts until it is silent.
 
     Subscribes: ``body``, and without that those of ``topics`` out of ``odom``, ``imu``, ``bumper``,
     ``cliff``, ``wheel_drop``, ``battery_state``, ``dock_status``, ``ir_omni``, ``dirt_detect``,
@@ -62,7 +63,7 @@ class BodyTopics:
     """
 
     def __init__(self, config: RobotConfig, *topics: str, always: Collection[str] = ()) -> None:
-        """Connect nothing yet; ``always`` single topics are subscribed to beside ``body``, too.
+        """Connect nothing yet; the single topics ``always`` are subscribed to besides ``body``.
 
         Raises ValueError for a topic that there is not.
         """
@@ -115,7 +116,7 @@ class BodyTopics:
         self._source.start()
 
     def _subscribe_singles(self) -> list[rospy.Subscriber]:
-        """Subscribe to what ``body`` tells as well."""
+        """Subscribe to the single topics whose values ``body`` has as well."""
         return self._subscribe_to(
             [name for name in self._topics if name in self._singles and name not in self._always]
         )
@@ -146,7 +147,7 @@ class BodyTopics:
         )
 
     def _senders_of(self, topic: str) -> OneSender | None:
-        """Return which node may tell on a topic; None: any."""
+        """Return which nodes may publish a topic; None: any node."""
         if topic in _OF_ANY:
             return None
         return self._senders if topic == "odom" else OneSender(SELDOM_SILENT_AFTER)
@@ -165,7 +166,7 @@ class BodyTopics:
         return told
 
     def _told(self, *, with_single: bool) -> list[Readings]:
-        """Return what was told since the last call; of one time what tells all comes last."""
+        """Return the readings since the last call; of equal times, those of ``body`` come last."""
         with self._lock:
             whole, odometry, gyro = list(self._bodies), list(self._odometry), list(self._gyro)
             others = {**self._others, "battery": self._battery}
@@ -178,7 +179,7 @@ class BodyTopics:
         return [*_joined(odometry, gyro, others), *whole]
 
     def _new(self, told: Iterable[Readings]) -> list[Readings]:
-        """Return one reading of each time that was not given yet, in the order of time."""
+        """Return one reading of each new time, in the order of time."""
         of_time = {each.time: each for each in told if self._is_new(each.time)}
         if of_time:
             self._newest = max(of_time)
@@ -188,14 +189,14 @@ class BodyTopics:
         return not 0.0 <= self._newest - stamp <= _LONGEST_WAIT
 
     def _with_scan(self, newest: Readings) -> Readings:
-        """Return readings with the scan that came with them, if one is new."""
+        """Return readings with the newest scan that they complete, if there is one."""
         scan = self._scan_by(newest.time)
         return newest if scan is None else replace(newest, scan=scan)
 
     def _scan_by(self, stamp: float) -> ScanReading | None:
-        """Return the newest scan of which all beams were measured by a time, s, if one is new.
+        """Return the newest unused scan whose beams were all measured by a time, s; else None.
 
-        One without a stamp ends at that time.
+        A scan without a stamp is taken to end at that time.
         """
         scan, oldest = self._scans.take(stamp), self._scans.oldest
         if scan is not None:
@@ -259,7 +260,7 @@ def _require_known(topics: Collection[str], known: Collection[str]) -> None:
 def _joined(
     odometry: Iterable[OdometryReading], gyro: list[GyroReading], others: dict[str, Any]
 ) -> list[Readings]:
-    """Return what came by single topics: odometry, each with the newest of the others."""
+    """Return readings of the single topics: one for each odometry, with the newest other values."""
     return [
         Readings(
             time=each.stamp,

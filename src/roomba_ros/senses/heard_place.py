@@ -1,4 +1,4 @@
-"""The robot's place as it is told, carried on by wheels and gyro."""
+"""The robot's published pose, continued by wheels and gyro."""
 
 from __future__ import annotations
 
@@ -25,12 +25,10 @@ from roomba_ros.runtime.subscriptions import subscribe
 
 
 class HeardPlace:
-    """Finds out where the frame of dead reckoning is in the map, by each pose that is told.
+    """Keeps the transform from dead reckoning's frame to the map, corrected by each pose it hears.
 
-    A pose that comes late is as good: it is compared with where the robot was reckoned to be at its
-    stamp. Wheels and gyro tell the way since.
-
-    Subscribes: ``pose``, ``localization``.
+    A late pose corrects as well as a prompt one: it is compared with the reckoned pose at its
+    stamp. Wheels and gyro give the motion since then.
     """
 
     def __init__(self, robot: RobotConfig, config: HearingConfig) -> None:
@@ -68,14 +66,14 @@ class HeardPlace:
 
     @property
     def told(self) -> Pose | None:
-        """Where the robot was told to be last, map frame; None before that."""
+        """The last pose that was published, map frame; None before the first."""
         return None if self._pose is None else self._pose.pose
 
     @property
     def knowledge(self) -> tuple[Knowledge, str]:
-        """How well its place is told to be known, and why not better.
+        """How well the published place is known, and why not better.
 
-        Of two nodes that tell it, one is wrong: nothing is to drive by that.
+        If two nodes publish it, one of them is wrong: the robot must not drive by it then.
         """
         conflict = self._senders.conflict
         if conflict:
@@ -84,12 +82,12 @@ class HeardPlace:
 
     @property
     def deviation(self) -> float:
-        """The standard deviation of its place as it is told, m."""
+        """The standard deviation of the published place, m."""
         return self._told.deviation
 
     @property
     def path(self) -> ReckonedPath:
-        """Where wheels and gyro had the robot in the last seconds."""
+        """The reckoned poses of the last seconds, by wheels and gyro."""
         return self._reckoning.path
 
     def move(self, readings: Readings) -> None:
@@ -101,7 +99,7 @@ class HeardPlace:
     def at(self, now: float) -> Pose | None:
         """Return where the robot is at a time, s, map frame; None until enough was heard.
 
-        Later than what the wheels told last, it is where their twist leads.
+        A time after the newest odometry is extrapolated by the odometry's twist.
         """
         self._correct()
         newest = self._newest
@@ -114,37 +112,36 @@ class HeardPlace:
     def is_late(self, now: float, longest: float) -> bool:
         """Whether the newest pose is ``longest`` s old, or older: the robot must not drive by it.
 
-        It may be another while until it is told that the place is unknown: a busy machine catches
-        up.
+        More time passes before the place is reported unknown: a busy machine may catch up.
         """
         stamp = -math.inf if self._corrected is None else self._corrected.stamp
         return now > stamp and not is_recent(now, stamp, longest)
 
     def is_silent(self, now: float) -> bool:
-        """Whether the place is not told any more."""
+        """Whether the place is no longer published."""
         stamp = -math.inf if self._corrected is None else self._corrected.stamp
         is_old = not now - self._config.oldest_pose <= stamp
         return time.monotonic() > self._heard + self._config.silence and is_old
 
     def _correct(self) -> None:
-        """Find out where the frame of dead reckoning is in the map, if a pose is new."""
+        """Update the transform from dead reckoning's frame to the map, if a pose is new."""
         with self._lock:
             told = self._pose
         newest = self._newest
         if told is None or told == self._corrected or newest is None:
             return
         if self._corrected is not None and told.stamp > newest.time:
-            # It came before the odometry that it follows from.
+            # The pose came before the odometry that it was computed from.
             return
         then = self._reckoning.at(told.stamp)
         if then is None and self._corrected is not None:
-            # It is too old to be compared.
+            # The pose is older than the reckoned path.
             return
         self._correction = told.pose.compose((then or self._reckoning.pose).inverse())
         self._corrected = told
 
     def _reckoned_at(self, stamp: float) -> Pose:
-        """Return where the robot was reckoned to be, s; now, if that is not remembered."""
+        """Return the reckoned pose at a time, s; the present one if that time is forgotten."""
         return self._reckoning.at(stamp) or self._reckoning.pose
 
     def _on_pose(self, told: StampedPose) -> None:
@@ -157,7 +154,7 @@ class HeardPlace:
 
 
 def moved(pose: Pose, twist: Twist, time: float) -> Pose:
-    """Return where a pose is after a time, s, in which it moves along the arc of a twist."""
+    """Return a pose after a time, s, of motion along the arc of a twist."""
     turn = twist.angular * time
     # The chord of the arc, in the direction of its middle; sin(x)/x for small turns is 1.
     half = 0.5 * turn

@@ -1,4 +1,4 @@
-"""What the robot senses on ROS: what its body tells, and its place as it is told."""
+"""The readings of a robot on ROS: those of its body, and its published place."""
 
 from __future__ import annotations
 
@@ -17,10 +17,7 @@ from roomba_ros.senses.heard_place import HeardPlace
 
 
 class HeardSenses:
-    """Puts together what is sensed, for a node that does not find the robot's place itself.
-
-    Subscribes: what :class:`HeardPlace` hears, and the ``topics`` of :class:`BodyTopics`.
-    """
+    """Puts together what a node senses that does not localize the robot itself."""
 
     def __init__(self, config: RobotConfig, hearing: HearingConfig, *topics: str) -> None:
         """Connect nothing yet."""
@@ -41,7 +38,7 @@ class HeardSenses:
         return without_pose + self._body.missing(*topics)
 
     def at(self, now: float) -> Senses | None:
-        """Take what was heard since the last call; return all that is sensed at a time, s.
+        """Take the messages since the last call; return all readings for a time, s.
 
         None until place and odometry were heard.
         """
@@ -64,7 +61,7 @@ class HeardSenses:
         )
 
     def show(self, lookout: Lookout) -> None:
-        """Let things be looked for in the scan that came last, if it is one to be looked at."""
+        """Let a lookout search the newest scan for things, if there is a new one with a pose."""
         scan = self._scan
         pose = None if scan is None else self.place.at(scan.stamp)
         if scan is not None and pose is not None:

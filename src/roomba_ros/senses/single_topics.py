@@ -1,4 +1,4 @@
-"""The single topics of a body, of which ``body`` tells all that is in them for a robot's brain."""
+"""The body's single topics; ``body`` has all their values that the robot's brain needs."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from roomba_ros.convert.values import data_of, number_of
 
 
 class SingleTopic(NamedTuple):
-    """Messages of ``kind``, and ``convert``, which makes a value of one.
+    """The type ``kind`` of a topic's messages, and ``convert``, which makes a value of a message.
 
-    The value is what the ``fields`` of readings are, or several values if these are; without fields
-    it is put together with others.
+    ``fields`` are the fields of the readings that the value fills: one field the value itself,
+    several fields one value each. Without fields, the value is combined with those of other topics.
     """
 
     kind: type
@@ -36,7 +36,7 @@ class SingleTopic(NamedTuple):
     fields: tuple[str, ...] = ()
 
     def told(self, value: Any) -> dict[str, Any]:
-        """Return what of the readings a value tells."""
+        """Return the fields of the readings that a value fills."""
         values = value if len(self.fields) > 1 else (value,)
         return dict(zip(self.fields, values, strict=True))
 

@@ -1,4 +1,4 @@
-"""Scans that wait until it is known where the robot was when each of their beams was measured."""
+"""Scans that wait until odometry covers the times of all their beams."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _KEPT: Final = 5
 
 
 class WaitingScans:
-    """The newest scans, between one thread that puts them in and one that takes them out."""
+    """Passes the newest scans from the thread that puts them in to the one that takes them out."""
 
     def __init__(self) -> None:
         """Begin with none."""
@@ -29,9 +29,9 @@ class WaitingScans:
             self._scans = [*self._scans[1 - _KEPT :], scan]
 
     def take(self, stamp: float) -> ScanReading | None:
-        """Return the newest of which all beams were measured by ``stamp``, s, if there is one.
+        """Return the newest scan whose beams were all measured by ``stamp``, s; None without one.
 
-        Older ones go.
+        Older scans are dropped.
         """
         with self._lock:
             ready = sum(scan.stamp + scan.lidar.sweep <= stamp for scan in self._scans)

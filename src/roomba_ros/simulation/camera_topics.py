@@ -20,7 +20,7 @@ from roomba_ros.runtime.node import frame_id, told_to_end
 
 
 class CameraTopics:
-    """Takes pictures in a thread of its own: they must not hold up time.
+    """Takes pictures in a thread of its own: pictures must not hold up the simulated clock.
 
     Publishes, 5 Hz of wall time while subscribed: ``camera/image_raw`` (rgb8),
     ``camera/image_raw/compressed`` (JPEG), ``camera/depth/image_raw`` (32FC1, m),
@@ -54,7 +54,7 @@ class CameraTopics:
         threading.Thread(target=self._stream, name="camera", daemon=True).start()
 
     def set_time(self, now: float) -> None:
-        """Tell the time, s, that the simulation has reached."""
+        """Take the time, s, that the simulation has reached."""
         self._stamp = now
 
     def _stream(self) -> None:
@@ -68,7 +68,7 @@ class CameraTopics:
                     rospy.logwarn_throttle(10.0, "no picture for the stream: %s", error)
 
     def _tell(self) -> None:
-        # Made for the first subscriber: it needs some megabytes.
+        # Made for the first subscriber, since it needs some megabytes.
         self._quick = self._quick or Camera(self._scene, self._config, 1)
         with self._lock:
             now, pose = self._stamp, self._simulator.pose
@@ -86,7 +86,7 @@ class CameraTopics:
             publisher.publish(info)
 
     def _place(self, camera: Camera) -> None:
-        """Let the camera see things where they are now."""
+        """Move the camera's scene to where things are now."""
         camera.place_all(self._simulator.things, self._simulator.discs)
 
     def _on_capture(self, request: TurnCameraRequest) -> TurnCameraResponse:

@@ -145,7 +145,7 @@ class HomeSimNode:
             self._tick()
 
     def tick(self, now: float) -> None:
-        """Step as far as the clock, which is another's, went; ``now`` in s of the ROS clock."""
+        """Step to the time ``now``, s, of the ROS clock, which another node publishes."""
         if self._jumps.at(now):
             self._clock = round(now * 1e9) - self._nanoseconds
         for _ in range(round((now * 1e9 - self._clock) / self._nanoseconds)):
@@ -165,7 +165,7 @@ class HomeSimNode:
         self._publish(now, observation)
 
     def _advance(self) -> None:
-        """Let a tick pass; a command may become too old on its way."""
+        """Advance by one tick; the newest command may become too old within the tick."""
         step = self._timing.world_step
         twists = [self._drive.step(step) for _ in range(self._timing.steps_per_tick)]
         for twist, steps in groupby(twists):
@@ -178,7 +178,8 @@ class HomeSimNode:
         self._station.tell(self._ticks)
         self._truth.tell(now, self._ticks, observation)
         if self._owns_clock:
-            # Last: a node that ticks by it mostly has what was sensed. Topics have no order.
+            # Published last, so that a node that ticks by it has mostly received the sensors'
+            # messages.
             self._clock_publisher.publish(rospy.Time(nsecs=self._clock))
 
     def _tell_transforms(self, now: float, observation: Observation) -> None:
@@ -215,7 +216,7 @@ class HomeSimNode:
         for name, value in (("x", start.x), ("y", start.y), ("theta", start.theta)):
             rospy.set_param(f"initial_post_{name}", value)
         if rospy.has_param(kept_pose.PARAMETER):
-            # Of a robot that stood elsewhere: its odometry began elsewhere, too.
+            # A kept pose is of a robot that started elsewhere, as did its odometry.
             rospy.delete_param(kept_pose.PARAMETER)
         rospy.loginfo("home %s: the robot starts at (%.2f, %.2f)", home.name, start.x, start.y)
         return simulator

@@ -29,8 +29,8 @@ FAULTS = {
     "stall": (Fault.STALL_LEFT, Fault.STALL_RIGHT),
     **{fault.name.lower(): (fault,) for fault in Fault},
 }
-"""What ``sim/inject_fault`` takes by name, beside obstacles, the battery's charge, and putting the
-robot elsewhere."""
+"""The faults of ``sim/inject_fault`` by name. It also takes names for obstacles, for the battery's
+charge, and for putting the robot elsewhere."""
 
 
 class SimServices:

@@ -1,4 +1,4 @@
-"""The station that empties the robot's bin: what it is told, and what it tells."""
+"""The link to the station that empties the robot's bin: its order, and its state."""
 
 from __future__ import annotations
 
@@ -18,20 +18,15 @@ _EVERY: Final = 20
 
 
 class StationLink:
-    """Lets the station work while it is told to, and tells of it.
-
-    Publishes: ``emptying_station`` (EmptyingStation, 1 Hz and when it begins, ends, or gets an
-    empty bag), of a station that empties bins alone.
-    Subscribes: ``emptying_wanted`` (Bool).
-    """
+    """Lets the station work while it is ordered to, and publishes its state."""
 
     def __init__(
         self, station: EmptyingStation | None, longest_silence: float, lock: threading.Lock
     ) -> None:
-        """Connect nothing yet; None empties no bin.
+        """Connect nothing yet; ``station`` None: there is no station that empties bins.
 
-        It stops when it was not told for ``longest_silence`` s of the robot's clock; ``lock`` is
-        held by the caller of :meth:`step`.
+        The station stops when no order came for ``longest_silence`` s of the robot's clock;
+        ``lock`` is held by the caller of :meth:`step`.
         """
         self._station, self._longest_silence, self._lock = station, longest_silence, lock
         self._left = 0.0

@@ -1,4 +1,4 @@
-"""The topics of what is really so, which only people look at: the robot hears none of them."""
+"""The true state of the home and the robot, for people alone: the robot hears none of it."""
 
 from __future__ import annotations
 

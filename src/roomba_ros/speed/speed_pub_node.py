@@ -42,7 +42,7 @@ from roomba_ros.runtime.senders import SELDOM_SILENT_AFTER, OneSender
 from roomba_ros.runtime.subscriptions import subscribe
 
 EMERGENCY_PARAMETER: Final = "emergency_stop"
-"""Why the drive is held; the master keeps it, too, for when the disk does not."""
+"""The parameter with the reason why the drive is held, kept in case the disk does not."""
 _LONGEST_REASON: Final = 200
 
 
@@ -113,10 +113,10 @@ class SpeedPubNode:
         self._drive.publish(Twist())
 
     def _pass_on(self, now: float, topic: str) -> None:
-        """Tell the drive at once what a topic changes, unless that was done since the last tick.
+        """Send the drive at once what a topic changes, unless that happened since the last tick.
 
-        What comes more often waits for the tick: a flood of messages makes no flood for the drive.
-        So does what changes nothing: the drive was told the same a moment ago.
+        Further messages of the topic wait for the tick: a flood of messages must not flood the
+        drive. A message that changes nothing waits as well: the drive has the same twist already.
         """
         with self._lock:
             if topic in self._passed_on:
@@ -133,15 +133,15 @@ class SpeedPubNode:
         self._log_hold()
 
     def _decide(self, now: float) -> geometry.Twist:
-        """Return what the drive is told next.
+        """Return the twist that the drive gets next.
 
-        The lock is to be held until the drive was told: no older twist comes after a newer one.
+        Hold the lock until the twist is sent: no older twist may come after a newer one.
         """
         self._told_drive, self._hold = self._loop.tick(now)
         return self._told_drive
 
     def _log_hold(self) -> None:
-        """Log why the drive is held, when that is new; without the lock: a log may wait."""
+        """Log why the drive is held, when that is new; not under the lock, as logging may block."""
         with self._lock:
             hold, is_new = self._hold, self._hold is not self._hold_logged
             self._hold_logged = hold
@@ -155,7 +155,7 @@ class SpeedPubNode:
             self._speed_publisher.publish(self._speed)
 
     def _engage_again(self) -> None:
-        """Hold the drive if it was held when this node's predecessor ended."""
+        """Hold the drive if it was held when the node before this one ended."""
         reason = rospy.get_param(EMERGENCY_PARAMETER, "")
         reason = self._kept.reason() or (reason if isinstance(reason, str) else "")
         if reason:
@@ -173,11 +173,11 @@ class SpeedPubNode:
             self._emergency.publish(reason)
         self._tell_drive(rospy.get_time())
         rospy.logwarn(f"emergency stop: {reason}" if reason else "emergency stop released")
-        # Only now: a disk may take long, or refuse.
+        # Only after the drive is held: a disk may take long, or refuse.
         return EmergencyStopResponse(True, _answer(reason, was_held) + self._keep())
 
     def _keep(self) -> str:
-        """Keep the newest state; return what is to be said where that is refused."""
+        """Save the newest state; return a sentence for the client if that fails."""
         said = ""
         refused = self._kept.keep(lambda: self._reason)
         if refused:
@@ -216,7 +216,7 @@ class SpeedPubNode:
 
 
 def _shown(reason: str) -> str:
-    """Return a reason as one line of bounded length: no text of it may keep the robot from it."""
+    """Return a reason as one line of bounded length: no text may make the stop fail."""
     text = "".join(letter if letter.isprintable() else " " for letter in reason[:_LONGEST_REASON])
     return text.strip() or NO_REASON
 

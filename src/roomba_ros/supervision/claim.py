@@ -1,4 +1,4 @@
-"""A robot is of one run at a time: two that begin at one moment do not see each other's nodes."""
+"""Claims a robot for one run: two runs that begin at one moment do not see each other's nodes."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from roomba_ros.runtime.graph.master import port_of
 
 
 def claim_robot(master: str, namespace: str) -> socket.socket:
-    """Claim the robot of a namespace on a master until what is returned is closed.
+    """Claim the robot of a namespace on a master until the returned socket is closed.
 
-    Raises RoombaError when another run of this machine has it, OSError when the master's host has
-    no address. The claim is a name and no file: it goes with the run, and a network of its own has
-    its own names, as it has its own master.
+    Raises RoombaError when another run on this machine has the robot, OSError when the master's
+    host has no address. The claim is a socket's name and no file: it vanishes with the run. An
+    isolated robot's network has its own names, as it has its own master.
     """
     key = hashlib.sha256(f"{_place_of(master)} {namespace}".encode()).hexdigest()
     claim = socket.socket(socket.AF_UNIX)
@@ -34,17 +34,17 @@ def claim_robot(master: str, namespace: str) -> socket.socket:
 
 
 def _place_of(master: str) -> tuple[str, int]:
-    """Return the address and port of a master: its URI can be spelled in several ways."""
+    """Return the master's address and port, as its URI can be spelled in several ways."""
     port = port_of(master)
     found = socket.getaddrinfo(urlsplit(master).hostname, port, type=socket.SOCK_STREAM)
-    # By its name this machine has other addresses than as localhost.
+    # The machine's name has other addresses than localhost has.
     if any(_is_own(family, str(place[0])) for family, *_, place in found):
         return "this machine", port
     return min(str(place[0]) for *_, place in found), port
 
 
 def _is_own(family: socket.AddressFamily, address: str) -> bool:
-    """Whether an address is one of this machine: only there a socket can be bound."""
+    """Whether an address is one of this machine: a socket can be bound only to those."""
     with socket.socket(family, socket.SOCK_DGRAM) as bound:
         try:
             bound.bind((address, 0))

@@ -1,4 +1,4 @@
-"""``python3 -m roomba_ros.supervision.enter COMMAND …``: in the network of the isolated robot."""
+"""``python3 -m roomba_ros.supervision.enter COMMAND …``: in the isolated robot's network."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ _NOT_FOUND: Final = 127
 
 
 def main(command: Sequence[str]) -> int:
-    """Become a command in the network of the isolated robot; return a status if that fails."""
+    """Run a command in the isolated robot's network, in place of this process.
+
+    Returns an exit status if that fails.
+    """
     try:
         enter(isolated_process())
         os.execvp(command[0], [*command])

@@ -1,4 +1,4 @@
-"""Processes forked from one that has imported all that they need: so they start quickly."""
+"""Forks processes from one that has imported all that they need, so that they start quickly."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ _ENDING: Final = (signal.SIGINT, signal.SIGTERM)
 def fork(function: Callable[[], object]) -> int:
     """Run a function in a process of its own group, which ends with this one; return its id.
 
-    Call it from a process of one thread: of others the child would have the locks alone. What both
-    share is looked through for garbage no more: to look writes to each object, and what is written
-    to is copied.
+    Call it from a process of one thread: the child would have the locks of other threads, but not
+    the threads. Shared objects are excluded from garbage collection, which writes to each object;
+    memory that is written to is copied.
     """
     gc.freeze()
     sys.stdout.flush()
     sys.stderr.flush()
     parent = os.getpid()
-    # A signal waits until the child has handlers of its own: those of its parent would take it.
+    # Block signals until the child has its own handlers; the parent's would take them otherwise.
     signal.pthread_sigmask(signal.SIG_BLOCK, _ENDING)
     child = os.fork()
     if child:
@@ -62,7 +62,7 @@ def _tell_fault() -> None:
 
 
 def _leave(status: int) -> NoReturn:
-    """End this process, and never go on with what its parent does."""
+    """End this process; never go on with the parent's work."""
     try:
         for stream in (sys.stdout, sys.stderr):
             with contextlib.suppress(OSError, ValueError):
@@ -72,16 +72,16 @@ def _leave(status: int) -> NoReturn:
 
 
 def end_with(parent: int, number: signal.Signals) -> None:
-    """Let this process, which was forked, get a signal as soon as its parent is gone."""
+    """Let this forked process get a signal as soon as its parent ends."""
     if ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, number) != 0:
         raise OSError(ctypes.get_errno(), "expected prctl to let this process end with its parent")
     if os.getppid() != parent:
-        # It went before that was arranged.
+        # The parent ended before that.
         os._exit(1)
 
 
 def told_end(status: int) -> str:
-    """Return how a process ended, in words, by its status as waitpid tells it."""
+    """Return in words how a process ended, by its status of waitpid."""
     code = os.waitstatus_to_exitcode(status)
     if code >= 0:
         return f"ended with status {code}"
@@ -92,7 +92,7 @@ def told_end(status: int) -> str:
 
 
 def is_stopped(pid: int) -> bool:
-    """Whether a process of ours is stopped, by a signal or by a debugger."""
+    """Whether a child process is stopped, by a signal or by a debugger."""
     try:
         with open(f"/proc/{pid}/stat", encoding="utf-8", errors="replace") as file:
             return file.read().rpartition(")")[2].split()[0] in "tT"

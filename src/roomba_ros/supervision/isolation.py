@@ -1,7 +1,8 @@
-"""A network of the robot's own, of which only the page is reachable from outside.
+"""A network of the robot's own; only the page is reachable from outside.
 
-The page's socket is bound before the process leaves the network that it was started in, and stays
-there: nothing has to be passed on. All else that a robot listens at is in its own network.
+The page's socket is bound before the process leaves the network that it was started in. The socket
+stays in that network, so nothing has to be forwarded. All other sockets of the robot are in its
+own.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from roomba.files.lock import try_to_lock
 from roomba_ros.supervision.namespace import IsolationError, has_own_network, isolate
 
 FLAG: Final = "--isolated"
-"""The argument of ``./roomba run`` and others that means this network."""
+"""The argument of ``./roomba run`` and other commands that asks for such a network."""
 _FROM_SYSTEMD: Final = 3
 """The first descriptor that systemd gives a service, as sd_listen_fds(3) has it."""
 
@@ -31,7 +32,7 @@ _FROM_SYSTEMD: Final = 3
 def page_socket(arguments: Sequence[str], environment: Mapping[str, str]) -> socket.socket | None:
     """Return the socket at which the page is reached from outside; None if there is no page.
 
-    It is what systemd gives, or of the port that the arguments of the launch say. Raises
+    The socket comes from systemd, or listens on the port in the launch arguments. Raises
     IsolationError.
     """
     given = dict(argument.split(":=", 1) for argument in arguments if ":=" in argument)
@@ -59,9 +60,9 @@ def page_socket(arguments: Sequence[str], environment: Mapping[str, str]) -> soc
 
 
 def enter_isolation(arguments: list[str]) -> None:
-    """Go into a network of this robot's own, with the socket of its page; raises IsolationError.
+    """Move into a new network, with the page's socket bound before; raises IsolationError.
 
-    The socket and the lock of the record outlast ``os.execv``.
+    The socket and the lock of the record stay open over ``os.execv``.
     """
     if any(argument.startswith("smart_home:=") and argument[12:] for argument in arguments):
         raise IsolationError(f"{FLAG}: expected no smart_home:=FILE, as no broker is reached there")
@@ -78,7 +79,7 @@ def enter_isolation(arguments: list[str]) -> None:
 
 
 def record() -> Path:
-    """Return the file that tells which process an isolated robot is; it is locked by it."""
+    """Return the file with the process id of the isolated robot, which keeps it locked."""
     return Path(rospkg.get_ros_home()) / "roomba_robot" / "isolated.json"
 
 
@@ -98,7 +99,7 @@ def _take_record() -> int:
 
 
 def isolated_process() -> int:
-    """Return the process of the isolated robot that runs; raises IsolationError."""
+    """Return the process id of the isolated robot that runs; raises IsolationError."""
     file = record()
     try:
         with file.open(encoding="utf-8") as opened:

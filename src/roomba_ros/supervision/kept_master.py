@@ -1,7 +1,6 @@
-"""A ROS master that remembers: one that takes its place knows all parameters and registrations.
+"""A ROS master that saves its state: its successor knows all parameters and registrations.
 
-ROS's own master begins with nothing: nodes that run do not register again, and no other program
-finds them any more.
+ROS's own master begins empty. Nodes that run do not register again, so no other program finds them.
 """
 
 from __future__ import annotations
@@ -29,9 +28,9 @@ from roomba_ros.runtime.graph.master import MasterState, master_state
 from roomba_ros.runtime.timing.heart import HEART
 
 WORKERS: Final = 8
-"""Threads that tell nodes about others; of three, three frozen nodes hold up all."""
+"""Threads that call nodes; with ROS's three, three frozen nodes would hold up all others."""
 ANSWER_WITHIN: Final = 1.0
-"""s of wall time; a node that is silent for longer does not hold up the master."""
+"""s of wall time for a call of a node; a silent node does not hold up the master for longer."""
 _KEEP_PERIOD: Final = 0.2
 """s of wall time between two looks at what changed."""
 
@@ -39,7 +38,7 @@ Memory = dict[str, Any]
 
 
 def be_master(port: int, file: Path) -> None:
-    """Serve on a port until told to end; what is to be remembered is kept in a file."""
+    """Serve on a port until told to end; the master's state is saved in a file."""
     rosgraph.roslogging.configure_logging("rosmaster", logging.INFO, filename="master.log")
     socket.setdefaulttimeout(ANSWER_WITHIN)
     ended = threading.Event()
@@ -62,9 +61,9 @@ def be_master(port: int, file: Path) -> None:
 
 
 def memory_of(handler: Any) -> Memory:
-    """Return what a master knows: parameters, and who publishes, subscribes and serves what.
+    """Return what a master knows: parameters, publishers, subscribers and services.
 
-    Watchers go by a parameter, and are told when it changes. Registrations are lists of name, node,
+    Subscribers of a parameter are told when it changes. Registrations are lists of name, node,
     address of the node, and type or address of the service.
     """
     with handler.param_server.lock:
@@ -91,7 +90,7 @@ def _rows(registered: dict[str, list[tuple[str, str]]]) -> list[list[str]]:
 
 
 def remind(handler: Any, memory: Memory) -> None:
-    """Let a new master know what the one before it knew, of the nodes that are still there."""
+    """Restore a master's state, as far as it is about nodes that are still there."""
     handler.param_server.parameters = memory["parameters"]
     addresses = {
         row[2]
@@ -152,7 +151,7 @@ def wait_for_master(seconds: float, ended: Callable[[], bool]) -> bool:
     """Return whether the master answers within so many seconds, or the waiting has ended."""
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
-        # A busy one may take long for its first answer.
+        # A busy master may take long for its first answer.
         if ended() or master_state() is MasterState.ANSWERS:
             return True
         time.sleep(0.02)

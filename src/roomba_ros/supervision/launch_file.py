@@ -1,7 +1,7 @@
-"""The table of processes: what a launch file says, with its arguments checked.
+"""Reads a launch file into a table of processes, with the launch arguments checked.
 
-roslaunch's own reader is used, in a process of its own: it brings constructors for YAML that run
-code, and no node is to have these.
+roslaunch's own reader runs in a process of its own: it registers YAML constructors that run code,
+and no node shall have these.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ _PACKAGE: Final = "roomba_robot"
 class ProcessEntry:
     """One node of the table: its ``script`` in the package's folder ``scripts``.
 
-    ``is_required``: all end with it; otherwise it is started anew, if it ``is_respawned``.
-    ``command`` is of a program of another package, with its arguments; it has no script then.
+    If it ``is_required``, its end ends all; otherwise it is restarted, if it ``is_respawned``. A
+    program of another package has a ``command`` with arguments, and no script.
     """
 
     name: str
@@ -47,14 +47,14 @@ class ProcessEntry:
 
 @dataclass(frozen=True, slots=True)
 class Launch:
-    """All of a launch file: processes, and parameters by full name."""
+    """The content of a launch file: processes, and parameters by full name."""
 
     processes: tuple[ProcessEntry, ...]
     parameters: dict[str, Any]
 
 
 def described(path: Path) -> str:
-    """Return the arguments of a launch file, a line each: name, default, what it is for."""
+    """Return a line for each argument of a launch file: name, default, and purpose."""
     return "\n".join(
         f"  {argument.get('name')}:={argument.get('default', '')}".ljust(34)
         + argument.get("doc", "")
@@ -105,10 +105,10 @@ def read_launch(path: Path, arguments: Sequence[str]) -> Launch:
 
 
 def _tell(path: Path, arguments: Sequence[str], pipe: int) -> None:
-    """Read the file, and write what it says into a pipe as JSON."""
+    """Read the launch file, and write its content into a pipe as JSON."""
     try:
         text = json.dumps(_loaded(path, arguments))
-    except Exception as error:  # the library raises many kinds, and this process ends with it
+    except Exception as error:  # it raises many kinds, and this process ends with each
         text = json.dumps({"error": str(error)})
     with open(pipe, "w", encoding="utf-8") as writing:
         writing.write(text)

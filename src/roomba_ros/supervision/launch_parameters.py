@@ -1,4 +1,4 @@
-"""The parameters of a run, on a master that may have had another run before."""
+"""Sets the parameters of a run on a master that may have those of an earlier run."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from roomba_ros.runtime.graph.master import master
 
 _CALLER: Final = "/roomba_run"
 _LAUNCHED: Final = "robot_launched"
-"""The parameter, in the robot's namespace, with the names of all that its last run has set."""
+"""The parameter, in the robot's namespace, that lists the names of all that its last run set."""
 
 
 def set_parameters(parameters: dict[str, Any], run_id: str) -> None:
-    """Set what the launch file says, and remove what only the run before has set.
+    """Set the launch file's parameters, and remove those that only the run before set.
 
-    ``parameters`` are by full name. What people have set stays. ``run_id`` is for a master that has
-    none yet.
+    ``parameters`` are by full name. Parameters that people set stay. ``run_id`` is set if the
+    master has none yet.
     """
     asked = master(_CALLER)
     if not asked.hasParam("/run_id"):
         asked.setParam("/run_id", run_id)
     launched = ns_join(get_ros_namespace(), _LAUNCHED)
     _remove_last_run(asked, launched, parameters)
-    # First: a start that is interrupted may have set any of them.
+    # The list comes first: an interrupted start may have set any of them.
     asked.setParam(launched, sorted(parameters))
     for name, value in parameters.items():
         asked.setParam(name, value)

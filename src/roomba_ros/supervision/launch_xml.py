@@ -1,4 +1,4 @@
-"""What can be read of the launch file before anything large is imported."""
+"""Reads those parts of the launch file that are needed before large modules are imported."""
 
 from __future__ import annotations
 

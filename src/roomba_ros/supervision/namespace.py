@@ -1,4 +1,4 @@
-"""Network namespaces: into one of this process's own, and into that of another process."""
+"""Network namespaces: moving into a new one, and into that of another process."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ def unshare(flags: int) -> None:
 def isolate(leave: Callable[[int], None] = unshare) -> None:
     """Leave the network for one with a loopback interface alone; raises IsolationError.
 
-    Call it from a process of one thread. A user who is not root needs namespaces of users, and
-    stays who they are.
+    Call it from a process of one thread. Users other than root need user namespaces for it; they
+    keep their user id.
     """
     user, group = os.geteuid(), os.getegid()
     try:
@@ -75,7 +75,7 @@ def enter(process: int) -> None:
         try:
             _go_into(process, "net")
         except PermissionError:
-            # A user's own network belongs to a namespace of users, in which they may do that.
+            # The network of a user belongs to a user namespace; only in that may the user enter it.
             _go_into(process, "user")
             _go_into(process, "net")
     except OSError as error:

@@ -40,13 +40,13 @@ from roomba_ros.supervision.supervisor_node import be_supervisor_node
 USAGE: Final = 2
 """The exit status for a wrong argument."""
 _HOME: Final = "/home_sim_node/home"
-"""The end of the parameter's name."""
+"""The end of the full name of the parameter with the home."""
 _MAP: Final = "/position_pub_node/map"
-"""The end of the parameter's name."""
+"""The end of the full name of the parameter with the map that the robot shall use."""
 _MAPS_FOLDER: Final = "/position_pub_node/maps_folder"
-"""The end of the parameter's name."""
+"""The end of the full name of the parameter with the folder of saved maps."""
 _WORDS: Final = "ROOMBA_LAUNCHING"
-"""The environment variable with what ``./roomba`` wants to be said when nothing is refused."""
+"""The environment variable with a text of ``./roomba``, printed once nothing was refused."""
 _MASTER_WITHIN: Final = 20.0
 """s of wall time in which the master answers, on a busy machine too."""
 
@@ -106,7 +106,7 @@ def _run(launch: Launch, scripts: Path) -> int:
 
 
 def _has_told_master(parameters: dict[str, Any], run_id: str, supervisor: Supervisor) -> bool:
-    """Wait for the master and set parameters; return whether it answers."""
+    """Wait for the master and set the parameters; return whether the master answered."""
     if not wait_for_master(_MASTER_WITHIN, lambda: supervisor.is_ending):
         return False
     if not supervisor.is_ending:
@@ -118,14 +118,14 @@ def _has_told_master(parameters: dict[str, Any], run_id: str, supervisor: Superv
 
 
 def _require_home(launch: Launch) -> None:
-    """Raise HomeError when there is none of that name: before ten processes start, and one ends."""
+    """Raise HomeError for an unknown home, before any process starts."""
     for name, value in launch.parameters.items():
         if name.endswith(_HOME):
             files_of_home(str(value), HOMES)
 
 
 def _require_map(launch: Launch) -> None:
-    """Raise MapStoreError when no map of that name is saved: the robot would make a new one."""
+    """Raise MapStoreError for an unknown map's name: the robot would make a new map instead."""
     for name, value in launch.parameters.items():
         if name.endswith(_MAP):
             folder = name.removesuffix(_MAP) + _MAPS_FOLDER
@@ -141,7 +141,7 @@ def _require_host_of_master() -> None:
         raise RoombaError(f"expected ROS_MASTER_URI to be http://HOST:PORT, got {uri!r}")
     try:
         socket.getaddrinfo(host, None)
-    except (OSError, UnicodeError) as error:  # the latter of names that cannot be any
+    except (OSError, UnicodeError) as error:  # UnicodeError: of a text that cannot be a host's name
         raise RoombaError(
             f"expected the host of the master, {host}, to have an address: {error}; add a line for "
             "it to /etc/hosts, such as '127.0.0.1 localhost', or set ROS_MASTER_URI"
@@ -149,7 +149,7 @@ def _require_host_of_master() -> None:
 
 
 def _refuse_second(launch: Launch) -> None:
-    """Raise RoombaError when this robot runs already: two of its nodes would end one another."""
+    """Raise RoombaError if this robot already runs: the master ends nodes with taken names."""
     state = master_state()
     if state is MasterState.ABSENT:
         return
@@ -181,7 +181,7 @@ def _names_of(entry: ProcessEntry, logs: Path) -> tuple[str, str]:
 def run_and_leave() -> NoReturn:
     """Run the robot, and end the process."""
     status = 0
-    # A program that reads its output may have heard enough.
+    # The reader of the output may have closed it.
     with contextlib.suppress(BrokenPipeError):
         status = main()
         sys.stdout.flush()

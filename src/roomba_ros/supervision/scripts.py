@@ -1,4 +1,4 @@
-"""The scripts of nodes, run in forks of a process that has imported what they need."""
+"""Runs nodes' scripts in forks of a process that has imported what they need."""
 
 from __future__ import annotations
 

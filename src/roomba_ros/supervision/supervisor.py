@@ -1,6 +1,6 @@
-"""Starts the robot's processes, watches them, starts anew what ended or hangs, and ends all.
+"""Starts the robot's processes, watches them, restarts those that end or hang, and ends all.
 
-It has one thread and no connections: nothing that happens on the graph can hold it up.
+It has one thread and no ROS connections, so nothing on the graph can hold it up.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from roomba_ros.supervision.watch import Watch
 _LOOK: Final = 0.05
 """s of wall time between two looks at the processes."""
 _SIGNALS: Final = ((signal.SIGINT, 1.8), (signal.SIGTERM, 0.6), (signal.SIGKILL, 5.0))
-"""How processes are told to end, and s of wall time until they are told so more firmly."""
+"""The signals that end processes, each with s of wall time until the next, stronger one."""
 
 
 @dataclass(slots=True)
@@ -69,10 +69,11 @@ class Supervisor:
         is_kept: bool = True,
         is_master: bool = False,
     ) -> None:
-        """Start a process, unless it is to end, and watch it; all end with one that is required.
+        """Start a process, unless all are to end, and watch it; a required process ends all.
 
-        One that is not ``is_kept`` may end, as a window that is closed, and is forgotten then. No
-        process is given up for lives in which the one that ``is_master`` was not up.
+        A process that is not ``is_kept``, such as a window that the user closes, may end and is
+        forgotten then. A life in which the master (``is_master``) was not up all the time does not
+        count against a process.
         """
         process = _Process(run, Watch(name, self._config), is_required, is_kept)
         if is_master:
@@ -82,9 +83,9 @@ class Supervisor:
             self._start(process)
 
     def tell_to(self) -> int:
-        """Return the end of a pipe that brings each change as a line of JSON: trouble by process.
+        """Return the reading end of a pipe: for each change a line of JSON, troubles by process.
 
-        It stays the same for a reader that is started anew.
+        A restarted reader gets the same pipe.
         """
         reading, writing = os.pipe()
         os.set_blocking(writing, False)
@@ -104,7 +105,7 @@ class Supervisor:
         return self._status
 
     def end_all(self) -> None:
-        """End all processes: the last that was added first, the first one, the master, last."""
+        """End all processes together, and then the first one, which is the master."""
         for number in _told_by():
             signal.signal(number, signal.SIG_IGN)
         nodes, first = self._processes[1:], self._processes[:1]
@@ -149,14 +150,15 @@ class Supervisor:
             os.close(process.heart)
 
     def _hear(self) -> None:
-        """Take signs of life as they come, for a moment."""
+        """Wait a moment for signs of life, and take those that come."""
         for key, _ in self._selector.select(_LOOK):
             with contextlib.suppress(BlockingIOError):
                 if os.read(key.fd, 1 << 12):
                     key.data.watch.beat(time.monotonic())
                 else:
-                    # It ended, as waitpid tells, or became a program that tells no such signs.
-                    # The end of its pipe would be told for ever.
+                    # The process ended, as waitpid tells, or became a program that sends no such
+                    # signs.
+                    # The end of the closed pipe would be reported for ever.
                     self._selector.unregister(key.fd)
                     if key.data.watch.is_running:
                         key.data.watch.has_no_heart()
@@ -179,7 +181,7 @@ class Supervisor:
                 self._end(max(1, os.waitstatus_to_exitcode(status)))
 
     def _had_master(self, watch: Watch) -> bool:
-        """Whether the master was up all the time that a process lived, or is that process."""
+        """Whether the master was up for a process's whole life, or is that process."""
         master = self._master
         return master is None or master is watch or master.up_since <= watch.started_at
 
@@ -194,7 +196,7 @@ class Supervisor:
             self._start(process)
 
     def _tell(self, now: float) -> None:
-        """Write down what is wrong, when that changed."""
+        """Report what is wrong, if that changed."""
         states = {process.watch.name: process.watch.trouble(now) for process in self._processes}
         if states == self._told:
             return
@@ -203,7 +205,7 @@ class Supervisor:
                 _say(said)
         self._told = states
         if self._face is not None:
-            # A pipe is full while its reader hangs: that is started anew, and hears the next line.
+            # The pipe is full while its reader hangs; a restarted reader gets the next line.
             with contextlib.suppress(BlockingIOError):
                 os.write(self._face[1], json.dumps(states).encode() + b"\n")
 
@@ -214,13 +216,13 @@ class Supervisor:
 
 
 def _told_by() -> tuple[signal.Signals, ...]:
-    """Return the signals that tell it to end; a lost terminal does not under ``nohup``."""
+    """Return the signals that end the supervisor; under ``nohup`` a lost terminal does not."""
     told = (signal.SIGINT, signal.SIGTERM)
     is_kept = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
     return told if is_kept else (*told, signal.SIGHUP)
 
 
 def _say(line: str) -> None:
-    # A terminal that is lost takes no more lines, and ends nothing.
+    # A lost terminal takes no more lines; that must not end the supervisor.
     with contextlib.suppress(OSError):
         print(f"[supervisor] {line}", file=sys.stderr, flush=True)

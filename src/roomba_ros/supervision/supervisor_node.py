@@ -1,4 +1,4 @@
-"""What the watcher of the processes says, on ROS; and the log of all nodes in one place."""
+"""Publishes the supervisor's reports, and collects the log of all nodes on one topic."""
 
 from __future__ import annotations
 
@@ -20,17 +20,11 @@ from roomba_ros.runtime.senders import SUPERVISOR
 _PERIOD: Final = 1.0
 """s of wall time between two diagnostics when nothing changes."""
 _LOOK: Final = 0.1
-"""s of wall time that it waits for news at most."""
+"""s of wall time that it waits for news at most, each time."""
 
 
 class SupervisorNode:
-    """Tells how the robot's processes are, as the process that started them all writes it.
-
-    Publishes: ``trouble`` (String, latched: what is wrong with processes and what is done about it;
-    empty when all is well), ``/diagnostics`` (1 Hz, and at a change), ``/rosout_agg`` (Log: what
-    all nodes log, for tools that show it).
-    Subscribes: ``/rosout`` (Log).
-    """
+    """Publishes the state of the robot's processes, as the supervisor writes it into a pipe."""
 
     def __init__(self, pipe: int) -> None:
         """Connect; ``pipe`` brings lines of JSON: trouble by process, empty when it is well."""

@@ -1,4 +1,4 @@
-"""What is to be done about one process: when it is started anew, ended, or given up."""
+"""Decides about one process: when it is restarted, ended, or given up."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Watch:
         self._start_at = -math.inf
         self._beaten = math.inf
         self.up_since = math.inf
-        """Since when it works, which its first sign of life tells; infinite while it does not."""
+        """When its first sign of life came; infinite while the process does not work."""
         self._stopped_since: float | None = None
         self.started_at, self._short_lives = -math.inf, 0
         self._last_end = ""
@@ -24,7 +24,7 @@ class Watch:
         self.is_given_up = False
 
     def started(self, now: float) -> None:
-        """Note that it was started; until its first sign of life it may take long."""
+        """Note that the process was started; its first sign of life may take long."""
         self.is_running, self._beaten, self._stopped_since = True, math.inf, None
         self.started_at = now
 
@@ -33,7 +33,7 @@ class Watch:
         self._beaten, self.up_since = now, min(self.up_since, now)
 
     def has_no_heart(self) -> None:
-        """Note that it gives no signs of life: a program of another package, or one that ends."""
+        """Note that no signs of life will come: it ends, or is a program of another package."""
         self._beaten, self._last_end = math.inf, ""
 
     def seen(self, now: float, *, is_stopped: bool) -> None:
@@ -44,9 +44,9 @@ class Watch:
             self._stopped_since = now
 
     def ended(self, now: float, how: str, *, counts: bool = True) -> None:
-        """Note that it ended, and how: it is started anew soon, unless that happens too often.
+        """Note that the process ended, and how; it is restarted soon, or given up.
 
-        A short life that does not count is none of those in a row after which it is given up.
+        It is given up after several short lives in a row. One that does not ``counts`` is left out.
         """
         config = self._config
         self.is_running, self._stopped_since, self._last_end = False, None, how
@@ -59,17 +59,17 @@ class Watch:
         self._start_at = now + config.back_after
 
     def wants_start(self, now: float) -> bool:
-        """Whether it is to be started now."""
+        """Whether to start the process now."""
         return not self.is_running and not self.is_given_up and now >= self._start_at
 
     def wants_end(self, now: float) -> bool:
-        """Whether it is to be ended now, as it does nothing any more."""
+        """Whether to end the process now, because it hangs or is stopped."""
         return self.is_running and (
             self._stopped_for(now) > self._config.stopped or self._silence(now) > self._config.hung
         )
 
     def trouble(self, now: float) -> str:
-        """Return what is wrong with it and what is done about that; empty when all is well."""
+        """Return what is wrong and what is done about it, in words; empty when all is well."""
         if self.is_given_up:
             return (
                 f"{self.name} keeps ending ({self._last_end}) and is not started any more: see its "

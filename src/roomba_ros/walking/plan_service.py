@@ -1,4 +1,4 @@
-"""Paths on the newest map: those of walks, and those that are asked for without walking them."""
+"""Paths on the newest map, for walks and for the service make_plan."""
 
 from __future__ import annotations
 
@@ -47,7 +47,8 @@ class PlanService:
         driving = read_mission_config(config).driving
         self._obstacles = Obstacles(things, config.walk, config.body, driving)
         self.lock = threading.Lock()
-        """Plans are made by ticks and by make_plan, and the planner works on one at a time."""
+        """Held while planning: ticks and make_plan plan on different threads, and the planner is
+        one."""
         self._planner: PathPlanner | None = None
         self._newer_map: tuple[PathPlanner, SurfaceField] | None = None
 
@@ -70,7 +71,7 @@ class PlanService:
                 self._obstacles.use(self._lookout.look_beside(field), Pose())
 
     def look(self) -> None:
-        """Look for what the map does not show."""
+        """Look in the newest scan for things that the map does not show."""
         with self.lock:
             self._senses.show(self._lookout)
 

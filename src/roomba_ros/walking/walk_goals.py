@@ -22,16 +22,16 @@ class WalkGoal(ActionGoal):
     @property
     @abstractmethod
     def destination(self) -> Point:
-        """Where to walk, m, map frame; raises MessageError for what is no place on the map."""
+        """The point to walk to, m, map frame; raises MessageError for an invalid one."""
 
     @property
     @abstractmethod
     def heading(self) -> float | None:
-        """Where to look to there, rad, map frame; None: as it comes."""
+        """The heading to turn to there, rad, map frame; None: any heading."""
 
     @abstractmethod
     def feedback_period(self, duration: float) -> float:
-        """Return how often to tell how far it is, s, on a walk of ``duration`` s."""
+        """Return the time between two feedback messages, s, for a walk of ``duration`` s."""
 
     @abstractmethod
     def _result(self, time_spent: float) -> Any:
@@ -88,7 +88,7 @@ class WalkToPointGoal(WalkGoal):
         return None
 
     def feedback_period(self, duration: float) -> float:
-        """Return how often to tell how far it is, s: the report's rule."""
+        """Return the time between two feedback messages, s, by the report's rule."""
         return feedback_period(duration)
 
     def _result(self, time_spent: float) -> WalkToPointResult:
@@ -105,20 +105,20 @@ class MoveBaseGoal(WalkGoal):
 
     @property
     def destination(self) -> Point:
-        """Where to walk, m, map frame; raises MessageError for another frame, too."""
+        """The point to walk to, m, map frame; raises MessageError for another frame, too."""
         pose = pose_in_map(self._handle.get_goal().target_pose)
         return pose.x, pose.y
 
     @property
     def heading(self) -> float | None:
-        """Where to look to there, rad; an orientation of zeros means none."""
+        """The heading to turn to there, rad; None for an orientation of zeros."""
         wanted = self._handle.get_goal().target_pose.pose.orientation
         if not any((wanted.x, wanted.y, wanted.z, wanted.w)):
             return None
         return theta_of(wanted)
 
     def feedback_period(self, duration: float) -> float:
-        """Return how often to tell where the robot is, s."""
+        """Return the time between two feedback messages, s."""
         return 0.2
 
     def _result(self, time_spent: float) -> MoveBaseResult:
@@ -129,6 +129,9 @@ class MoveBaseGoal(WalkGoal):
 
 
 def checked_goal(message: PoseStamped) -> PoseStamped:
-    """Return a pose to walk to as it came; raises MessageError if no robot can stand there."""
+    """Return a goal's pose unchanged; raises MessageError for an invalid one.
+
+    It is invalid in another frame than the map's, or with numbers that are not finite.
+    """
     pose_in_map(message)
     return message

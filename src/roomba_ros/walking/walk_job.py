@@ -1,4 +1,4 @@
-"""A goal under way: it is walked to, turned at, and, when it is cancelled, come to rest on."""
+"""A goal under way: the walk, the turn at its end, and how it comes to rest when cancelled."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from roomba_ros.walking.walk_topics import WalkTopics
 
 
 class WalkStage(enum.Enum):
-    """What is done of a goal now."""
+    """The stage that a goal under way is in."""
 
     WALKING = enum.auto()
     """The robot drives along its path."""
@@ -26,9 +26,9 @@ class WalkStage(enum.Enum):
     BRAKING = enum.auto()
     """The goal was cancelled, and the robot does not stand yet."""
     LETTING_GO = enum.auto()
-    """It stands; until its place was heard as the setpoint the cruise speed stays 0."""
+    """The robot stands; the cruise speed stays 0 until its place was heard as the setpoint."""
     OVER = enum.auto()
-    """How it ended was told."""
+    """The goal's end was reported."""
 
 
 class WalkJob:
@@ -47,9 +47,9 @@ class WalkJob:
         self._walk, self._topics, self._planning = walk, topics, planning
         self._end = nodes.walk_end
         self._stage_ends = math.inf
-        """When the stage is over at the latest, s of the robot's clock."""
+        """When the stage ends at the latest, s of the robot's clock."""
         self._setpoint: tuple[float, float] | None = None
-        """The newest one that was told, m; None before the first."""
+        """The newest setpoint that was published, m; None before the first."""
         self._feedback_period = self._feedback_due = 0.0
 
     @property
@@ -100,11 +100,11 @@ class WalkJob:
             rospy.loginfo("a new way: %.2f m to walk", walk.path.length)
             self._topics.show_path(senses.now, walk)
         self._topics.drive_at(step.cruise_speed)
-        # While its place is not known the setpoint moves nothing, but tells that the walk goes on.
+        # While the pose is unknown a setpoint moves nothing, but shows that the walk goes on.
         self._setpoint = step.setpoint
         self._topics.drive_to(*step.setpoint)
         if step.state in (WalkState.WALKING, WalkState.ASTRAY):
-            # Also while its place is not known: a walk that tells nothing counts as lost.
+            # Also while the pose is unknown: a walk without feedback counts as lost.
             self._tell_feedback(senses, step.distance_left)
         elif step.state is not WalkState.ARRIVED:
             rospy.logwarn("walk given up: %s", step.reason)
@@ -130,7 +130,7 @@ class WalkJob:
             self.give_up(senses.now, f"it is there, but {wrong:.2f} rad were not turned")
 
     def _brake(self, senses: Senses) -> None:
-        """Tell speed 0, and the last setpoint on: a stream that falls silent counts as lost."""
+        """Publish speed 0 and the last setpoint again: a stream that stops counts as lost."""
         self._topics.drive_at(0.0)
         if self._setpoint is not None:
             self._topics.drive_to(*self._setpoint)
@@ -140,13 +140,13 @@ class WalkJob:
             self._stage_ends = senses.now + self._end.heard_by
 
     def _let_go(self, senses: Senses, max_speed: float) -> None:
-        """Let the setpoint be where it stands, and then free the speed.
+        """Publish the robot's place as the setpoint, and only then free the speed.
 
-        Not before that place arrived: else the robot would drive to the old one.
+        If the speed were free before that setpoint arrived, the robot would drive to the old one.
         """
         if senses.knowledge.is_usable:
             self._topics.drive_to(senses.pose.x, senses.pose.y)
-        # By a clock that was set back it is not waited for.
+        # Do not wait by a clock that was set back.
         if self._stage_ends - self._end.heard_by <= senses.now < self._stage_ends:
             return
         self._topics.drive_at(max_speed)

@@ -91,7 +91,7 @@ class WalkToPointActionServer:
         """Look around, take new goals, obey cancels, and walk on."""
         self._parameters.refresh()
         if self._job is None or self._goals:
-            # A walk under way goes on by the map that it was planned on.
+            # A walk under way stays on the map that it was planned on.
             self._plans.use_newer_map()
         senses = self._sense(now)
         self._serve_when_ready(senses)
@@ -123,13 +123,13 @@ class WalkToPointActionServer:
         ready = knows or time.monotonic() > self._serves_by
         if ready and not self._serves:
             self._serves = True
-            # A server that ended in the middle of a walk may have left any cruise speed.
+            # A server that ended during a walk may have left any cruise speed.
             self._topics.drive_at(self._parameters.values.robot_max_speed)
             for server in self._servers:
                 server.start()
 
     def _take_goals(self, senses: Senses | None) -> None:
-        """Begin the newest goal that can be walked; of many at once the older are not planned."""
+        """Begin the newest goal that can be walked; of many at once the others are not planned."""
         has_newer = False
         for goal in reversed([self._goals.popleft() for _ in range(len(self._goals))]):
             if goal.is_recalled or has_newer:
@@ -173,7 +173,7 @@ class WalkToPointActionServer:
                 job.cancel(rospy.get_time())
 
     def _obey_emergency_stop(self) -> None:
-        """Give the walk under way up: releasing the stop is no order to drive on."""
+        """Give up the walk under way: to release the stop is no order to drive on."""
         if reason := self._held.reason:
             self._give_up(f"the emergency stop holds the drive: {reason}")
 
@@ -183,7 +183,7 @@ class WalkToPointActionServer:
             self._job = None
 
     def _on_simple_goal(self, message: PoseStamped) -> None:
-        # By its own topic and not directly, so that all subscribers see the goal.
+        # By its own topic and not by a call, so that all subscribers see the goal.
         goal = MoveBaseActionGoal(goal=MoveBaseGoalMessage(message))
         goal.header = header(rospy.get_time(), "")
         goal.goal_id.stamp = goal.header.stamp

@@ -1,4 +1,4 @@
-"""What a walk tells others: where to drive, how fast, where to look, and its path."""
+"""A walk's messages to other nodes: where to drive, how fast, which heading, and the path."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Joining the graph: under which name, and at which of this machine's addresses."""
+"""Joining the ROS graph: a node's name, and the address at which other nodes reach it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import rospy
 from roomba.errors import RoombaError
 
 _CHOOSING: Final = (rosgraph.ROS_HOSTNAME, rosgraph.ROS_IP)
-"""The environment variables that choose an address; the first counts more."""
+"""The environment variables that choose a node's address; the first takes precedence."""
 REACHED_WITHIN: Final = 3.0
 """s of wall time in which this machine reaches an address of its own."""
 
@@ -27,20 +27,20 @@ def join_graph(name: str, *, is_anonymous: bool = False) -> None:
 
 
 def listen_where_the_master_does() -> None:
-    """Listen on loopback alone, if the master is reached there and no address was chosen.
+    """Listen on loopback alone, if the master is on loopback and the user chose no address.
 
-    Without an address rospy listens on all interfaces, and any machine of the network can end the
-    node. Addresses are chosen by ROS_IP, ROS_HOSTNAME, or on the command line.
+    Otherwise rospy would listen on all interfaces, and any machine of the network could end the
+    node. Users choose an address by ROS_IP, ROS_HOSTNAME, or on the command line.
     """
     if _goes_by_loopback():
         os.environ[rosgraph.ROS_IP] = "127.0.0.1"
 
 
 def require_own_address() -> None:
-    """Raise RoombaError when this machine does not reach a node of its own.
+    """Raise RoombaError when nodes of this machine cannot reach one another.
 
-    Nodes tell each other the address that is chosen, or the name of the machine. One of elsewhere
-    is often left in a file of the shell: then each node waits for the others.
+    Nodes tell each other the chosen address, or else the machine's name. A shell's start-up file
+    often still sets another machine's address: then each node waits for the others.
     """
     if _goes_by_loopback():
         return
@@ -50,7 +50,7 @@ def require_own_address() -> None:
     try:
         with socket.create_server(place, family=family) as node:
             socket.create_connection((host, node.getsockname()[1]), REACHED_WITHIN).close()
-    except (OSError, UnicodeError) as error:  # the latter of names that cannot be any
+    except (OSError, UnicodeError) as error:  # UnicodeError: of a text that cannot be a host's name
         chosen = next((name for name in _CHOOSING if name in os.environ), None)
         raise RoombaError(
             f"expected {chosen or 'the name of this machine'} to lead to this machine, got "
@@ -60,7 +60,7 @@ def require_own_address() -> None:
 
 
 def _goes_by_loopback() -> bool:
-    """Whether no address was chosen, and the master is reached from this machine alone."""
+    """Whether the user chose no address, and the master's address is on loopback."""
     is_chosen = rosgraph.network.get_address_override() is not None
     return not is_chosen and is_loopback(rosgraph.get_master_uri())
 

@@ -1,4 +1,4 @@
-"""The ROS master, and nodes, asked with a deadline: rosgraph waits for one that hangs for ever."""
+"""Asking the ROS master and nodes with a deadline: rosgraph waits for ever for one that hangs."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from roomba.client.protocol import RobotUnavailableError
 from roomba.client.xml_rpc import ImpatientTransport
 
 ANSWER_WITHIN: Final = 5.0
-"""s of wall time without an answer, after which one hangs; a busy one takes over a second."""
+"""s of wall time after which a silent process counts as hanging; a busy one takes over a second."""
 _CALLER: Final = "/roomba_robot_start"
 _USUAL_PORT: Final = 11311
-"""Of a master, where its URI has none."""
+"""The port of a master whose URI has none."""
 
 
 class MasterState(Enum):
-    """What came of asking the ROS master."""
+    """The result of asking the ROS master."""
 
     ANSWERS = "it answers"
     HANGS = "it takes connections, or its machine is off, and nothing comes"
@@ -30,7 +30,7 @@ class MasterState(Enum):
 
 
 def node_at(uri: str) -> ServerProxy:
-    """Return a node, or the master, to be asked; raises OSError when it does not answer in time."""
+    """Return a proxy of a node or the master; its calls raise OSError after the deadline."""
     return ServerProxy(uri, transport=ImpatientTransport(ANSWER_WITHIN))
 
 

@@ -1,7 +1,7 @@
-"""Staying in the graph of a robot that is started anew: its new master knows no node from before.
+"""Keeps a program in the graph when the robot restarts: the new master does not know its nodes.
 
-rospy registers what it hears, tells and serves once. A program that goes on over the robot's end
-would be deaf from then on, and not say so.
+rospy registers publishers, subscribers and services once. A program that outlives the robot would
+hear nothing from then on, without noticing.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from roomba_ros.runtime.graph.master import master
 _LOOK: Final = 1.0
 """s of wall time between two looks whether the master knows this node."""
 _LOG: Final = "/rosout"
-"""The topic that each node tells."""
+"""A topic that every node publishes."""
 
 
 def stay_in_graph() -> None:
-    """Look from now on whether the master knows this node, and register it anew if not."""
+    """From now on, check whether the master knows this node, and register it anew if not."""
     threading.Thread(target=_stay, daemon=True).start()
 
 
@@ -45,7 +45,7 @@ def _is_known() -> bool:
 
 
 def _register_anew() -> None:
-    """Tell the master all that this node hears, tells and serves, and ask it for parameters."""
+    """Register all of this node with the master again, and forget cached parameters."""
     topics: Any = registration.get_topic_manager()
     services: Any = registration.get_service_manager()
     kinds = registration.Registration
@@ -56,5 +56,5 @@ def _register_anew() -> None:
     ):
         for name, told in registered:
             registration.get_registration_listeners().notify_added(name, told, kind)
-    # What is not kept is asked for again, and told when it changes.
+    # Parameters are asked for again, and the master then reports their changes again.
     paramserver.get_param_server_cache().set("/", {})

@@ -1,4 +1,4 @@
-"""Signs of life of a process, for the one that watches it."""
+"""A process's signs of life, for the supervisor that watches it."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ class Heart:
         self._pipe = pipe
 
     def begin(self) -> None:
-        """Beat from now on: before that, a process that starts may take its time."""
+        """Send signs of life from now on; a process that is still starting need not."""
         self._has_begun = True
 
     def beat(self) -> None:
-        """Tell that this process goes on: in its main loop, so that one that hangs does not."""
+        """Send a sign of life; call it in the main loop, so that a hanging loop sends none."""
         now = time.monotonic()
         if self._pipe < 0 or not self._has_begun or now - self._beaten < _PERIOD:
             return
         self._beaten = now
-        # A full pipe has signs enough; one without a reader ends with this process.
+        # A full pipe holds signs enough, and without a reader none are needed.
         with contextlib.suppress(OSError):
             os.write(self._pipe, b".")
 
 
 HEART: Final = Heart()
-"""That of this process."""
+"""The heart of this process."""

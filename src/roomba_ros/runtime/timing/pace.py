@@ -1,4 +1,4 @@
-"""The pace of the simulation: as fast as asked for, as long as the robot's nodes keep up."""
+"""The pace of the simulation: as fast as asked for while the robot's nodes keep up."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from typing import Final, NamedTuple
 from roomba.configuration.nodes import PaceConfig
 
 _LOOK: Final = 0.01
-"""s of wall time between two looks whether a part is still to be waited for, which says nothing."""
+"""s of wall time between two looks whether a silent part is still to be waited for."""
 
 
 class _Heard(NamedTuple):
-    """What a part told last: ``stamp`` in s of the robot's clock, the others in s of wall time."""
+    """A part's last message: ``stamp`` in s of the robot's clock, the others in s of wall time."""
 
     stamp: float
     advanced: float
-    """When it first told that stamp."""
+    """When the part first told that stamp."""
     answered: float
-    """When it told anything."""
+    """When the part last told any stamp."""
 
 
 class Pace:
     """Says when the next tick is due. The robot's parts tell how far they are by :meth:`heard`.
 
-    On a busy machine commands would come late for a world that goes on while the robot's nodes
-    still work. And a node that was killed comes back in a few seconds of wall time, which would be
-    minutes of a clock that is faster than real time.
+    The pace waits for them, for two reasons. On a busy machine commands would come too late if the
+    world went on while the robot's nodes still work. And a killed node needs a few seconds of wall
+    time to restart, which are minutes on a clock that is faster than real time.
     """
 
     def __init__(
@@ -44,7 +44,8 @@ class Pace:
         """Let a tick, ``tick`` s of the robot's clock, come every ``tick / speed`` s of wall time.
 
         ``is_there`` tells whether a node that was heard still runs. A dead node is not waited for,
-        but for a minute the clock goes no faster than real time until it is heard again.
+        but the clock goes no faster than real time until the node is heard again, for a minute at
+        most.
         """
         self._tick, self._speed, self._config = tick, speed, config
         self._monotonic, self._sleep, self._is_there = monotonic, sleep, is_there
@@ -56,9 +57,9 @@ class Pace:
         """Whether it was ever slower than asked for."""
 
     def heard(self, part: str, stamp: float) -> None:
-        """Hear that a part of the robot knows, or did, all up to a time of its clock, s.
+        """Hear that a part of the robot has worked up to a time of its clock, s.
 
-        One that tells the same again has not got any farther.
+        The same time again means that the part has not got any farther.
         """
         now, before = self._monotonic(), self._heard.get(part)
         advanced = before.advanced if before is not None and before.stamp == stamp else now
@@ -81,9 +82,9 @@ class Pace:
         self._ticked = self._monotonic()
 
     def _hold(self, now: float, ended: Callable[[], bool]) -> None:
-        """Wait for the parts that are late, and no longer than until the last of them is heard."""
+        """Wait for the parts that are late, at most until the last of them is heard."""
         while not ended():
-            self._has_news.clear()  # before the look: what is heard after it ends the wait
+            self._has_news.clear()  # cleared before the look: news after it ends the wait
             if not self._must_hold(now):
                 return
             self._wait_for(self._has_news, _LOOK)
@@ -98,9 +99,10 @@ class Pace:
         return is_gone and silence < self._config.longest_absence
 
     def _must_hold(self, now: float) -> bool:
-        """Whether a part is to be waited for; not if its clock is another one, or was set.
+        """Whether to wait for a late part; not if its clock is another one or was set.
 
-        Nor if it answered since the last tick: it works by the clock, which stands meanwhile.
+        A part that answered since the last tick is not waited for either: it goes by the clock,
+        which stands meanwhile.
         """
         advanced = [
             heard.advanced

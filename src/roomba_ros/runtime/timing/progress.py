@@ -1,4 +1,4 @@
-"""How far a node is, published for a simulation that waits for nodes that fall behind."""
+"""How far a node's work is, published for a simulation that waits for nodes that fall behind."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from std_msgs.msg import Time
 from roomba_ros.convert.common import stamp_of
 
 NODES: Final = ("speed_pub_node", "walk_to_point_action_server_node", "mission_node")
-"""Nodes that drive, so the simulation waits for them; ``/pose`` tells it of position_pub_node."""
+"""Nodes that drive, for which the simulation waits; ``/pose`` does the same for
+position_pub_node."""
 _PERIOD: Final = 0.05
-"""s of the ROS clock between two messages: a tick, so that a node that is late is seen to be."""
+"""s of the ROS clock between two messages: one tick, so that a late node is noticed."""
 
 
 class Progress:

@@ -10,7 +10,7 @@ import rospy
 from roomba.clock import ClockJumps
 
 _LONGEST_WAIT = 0.1
-"""s of wall time; how soon a shutdown or a clock set back is noticed."""
+"""s of wall time; within it a shutdown, or a clock that was set back, is noticed."""
 _EARLY = 1e-6
 
 

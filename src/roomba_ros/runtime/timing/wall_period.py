@@ -1,4 +1,4 @@
-"""A period of the wall's clock, which holds back what would be repeated too soon on a fast one."""
+"""A period of wall time, after which something may be repeated, however fast the ROS clock."""
 
 from __future__ import annotations
 
