@@ -18,15 +18,15 @@ from numba.extending import is_jitted
 from roomba.compiled_sources import PACKAGE, files_with_compiled_functions
 
 _SELDOM: Final = 10
-"""Times as many objects as usual are made until Python looks for garbage: compiling makes millions
-that stay, and looking through them took a tenth of it."""
+"""Factor by which garbage collection is made rarer: compiling makes millions of objects that stay,
+and collecting them took a tenth of its time."""
 
 
 @contextlib.contextmanager
 def compiled_functions_told() -> Iterator[None]:
     """Print the number and the name of each function that numba begins to compile here.
 
-    What is loaded from the cache on disk is not told.
+    Functions that are loaded from the cache on disk are not printed.
     """
     with _garbage_looked_for_seldom(), event.install_listener("numba:compile", _Teller(_print)):
         yield
@@ -48,7 +48,7 @@ def compiling_counted(tell: Callable[[str], None]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _garbage_looked_for_seldom() -> Iterator[None]:
-    """Pass over all objects that there are, and look at new ones more seldom."""
+    """Exclude all present objects from garbage collection, and collect new ones more seldom."""
     usual = gc.get_threshold()
     gc.freeze()
     gc.set_threshold(_SELDOM * usual[0], *usual[1:])
@@ -60,7 +60,7 @@ def _garbage_looked_for_seldom() -> Iterator[None]:
 
 
 class _Teller(event.Listener):
-    """Counts what begins to be compiled, and tells its number and name."""
+    """Counts the functions that begin to be compiled, and tells number and name of each."""
 
     def __init__(self, tell: Callable[[int, str], None]) -> None:
         self._count = 0
@@ -81,7 +81,7 @@ def _print(number: int, name: str) -> None:
 
 
 def left_to_compile() -> list[str]:
-    """Return the functions of this package of whose sources, as they are, no code is kept."""
+    """Return this package's functions whose present sources have no compiled code cached."""
     modules = [
         ".".join(("roomba", *path.relative_to(PACKAGE).with_suffix("").parts))
         for path in files_with_compiled_functions(PACKAGE)
@@ -93,13 +93,13 @@ def left_to_compile() -> list[str]:
         if is_jitted(value)
         and value.__module__ == module
         and not is_kept(value)
-        # One whose body stands in its callers is compiled with them.
+        # A function that is inlined into its callers is compiled with them.
         and value.targetoptions.get("inline") != "always"
     ]
 
 
 def is_kept(dispatcher: Any) -> bool:
-    """Tell whether a function's code is kept; one that nothing is kept of counts as if it were."""
+    """Return whether compiled code is in the cache; True also for functions that use no cache."""
     folder = dispatcher.stats.cache_path
     return folder is None or any(Path(folder).glob(f"*.{dispatcher.__qualname__}-*.nbi"))
 

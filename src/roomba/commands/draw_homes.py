@@ -66,7 +66,7 @@ def drawn_map(name: str, homes: Path) -> OccupancyMap:
 
 
 def _bounds(wall: WallEntry, resolution: float) -> Rectangle:
-    """Return what a wall lies in; of one off the grid, grown to whole cells."""
+    """Return the bounds of a wall; a wall that is off the grid is grown to whole cells."""
     if wall.area is not None:
         return Rectangle(*wall.area)
     reach = 0.5 * (wall.thickness or 0.0)
@@ -82,7 +82,7 @@ def _frame_around(walls: list[Rectangle], resolution: float, margin: int) -> Gri
     y_min = min(wall.y_min for wall in walls)
     columns = round((max(wall.x_max for wall in walls) - x_min) / resolution) + 2 * margin
     rows = round((max(wall.y_max for wall in walls) - y_min) / resolution) + 2 * margin
-    # Binary fractions of a twentieth add up to dust; the file shows tidy numbers.
+    # Multiples of 0.05 have rounding errors as floats; the file shall show tidy numbers.
     decimals = 1 - math.floor(math.log10(resolution))
     return GridFrame(
         resolution,

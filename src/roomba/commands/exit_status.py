@@ -1,4 +1,4 @@
-"""What comes of a command's work as the exit status of its process: an error is told in a line."""
+"""Turns the outcome of a command's work into an exit status; an error becomes one printed line."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def guarded(
 ) -> int:
     """Return the exit status of some work of a ``program``; an error is printed in a line.
 
-    For errors that are ``unfit`` it is USAGE, and ``refused`` for others of an input that cannot be
-    used. ``stopped`` is told after Ctrl-C. Raises BrokenPipeError, when the reader of the output
-    has closed it: that is for :mod:`.process_end`.
+    The status is USAGE for errors in ``unfit``, and ``refused`` for other errors of an unusable
+    input. ``stopped`` is printed after Ctrl-C. Raises BrokenPipeError, when the reader of the
+    output has closed it: that is for :mod:`.process_end`.
     """
 
     def complain(text: str, status: int) -> int:

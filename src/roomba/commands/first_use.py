@@ -27,19 +27,20 @@ _LONGEST_END: Final = 10.0
 """s that a process may take to end when it is told to."""
 
 Tell = Callable[[int, str], None]
-"""Takes how many functions were begun, and the name of the newest."""
+"""Called with the number of functions that were begun, and the name of the newest."""
 
 
 def require_compiled(*, is_quiet: bool) -> None:
-    """Compile what the headless robot cleans with, unless that is kept; show how far it is.
+    """Compile what a headless clean needs, unless it is in the cache; show the progress.
 
-    What does not compile is compiled again where it is called, and tells there what is wrong.
+    A function that fails to compile is compiled again at its first call, and raises its error
+    there.
     """
     with quiet_loading():
         from roomba.headless.burst_kernels import run
         from roomba.planning.coverage.tour.tour import iterated_local_search
 
-    # The last and largest ones of both halves.
+    # The last, and the largest, functions of both halves.
     if is_kept(run) and is_kept(iterated_local_search):
         return
     with _shown(is_quiet) as tell:
@@ -65,11 +66,11 @@ def compile_for_a_clean(half: str, tell: Tell) -> bool:
 
 @contextlib.contextmanager
 def _started(words: tuple[str, ...], told_to: int) -> Iterator[subprocess.Popen[bytes]]:
-    """Give a process of this Python for a module and its arguments, which ends with the block.
+    """Yield a process of this Python that runs a module; it ends with the block.
 
-    Ctrl-C is for this process alone, which ends the other one.
+    Ctrl-C reaches only this process, which ends the other one.
     """
-    # Without a buffer a line and its end are written one after the other: both halves' would mix.
+    # Unbuffered output writes a line and its end separately: lines of both halves would mix.
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
     command = [sys.executable, "-m", *words]
     process = subprocess.Popen(command, stdout=told_to, env=environment, start_new_session=True)
@@ -86,7 +87,7 @@ def _started(words: tuple[str, ...], told_to: int) -> Iterator[subprocess.Popen[
 
 @contextlib.contextmanager
 def _shown(is_quiet: bool) -> Iterator[Tell]:
-    """Give a function that shows the count on a terminal; a pipe is told the begin and the end."""
+    """Yield a function that shows the count on a terminal; a pipe gets only begin and end."""
     console, began = Console(stderr=True, quiet=is_quiet), time.monotonic()
     console.print(f"{_TITLE}; it takes about a minute on two cores.", soft_wrap=True)
     with console.status("") as status:

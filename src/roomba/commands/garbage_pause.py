@@ -1,4 +1,4 @@
-"""Imports of a start: what they make is not looked through for garbage."""
+"""Pauses garbage collection during the imports of a start."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def nothing_thrown_away() -> Iterator[None]:
-    """Look for no garbage meanwhile, and never look through what there is afterwards.
+    """Collect no garbage meanwhile, and exclude the present objects from later collections.
 
-    Hundreds of thousands of objects of modules stay for good. To look through them again and again
-    as they become more takes a tenth of a start.
+    Hundreds of thousands of objects of modules stay for good. To go through them again and again
+    while they become more takes a tenth of a start.
     """
     was_enabled = gc.isenabled()
     gc.disable()

@@ -1,4 +1,4 @@
-"""Command lines: one parser and one spelling of the options that several commands have."""
+"""Parsers of command lines, with one spelling of the options that several commands share."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Named: TypeAlias = tuple[str, Path | None]
 """An option, and the file that it names."""
 MOST_SEED: Final = 2**63 - 1
 STANDARD_OUTPUT: Final = "-"
-"""In place of a file's name."""
+"""The file name that stands for standard output."""
 _HELP: Final = ("-h", "--help")
 
 
@@ -27,7 +27,7 @@ class UsageError(RoombaError):
 
 
 class HelpfulParser(argparse.ArgumentParser):
-    """Obeys ``--help`` wherever it stands, also where a value is due."""
+    """Prints the help for ``--help`` anywhere on the line, even where a value is due."""
 
     def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
         """Parse a command line; raises SystemExit for ``--help`` and for wrong usage."""
@@ -37,12 +37,12 @@ class HelpfulParser(argparse.ArgumentParser):
 
 
 class Parser(HelpfulParser):
-    """Refuses in one line, by UsageError, and takes numbers below 0 for values."""
+    """Refuses in one line, by UsageError, and reads negative numbers as values."""
 
     def __init__(self, program: str, description: str, epilog: str) -> None:
         """Expect the options of the command that is spelled ``program``."""
         super().__init__(prog=program, allow_abbrev=False, description=description, epilog=epilog)
-        # Python's own pattern knows no exponents: -1e-05 would be taken for an option.
+        # Python's own pattern knows no exponents: it would take -1e-05 for an option.
         self._negative_number_matcher = re.compile(r"-(\.?\d|inf|nan)")
 
     def error(self, message: str) -> NoReturn:
@@ -118,7 +118,7 @@ def folder(text: str) -> Path:
 
 
 def file_of(name: str | None) -> Path | None:
-    """Return the file that figures are written to; None for standard output."""
+    """Return the file to write figures to; None for standard output."""
     return None if name in (None, STANDARD_OUTPUT) else Path(str(name))
 
 
@@ -129,7 +129,7 @@ def check_config(path: Path | None) -> None:
 
 
 def check_written(written: Sequence[Named], read: Sequence[Named]) -> None:
-    """Refuse before the work what could not be written after it; raises UsageError.
+    """Refuse files that cannot be written, before the work is done; raises UsageError.
 
     ``read`` are options with files that must not be overwritten.
     """
@@ -149,7 +149,7 @@ def check_written(written: Sequence[Named], read: Sequence[Named]) -> None:
 
 
 def _is_writable(path: Path) -> bool:
-    """Whether a file can be written, and made if it is not there yet."""
+    """Whether a file can be written, or created."""
     if path.exists():
         return os.access(path, os.W_OK)
     try:

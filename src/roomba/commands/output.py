@@ -1,4 +1,4 @@
-"""Telling what came of a run: tables for people, figures for programs."""
+"""Prints a run's result: tables for people, figures for programs."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from roomba.files.atomic import write_output
 from roomba.geometry import Pose
 
 _WIDTH: Final = 120
-"""Columns of a table that does not go to a terminal."""
+"""Columns of a table, if the output is no terminal."""
 
 
 def named_table(rows: Iterable[tuple[str, str]], styles: Mapping[str, str] | None = None) -> Table:
-    """Return a table of names and texts; ``styles`` has rich's style of a text by its name."""
+    """Return a table of names and texts; ``styles`` has rich's styles for texts by their names."""
     table = Table.grid(padding=(0, 2))
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
@@ -30,7 +30,7 @@ def named_table(rows: Iterable[tuple[str, str]], styles: Mapping[str, str] | Non
 
 
 def clock(seconds: float) -> str:
-    """Return a time for people."""
+    """Return a time as text."""
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     if hours:
@@ -39,7 +39,7 @@ def clock(seconds: float) -> str:
 
 
 def tell_tables(tables: Iterable[Table], figures: str | None, *, quiet: bool) -> None:
-    """Print tables, unless ``quiet``; with ``figures`` on standard output to standard error."""
+    """Print tables unless ``quiet``, on standard error if ``figures`` take standard output."""
     if quiet:
         return
     console = Console(stderr=figures == STANDARD_OUTPUT)
@@ -59,7 +59,7 @@ def pose_as_json(pose: Pose) -> dict[str, float]:
 
 
 def write_json(target: str, values: dict[str, Any]) -> None:
-    """Write figures to a file, whole or not at all, or standard output; raises OSError."""
+    """Write figures to a file, all or nothing, or to standard output; raises OSError."""
     text = json.dumps(values, allow_nan=False)
     if target == STANDARD_OUTPUT:
         print(text, flush=True)

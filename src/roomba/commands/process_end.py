@@ -1,6 +1,6 @@
-"""How the process of a command ends when its reader or its user has had enough: no traceback.
+"""Ends a command's process without a traceback when its reader or its user has had enough.
 
-It imports the standard library alone, for ``./roomba doctor`` has to speak when nothing is set up.
+It imports the standard library alone, since ``./roomba doctor`` must work when nothing is set up.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from collections.abc import Iterator
 from typing import Final
 
 FAILED: Final = 1
-"""Exit status when the output is read no more, or disk or memory is full."""
+"""Exit status when the output's reader is gone, or disk or memory is full."""
 INTERRUPTED: Final = 130
 """Exit status after Ctrl-C."""
 _STANDARD_ERROR: Final = 2
 STOPPED: Final = "stopped on the way"
-"""What is told after Ctrl-C."""
+"""The text that is printed after Ctrl-C."""
 _FULL: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""Reasons for which a file takes no more."""
+"""Error numbers of a disk or file that takes no more."""
 
 
 def ending_signals() -> tuple[signal.Signals, ...]:
-    """Return the signals that tell a program to end; a lost terminal does not under ``nohup``."""
+    """Return the signals that end a program; under ``nohup`` a lost terminal does not."""
     told = (signal.SIGINT, signal.SIGTERM)
     is_kept = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
     return told if is_kept else (*told, signal.SIGHUP)
@@ -59,8 +59,8 @@ def quiet_end() -> Iterator[None]:
 def quiet_loading() -> Iterator[None]:
     """End the process at once if Ctrl-C comes while modules are imported, which takes a second.
 
-    There is nothing to clean up yet, and compiled modules make an ImportError of an interrupt. It
-    stays ignored where it was.
+    There is nothing to clean up yet, and compiled modules turn an interrupt into an ImportError. If
+    Ctrl-C was ignored before, it stays so.
     """
     before = signal.getsignal(signal.SIGINT)
     if before is signal.default_int_handler:
@@ -78,21 +78,21 @@ def _leave(*_: object) -> None:
 
 @contextlib.contextmanager
 def _flushed_output() -> Iterator[None]:
-    """Write what is printed to the end, also what a parser prints before it ends the process.
+    """Write all printed text at the end, also that of a parser that ends the process.
 
-    What a terminal of another character set does not have, such as m² in ASCII, becomes ``?``.
+    Characters that the output's encoding lacks, such as m² in ASCII, become ``?``.
     """
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")
     try:
         yield
     finally:
-        if sys.stdout is not None:  # as a shell closes it by >&-
+        if sys.stdout is not None:  # None if a shell closed it by >&-
             sys.stdout.flush()
 
 
 def _give_output_up() -> None:
-    """Let nothing be written any more: at its end Python would try to write the rest."""
+    """Drop what is still to be written: Python would try to write it at its end."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, sys.stdout.fileno())
     os.close(nowhere)

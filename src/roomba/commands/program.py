@@ -1,6 +1,6 @@
 """The program ``roomba`` of the installed library: the commands that need no ROS.
 
-``./roomba`` of a checkout does them by this program as well, and has those that need ROS beside.
+``./roomba`` of a checkout runs them by this program, too, and has further commands that need ROS.
 """
 
 from __future__ import annotations
@@ -35,23 +35,23 @@ _COMMANDS: Final = {
     "bench": "roomba_bench.__main__",
     "doctor": "roomba.commands.installed_doctor",
 }
-"""The module whose ``main`` is the command; each is loaded when it is asked for."""
+"""By command, the module whose ``main`` runs it; each is loaded when it is needed."""
 _OF_RECORDINGS: Final = {"map": "roomba.commands.map.drive.command"}
-"""The same of a command with ``--bag``."""
+"""The same for commands with ``--bag``."""
 _OF_VALETUDO: Final = {"export": "roomba.commands.valetudo.export_command"}
 """The same of a command whose first word is valetudo."""
 _DEMOS: Final = {"control": "roomba.commands.control.command"}
-"""The same of a command that needs ROS, but not with ``--demo``."""
+"""The same for commands that need ROS, unless they have ``--demo``."""
 _ON_WINDOWS: Final = ("sim", "doctor")
-"""The commands that keep no files in a folder of this program's own."""
+"""The commands that save nothing in a folder of this program."""
 _NEED_ROS: Final = ("run", "control", "camera", "exec", "record", "service")
 _NEED_CHECKOUT: Final = ("test", "soak", "fuzz", "sbom", "exercise", "docs")
 _USAGE: Final = Path(__file__).with_name("usage.txt")
-"""What ``./roomba help`` prints, of which this program has a part."""
+"""The text of ``./roomba help``, of which this program prints a part."""
 
 
 def program() -> int:
-    """Run the command of the command line; returns the exit status, 2 for one that is not here."""
+    """Run the command of the command line; returns the exit status, 2 for an unknown command."""
     with quiet_end():
         return _run()
 
@@ -95,7 +95,7 @@ def _loaded(module: str) -> ModuleType:
 
 
 def _usage() -> str:
-    """Return the entries of the commands that are here."""
+    """Return the usage entries of the commands that this program has."""
     _, listed, _ = _USAGE.read_text(encoding="utf-8").split("\n\n", 2)
     entries = re.split(r"\n(?=  \w)", listed)
     here = {*_COMMANDS, *_DEMOS, "version", "help"}
@@ -104,7 +104,7 @@ def _usage() -> str:
 
 
 def _elsewhere() -> str:
-    """Return which commands are not here, and where they are."""
+    """Return a text about the other commands: where they are."""
     with_demo = " and ".join(_DEMOS)
     need_ros = ", ".join(name for name in _NEED_ROS if name not in _DEMOS)
     told = (

@@ -1,4 +1,4 @@
-"""Progress of a run: a bar on a terminal, plain lines in a pipe, both on standard error."""
+"""Shows a run's progress on standard error: a bar on a terminal, plain lines in a pipe."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from roomba.shares import whole_percent
 from roomba.ui.live_bar import live_bar
 
 Show = Callable[[float, str], None]
-"""Takes the share that is done, 0..1, and some words."""
+"""Called with the share that is done, 0..1, and a text."""
 
 _REDRAWN: Final = 0.1
-"""s between two pictures of the bar."""
+"""s between two drawings of the bar."""
 _FIRST_LINE, _SLOWER, _SELDOM = 1.0, 1.5, 30.0
-"""s before the first plain line; so many times longer before each next one, at most so long."""
+"""s before the first plain line; the factor by which each further pause is longer; the longest
+pause."""
 
 
 @contextlib.contextmanager

@@ -19,11 +19,11 @@ from roomba.files.atomic import write_whole
 
 PROGRAM: Final = spelled("service")
 UNITS: Final = ("roomba.service", "roomba.socket")
-"""Files of ``launch`` in which what stands between ``@`` is filled in."""
+"""Unit files in ``launch``, with names between ``@`` that are replaced by values."""
 FOLDER: Final = Path("/etc/systemd/system")
-"""Where an administrator's units are."""
+"""The folder of an administrator's units."""
 _ARGUMENT: Final = re.compile(r"[A-Za-z_]\w*:=[\w./:+,-]*")
-"""What needs no quotes in a unit."""
+"""Arguments of this form need no quotes in a unit."""
 _PATH: Final = re.compile(r"/[\w./+-]*")
 _PATIENCE: Final = 60.0
 """s of wall time for one command of systemd."""
@@ -38,7 +38,7 @@ Run = Callable[[Sequence[str]], None]
 
 
 def units(repository: Path, port: int, arguments: Sequence[str]) -> dict[str, str]:
-    """Return the text of each unit by its name; raises ServiceError for what no unit can say."""
+    """Return the text of each unit by its name; raises ServiceError for invalid arguments."""
     if not _PATH.fullmatch(str(repository)):
         raise ServiceError(
             f"expected a checkout whose path has letters, digits and ._+- alone, got {repository}"
@@ -67,7 +67,7 @@ def install(texts: dict[str, str], folder: Path, run: Run) -> None:
     try:
         for name, text in texts.items():
             write_whole(folder / name, text.encode())
-            # Not only root may read how the service is run.
+            # Users other than root may read how the service is run.
             (folder / name).chmod(0o644)
     except OSError as error:
         raise ServiceError(

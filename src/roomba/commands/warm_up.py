@@ -1,10 +1,10 @@
-"""Compiles the hot loops once, so that the first start of the robot is as quick as every other.
+"""Compiles the hot loops once, so that the first start of the robot is as quick as later ones.
 
-Numba keeps what it compiled in a cache on disk. ``./roomba`` runs this when something is not there,
-and beside it :mod:`roomba.commands.trials.warm`: a plan here and a clean there are what a robot
-needs first, and what one of them compiled, the other one finds in the cache. So each begins with
-large loops that the other half needs later. All that may wait, here ``others``, is compiled while
-the robot is used already: bursts, the camera, :mod:`roomba.commands.map.warm`.
+Numba keeps compiled functions in a cache on disk. ``./roomba`` runs this module when one is missing
+there, and :mod:`roomba.commands.trials.warm` beside it. A plan here and a clean there are what a
+robot needs first. Each of the two finds in the cache what the other has compiled, so each begins
+with large loops that the other needs later. The functions ``others`` may wait, and are compiled
+while the robot is used already: bursts, the camera, :mod:`roomba.commands.map.warm`.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from roomba.world.simulator import Simulator
 def main() -> None:
     """Cut a map into rooms, plan, and walk in a small room.
 
-    The other half begins with making a robot.
+    The other process begins by making a robot.
     """
     home = _small_room()
     segment(home.map)
@@ -48,7 +48,7 @@ def main() -> None:
 
 
 def others() -> None:
-    """Do there what a first clean can do without."""
+    """Compile here what a first clean can do without."""
     home, config = _small_room(), SimulatedRobotConfig()
     simulator = Simulator(home, config)
     _take_pictures(home, config, simulator)
@@ -70,7 +70,7 @@ def _plan(home: Home, robot: HeadlessMission) -> None:
 
 
 def _take_pictures(home: Home, config: SimulatedRobotConfig, simulator: Simulator) -> None:
-    """Take one of each quality, and one of the lidar."""
+    """Take a picture of each quality, and a scan."""
     scene = Scene.of(home)
     for supersampling in (1, 2):
         camera = Camera(scene, config.camera, supersampling)
@@ -79,7 +79,7 @@ def _take_pictures(home: Home, config: SimulatedRobotConfig, simulator: Simulato
 
 
 def _find_place(home: Home, config: RobotConfig, simulator: Simulator) -> None:
-    """Look for the robot in the map, and follow it."""
+    """Localize the robot on the map, and track it."""
     lidar = config.lidar
     localizer = Localizer(
         home.map, config.localization, config.gyro, config.body.radius, simulator.pose
@@ -93,7 +93,7 @@ def _find_place(home: Home, config: RobotConfig, simulator: Simulator) -> None:
 
 
 def _find_place_while_driving(home: Home, config: RobotConfig, view: ScanView) -> None:
-    """Look for a robot whose place one scan does not tell."""
+    """Localize a robot whose place is not clear from one scan."""
     search = ParticleSearch(SurfaceField.of(home.map), config.body.radius)
     search.see(view, Pose())
     search.see(view, Pose(0.5, 0.0, 0.0))
@@ -118,7 +118,7 @@ def _plan_beside_slanted_walls(home: Home) -> None:
 
 
 def _look_for_changes(home: Home, config: RobotConfig, simulator: Simulator) -> None:
-    """Look from a few places for what stands otherwise than the map shows it."""
+    """Look from some places for differences between the home and the map."""
     lidar = config.lidar
     model = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
     changes = MapChanges(home.map, MapChangesConfig(look_way=0.1, look_time=1.0))

@@ -29,7 +29,7 @@ from roomba.ui.progress import quantity
 from roomba.vocabulary import HELD, CleanMode
 
 MOST_MISSED = 10
-"""Areas that a report names; the largest come first."""
+"""The most missed areas that a report names, the largest first."""
 
 _ENDS = {
     ErrandOutcome.COMPLETED: "The clean is done, and the robot is back on its station",
@@ -42,7 +42,7 @@ _ENDS = {
     ErrandOutcome.FAULT: "The robot gave up",
     ErrandOutcome.DISCONNECTED: "The connection to the clean was lost",
 }
-"""What is said of a clean's end."""
+"""The sentence for each end of a clean."""
 
 _DOCK_ENDS = {
     ErrandOutcome.COMPLETED: "The robot is on its charging station",
@@ -50,7 +50,7 @@ _DOCK_ENDS = {
     ErrandOutcome.REFUSED: "The robot refuses",
     ErrandOutcome.DISCONNECTED: "The connection to the robot was lost",
 }
-"""What is said of the end of a way to the station; else it gave up."""
+"""The sentence for each end of a way to the station; at any other end the robot gave up."""
 
 
 def clean(menu: Menu) -> None:
@@ -61,7 +61,7 @@ def clean(menu: Menu) -> None:
 
 
 def pause_or_go_on(menu: Menu) -> None:
-    """Pause the robot, or let it go on if it stands and waits for that."""
+    """Pause the robot; if it is paused or held, let it go on."""
     if menu.robot.vacuum().state in HELD:
         menu.robot.resume()
         menu.say("The robot goes on.")
@@ -115,7 +115,7 @@ CLEANING: tuple[Option, ...] = (
     Option("Dock: onto the charging station, by its beams", dock),
     Option("What the robot does", tell_state),
 )
-"""What a robot that cleans adds to the menu."""
+"""The options that the menu has for a robot that cleans."""
 
 CLEANING_HEADING = "to clean"
 
@@ -139,7 +139,7 @@ def _ask_rooms(menu: Menu, names: Sequence[str]) -> list[str]:
     for number, name in enumerate(names, start=1):
         menu.say(f"  {number}. {name}")
     known = {str(number): name for number, name in enumerate(names, start=1)}
-    # a room's name counts more than a number that reads the same
+    # a room's name takes precedence over a number that reads the same
     known |= {name.casefold(): name for name in names}
     while True:
         text = menu.ask(" Rooms, by name or number, with commas between: ")

@@ -9,16 +9,16 @@ from collections.abc import Mapping
 from typing import Final
 
 _SCREENS: Final = ("DISPLAY", "WAYLAND_DISPLAY")
-"""Variables that name a screen where one has to be named."""
+"""Environment variables that name a screen, on systems where windows need one."""
 
 
 def names_screen(environment: Mapping[str, str] = os.environ) -> bool:
-    """Whether a screen is named on which windows open."""
+    """Whether the environment names a screen for windows."""
     return any(environment.get(name) for name in _SCREENS)
 
 
 def has_desktop(environment: Mapping[str, str] = os.environ, platform: str = sys.platform) -> bool:
-    """Whether a window can be seen: a terminal alone would get a browser of text into it."""
+    """Whether the user sees windows; on a terminal alone, a text browser would open in it."""
     return platform in ("darwin", "win32") or names_screen(environment)
 
 

@@ -1,6 +1,7 @@
-"""Following a clean or a way to the station to its end, or until its user has seen enough.
+"""Follows a clean or a way to the station until it ends, or until the user has seen enough.
 
-Unlike a walk it continues without the menu: Ctrl-C leaves it, and does not cancel it.
+Unlike a walk, an errand goes on without the menu: Ctrl-C stops following it, and does not cancel
+it.
 """
 
 from __future__ import annotations
@@ -21,10 +22,10 @@ from roomba.ui.live_bar import live_bar
 from roomba.ui.progress import POLL_TIME, quantity, say
 
 ERRAND_SILENCE_LIMIT = 15.0
-"""s without any news until an errand is given up here; they are due every second."""
+"""s without news after which the menu stops following an errand; news is due every second."""
 
 LINE_PERIOD = 10.0
-"""s between two plain lines of a clean that says nothing new: a clean takes an hour."""
+"""s between two plain lines while nothing changes: a clean takes an hour."""
 
 _News = TypeVar("_News", covariant=True)
 _Report = TypeVar("_Report", covariant=True)
@@ -47,9 +48,9 @@ def follow_errand(
     wants_to_leave: Callable[[], bool],
     clock: Clock = time,
 ) -> _Report | None:
-    """Show an errand until it ends, and return its report; None if its user left before.
+    """Show an errand until it ends, and return its report; None if the user left before.
 
-    Raises RobotUnavailableError when nothing is heard of it for :data:`ERRAND_SILENCE_LIMIT`.
+    Raises RobotUnavailableError when no news comes for :data:`ERRAND_SILENCE_LIMIT`.
     """
     heard = clock.monotonic()
     while (report := errand.report()) is None:
@@ -71,7 +72,7 @@ def follow_errand(
 
 
 def percent(share: float) -> str:
-    """Return a share, 0..1, for people; 100 % is all of it, and nothing less."""
+    """Return a share, 0..1, as text; 100 % means all of it, and nothing less."""
     return f"{whole_percent(share)} %" if math.isfinite(share) else "unknown"
 
 
@@ -86,7 +87,7 @@ def time_text(seconds: float) -> str:
 
 
 def to_go_text(seconds: float) -> str:
-    """Return the time to go for people; nothing where there is none, or none is known yet."""
+    """Return the time to go as text; empty where there is none, or it is not known yet."""
     return "" if seconds <= 0.0 else f"{time_text(seconds)} to go"
 
 
@@ -106,7 +107,7 @@ class CleanView(Protocol):
 
 
 class CleanLines:
-    """A plain line for each new state and room, and now and then between."""
+    """A plain line for each new state or room, and one now and then between them."""
 
     def __init__(self, console: Console, clock: Clock) -> None:
         self._console, self._clock = console, clock
@@ -130,7 +131,7 @@ class CleanLines:
 
 
 _FIELDS = ("area", "battery", "to_go", "where")
-"""What stands after the bar; the last is cut off where there is no room."""
+"""The texts after the bar; the last one is cut off where there is no room."""
 
 
 class CleanBar:

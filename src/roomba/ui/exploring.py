@@ -12,7 +12,7 @@ from roomba.ui.menu import Menu, Option
 from roomba.ui.progress import quantity
 
 STEP = 5.0
-"""m2; so much more must be known before it is said again."""
+"""m2 of newly known floor after which the menu tells the area again."""
 
 _ENDS = {
     ErrandOutcome.COMPLETED: "All that can be seen is mapped, and the robot is back on its station",
@@ -25,7 +25,7 @@ _ENDS = {
     ErrandOutcome.FAULT: "The robot gave up",
     ErrandOutcome.DISCONNECTED: "The connection to the exploration was lost",
 }
-"""What is said of an exploration's end."""
+"""The sentence for each end of an exploration."""
 
 
 def explore(menu: Menu) -> None:
@@ -63,4 +63,4 @@ TASKS: tuple[Option, ...] = (
     Option("Explore: make a map of a home that it does not know", explore),
     Option("The dust bin was emptied", empty_bin),
 )
-"""What a robot that cleans and makes maps adds to the menu."""
+"""The options that the menu has for a robot that cleans and makes maps."""

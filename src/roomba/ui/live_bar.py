@@ -1,4 +1,4 @@
-"""The bar that shows how far something is: one look for walks, cleans and commands."""
+"""The progress bar, with the same look for walks, cleans and commands."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ def live_bar(
 ) -> Iterator[Progress]:
     """Give rich's display of a task: its name, a bar of ``width`` columns, and its ``fields``.
 
-    It is drawn when a caller updates a task, and not by a thread of its own: a view that shows
-    nothing new costs nothing. What it holds is no markup, as a room's name may look like some. One
-    that ``stays`` is left on the terminal at the end.
+    The bar is drawn when a caller updates a task, and by no thread of its own: a view without news
+    costs nothing. Texts are not read as markup, since a room's name may look like it. If it
+    ``stays``, the bar is left on the terminal at the end.
     """
     progress = Progress(
         TextColumn("{task.description}", markup=False),
-        # rich's own colours look all the same on a terminal with 16 of them
+        # on a terminal with 16 colours, rich's own colours of a bar all look the same
         BarColumn(
             bar_width=width,
             style="bright_black",

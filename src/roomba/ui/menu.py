@@ -41,7 +41,7 @@ ALREADY_THERE = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """A line of the menu and what it does."""
+    """A line of the menu and the function that it calls."""
 
     label: str
     act: Callable[[Menu], None]
@@ -50,7 +50,7 @@ class Option:
 class Menu:
     """The menu on a console; ``read`` asks as ``input`` does, ``options`` are numbered from 1.
 
-    ``more`` come below them, under ``more_heading``, and are numbered on.
+    The options ``more`` follow below, under ``more_heading``; the numbers continue.
     """
 
     def __init__(
@@ -100,7 +100,7 @@ class Menu:
         return ask(self._read, prompt)
 
     def key_of(self, act: Callable[[Menu], None]) -> str:
-        """Return the number to press for what an option does."""
+        """Return the number to press for the option that calls ``act``."""
         return str([option.act for option in self._options].index(act) + 1)
 
     def tell_dirt(self) -> None:
@@ -144,7 +144,7 @@ class Menu:
         while True:
             text = self.ask(prompt)
             number = read_number(text)
-            limits = self.robot.limits()  # asked anew each time: they may be changed meanwhile
+            limits = self.robot.limits()  # read each time: the limits may change
             if number is not None and limits.low <= number <= limits.high:
                 return number
             expected = f"a number from {limits.low:g} to {limits.high:g} (metres)"
@@ -180,7 +180,7 @@ class Menu:
                     clock=self.clock,
                 )
         except BaseException:
-            # whatever ends the menu here, the robot must not walk on unseen
+            # however the menu ends here, the robot must not walk on unseen
             with contextlib.suppress(RoombaError):
                 walk.cancel()
             raise
@@ -196,7 +196,7 @@ class Menu:
             self.say(f"The robot was lost after {travelled} and {took}: {reason}", style="red")
         else:
             arrived = report.outcome is WalkOutcome.ARRIVED
-            # another program's goal may have ended it: then the message says so
+            # another program's goal may have replaced the walk: then the message says so
             why = f": {reason}" if report.message else "."
             self.say("The robot has arrived." if arrived else f"The walk was cancelled{why}")
             self.say(f"Position reached: {self._position()}")

@@ -1,6 +1,7 @@
-"""Following a walk to its end, and showing how it goes on.
+"""Follows a walk to its end, and shows how far it is.
 
-On a terminal a live bar of rich, elsewhere (a pipe, a dumb terminal) one plain line per feedback.
+On a terminal it shows a live bar of rich, elsewhere (a pipe, a dumb terminal) one plain line for
+each feedback.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from roomba.errors import RoombaError
 from roomba.ui.live_bar import live_bar
 
 POLL_TIME = 0.25
-"""s between two looks at a walk: how late a Ctrl-C is seen at most."""
+"""s between two looks at a walk: Ctrl-C is noticed after that time at the latest."""
 
 STATE_TIMEOUT = 0.2
 """s to wait for a state while walking; without one the speed is told as unknown."""
@@ -91,10 +92,10 @@ class LiveView(LineView):
         )
 
     def feedback(self, left: float, speed: float) -> None:
-        """Print a line and move the bar; a way around something may leave more than at first."""
+        """Print a line and move the bar; a detour may leave more distance than at first."""
         super().feedback(left, speed)
         self._update(
-            completed=self._total - left,  # rich draws less than nothing as nothing
+            completed=self._total - left,  # rich draws a negative share as an empty bar
             left=_left(left),
             pace=_pace(speed),
         )
@@ -140,7 +141,7 @@ def follow_walk(
     wants_to_stop: Callable[[], bool],
     clock: Clock = time,
 ) -> WalkReport:
-    """Show a walk of ``total`` m until it ends; always returns, and never turns in circles.
+    """Show a walk of ``total`` m until it ends; returns after a finite time in any case.
 
     ``wants_to_stop`` is asked every :data:`POLL_TIME`; once true, the walk is cancelled. A robot
     that neither reports nor moves for :data:`SILENCE_LIMIT`, or does not confirm a cancellation
@@ -158,7 +159,7 @@ def follow_walk(
                 f"it did not confirm within {CANCEL_DEADLINE:g} s that it stops"
             )
         if signs_of_life.silence >= SILENCE_LIMIT:
-            _cancel(walk)  # should it hear again, it must not walk on unseen
+            _cancel(walk)  # the robot may answer again later: then it must not walk on unseen
             return signs_of_life.disconnected(f"it has not answered for {SILENCE_LIMIT:g} s")
         left = walk.next_feedback(POLL_TIME)
         state = _newest_state(robot)
@@ -204,7 +205,7 @@ class _SignsOfLife:
             self._seen = self._clock.monotonic()
 
     def disconnected(self, message: str) -> WalkReport:
-        """Return the end of a walk that the robot itself does not report."""
+        """Return the report of a walk whose robot is silent."""
         return WalkReport(
             outcome=WalkOutcome.DISCONNECTED,
             distance=max(0.0, self._total - self._left),
@@ -221,6 +222,6 @@ def _newest_state(robot: RobotClient) -> RobotState | None:
 
 
 def _cancel(walk: WalkHandle) -> None:
-    # a robot that cannot be told is found out by the deadline
+    # a robot that gets no cancel does not confirm it: the deadline notices
     with contextlib.suppress(RoombaError):
         walk.cancel()

@@ -76,7 +76,8 @@ def ask(read: Read, prompt: str) -> str:
     try:
         return read(prompt).strip()
     except EOFError:
-        # own name, so that an EOFError of the robot's connection is not taken for this
+        # an own class, so that an EOFError of the robot's connection is not taken for the input's
+        # end
         raise EndOfInputError from None
 
 
@@ -86,7 +87,7 @@ def read_number(text: str) -> float | None:
         number = float(text)
     except ValueError:
         return None
-    # `float` takes 1_0 for 10; from a keyboard it is a slip
+    # `float` reads 1_0 as 10; at a keyboard that is a typing error
     return number if math.isfinite(number) and "_" not in text else None
 
 
@@ -101,10 +102,7 @@ def explain(error: RoombaError) -> str:
 
 
 class Interrupts:
-    """What Ctrl-C means: at a prompt it leaves; while held, the first is noted, the next leaves.
-
-    Takes the place of any other handler while entered: rospy's would swallow the Ctrl-C.
-    """
+    """Handles Ctrl-C: at a prompt it leaves; while held, the first is noted, the next leaves."""
 
     def __init__(self) -> None:
         self._holding = False

@@ -39,7 +39,7 @@ def lines_of(state: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _planned(plans: dict[str, Any]) -> list[tuple[str, str]]:
-    """Return what is planned: what comes next, and what waits and why."""
+    """Return the next plan, and which plans wait and why, as text."""
     lines = []
     if plans.get("running"):
         held = ", paused while a person is at home" if plans["is_held"] else ""

@@ -1,4 +1,4 @@
-"""What can be wrong with a campaign is told before its first run, not after hours."""
+"""Checks a campaign before its first run: an error is reported at once, not after hours."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from roomba.errors import ConfigError
 
 
 def check_campaign(campaign: Campaign, machines: Machines) -> None:
-    """Refuse numbers, stages and a cluster that no run could use; ConfigError, UsageError."""
+    """Refuse numbers, stages and a cluster that no run can use; raises UsageError."""
     for name, variant in campaign.file.variants.items():
         trial = variant.trial(campaign.file.homes[0], 0, campaign.folder)
         try:
@@ -28,7 +28,7 @@ def check_campaign(campaign: Campaign, machines: Machines) -> None:
 
 
 def check_extra(cluster: str) -> None:
-    """Refuse a cluster without dask, and what is no cluster; raises UsageError."""
+    """Refuse a cluster when dask is not installed, and a wrong address; raises UsageError."""
     if importlib.util.find_spec("distributed") is None:
         raise UsageError(
             "--cluster: expected dask.distributed, found none; pip install "

@@ -28,7 +28,7 @@ _PARQUET: Final = "results.parquet"
 _PLOT: Final = "differences.png"
 
 Lost = list[tuple[str, str]]
-"""Runs without any end, by their names, and why."""
+"""Runs without any result, by name, and why they have none."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -63,7 +63,7 @@ def _run(options: CampaignOptions, words: Sequence[str]) -> int:
             with progress("Campaign", options.quiet) as show:
                 lost = make_runs(options.machines, runs, store, show)
         finally:
-            # What has ended can be looked at, however this one ends.
+            # The runs that ended can be looked at, however the campaign ends.
             rows = store.rows_of(runs)
             _write_results(options, campaign, rows, shlex.join([*PROGRAM.split(), *words]))
         _tell(options, campaign, rows, lost)
@@ -73,10 +73,10 @@ def _run(options: CampaignOptions, words: Sequence[str]) -> int:
 def make_runs(
     machines: Machines, runs: Sequence[CampaignRun], store: ResultStore, show: Show
 ) -> Lost:
-    """Make and store the runs that are not stored yet; return those that have no end."""
+    """Make and store the runs that are not stored yet; return those without any result."""
     from roomba.commands.campaign.running.machines import run_on
 
-    # Of variants that are the same one is run.
+    # Of runs that are the same in several variants only one is made.
     left = list({run.key: run for run in runs if run.key not in store}.values())
     began, before = time.monotonic(), len({run.key for run in runs}) - len(left)
     lost: Lost = []
@@ -99,7 +99,7 @@ def make_runs(
 def _write_results(
     options: CampaignOptions, campaign: Campaign, rows: Sequence[Row], repeat: str
 ) -> None:
-    """Write Parquet and history; what cannot be is told, and ends nothing."""
+    """Write Parquet and history; an error is reported, and does not end the campaign."""
     from roomba.commands.campaign.parquet import why_no_parquet, write_parquet
 
     if not rows:

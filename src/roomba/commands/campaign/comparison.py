@@ -28,7 +28,8 @@ class Comparison:
     """A variant's mean of a measure less the baseline's, over ``pairs`` of home and seed.
 
     ``home`` is one of the homes, or empty for all. From ``low`` to ``high`` is the confidence
-    interval of the ``difference``; None with less than two pairs. ``left_out`` pairs have no value.
+    interval of the ``difference``; None with less than two pairs. ``left_out`` is the number of
+    pairs without a value.
     """
 
     variant: str
@@ -44,12 +45,12 @@ class Comparison:
 
     @property
     def is_told_apart(self) -> bool:
-        """Whether the interval leaves out no difference at all."""
+        """Whether zero difference lies outside the interval."""
         return self.low is not None and self.high is not None and not self.low <= 0.0 <= self.high
 
     @property
     def percent(self) -> tuple[float, float | None, float | None] | None:
-        """Difference, low and high in % of the baseline's mean; None where that is nothing."""
+        """Difference, low and high in % of the baseline's mean; None if that mean is 0."""
         mean = abs(self.baseline_mean)
         if mean < 1e-12:
             return None

@@ -21,9 +21,9 @@ _COLOURS: Final = (BLUE, ORANGE, GREEN, RED, PINK, INK)
 _BETWEEN: Final = 1.2
 """Rows between two measures."""
 _WIDEST: Final = 100.0
-"""% of the baseline's mean; an interval that is wider than this does not set the scale."""
+"""% of the baseline's mean; a wider interval does not determine the scale."""
 _MARGIN: Final = 1.25
-"""Of the picture's reach to what it must show, so that names of homes have room."""
+"""The picture's reach as a factor of the largest value, so that homes' names have room."""
 
 
 def write_plot(path: Path, campaign: Campaign, comparisons: Sequence[Comparison]) -> None:
@@ -32,10 +32,10 @@ def write_plot(path: Path, campaign: Campaign, comparisons: Sequence[Comparison]
 
 
 def reach_of(comparisons: Sequence[Comparison]) -> float | None:
-    """Return how far to either side the picture must reach, %; None if nothing says so.
+    """Return how far the picture reaches to either side, %; None if no interval determines it.
 
-    A rare thing, such as a hit, has intervals so wide that all others would be a point beside it.
-    Those are drawn up to the edge.
+    A rare event, such as a hit, has so wide an interval that all others would look like points
+    beside it. Such intervals are drawn up to the edge.
     """
     ends: list[float] = []
     for each in comparisons:
@@ -49,7 +49,7 @@ def reach_of(comparisons: Sequence[Comparison]) -> float | None:
 def picture_of(campaign: Campaign, comparisons: Sequence[Comparison]) -> Figure:
     """Return the picture: a group for each measure, in it a mark for each variant and home.
 
-    Differences are in % of the baseline's mean; what has none is left out. See :func:`reach_of`.
+    Differences are in % of the baseline's mean, and left out where that is 0. See :func:`reach_of`.
     """
     shown = [each for each in comparisons if each.percent is not None]
     measures = list(dict.fromkeys(each.measure for each in shown))

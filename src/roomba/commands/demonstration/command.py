@@ -30,7 +30,7 @@ _FRAME: Final = 200
 _EACH: Final = 20.0
 """s of the clean between two frames."""
 _SMALLER: Final = 2.0 / 3.0
-"""Size of a frame beside that of the picture which a smart home is shown."""
+"""Size of a frame as a factor of the smart home's picture."""
 _QUALITY: Final = 40
 """0 to 100, of WebP: enough for lines and areas."""
 _GAP: Final = 12
@@ -81,7 +81,7 @@ def written(seen: Seen, folder: Path, name: str) -> list[Path]:
 
 
 def text_of(seen: Seen) -> str:
-    """Return the table of what was told, the run's figures and the plan's notes."""
+    """Return a text: the table of the clean, the run's figures and the plan's notes."""
     said = table_of(seen.states, seen.said, seen.due.timestamp())
     run = "\n".join(f"- {key}: {value}" for key, value in seen.run.items())
     notes = "\n".join(f"- {note['at']} {note['plan']}: {note['text']}" for note in seen.notes)

@@ -1,4 +1,4 @@
-"""One demonstration from beginning to end: what is done, and what is seen of it meanwhile."""
+"""One demonstration from beginning to end: the steps, and the pictures taken meanwhile."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ _SETTLED: Final = 20.0
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A robot that is shown: how it is made up, and how it is driven; names of links for lines."""
+    """A demonstrated robot: arguments that emulate it and drive it, and links of its lines."""
 
     emulate: tuple[str, ...]
     play: tuple[str, ...]
     links: tuple[str, ...]
 
     def filled(self, words: tuple[str, ...], folder: Path) -> list[str]:
-        """Return arguments in which a link's name is its path in a folder."""
+        """Return arguments in which each link's name is replaced by its path in a folder."""
         return [str(folder / word) if word in self.links else word for word in words]
 
 
@@ -57,7 +57,7 @@ SHOWN: Final[Mapping[str, Shown]] = MappingProxyType(
         ),
     }
 )
-"""By name; each at the real speed of its line: USB of a Neato, serial lines of a Create 2."""
+"""By name; each line has its real speed: USB of a Neato, serial lines of a Create 2."""
 
 
 @dataclass(slots=True)

@@ -1,4 +1,4 @@
-"""A film of the map as a smart home was shown it: all lie alike."""
+"""A film of the maps that a smart home was shown; the map stays in place from frame to frame."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def placed(png: bytes) -> PlacedMap:
 
 
 def laid_alike(maps: Sequence[PlacedMap]) -> list[Picture]:
-    """Return pictures of one size in which the frame of the map lies alike."""
+    """Return pictures of one size in which the map's frame lies at the same place."""
     left = max(each.corner[0] for each in maps)
     above = max(each.corner[1] for each in maps)
     right = max(each.picture.width - each.corner[0] for each in maps)

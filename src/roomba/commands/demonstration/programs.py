@@ -55,7 +55,7 @@ class StartedProgram:
             time.sleep(_PAUSE)
 
     def end(self) -> None:
-        """End it, as one that lives in the background is told to."""
+        """End the program as background programs are ended."""
         self._process.terminate()
         try:
             self._process.wait(_END)

@@ -1,4 +1,4 @@
-"""A table of what was told by MQTT in a clean: a row whenever it began to do something else."""
+"""A table of a clean as told by MQTT: a new row whenever the robot began to do something else."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from roomba.errors import RoombaError
 PROGRAM: Final = spelled("emulate")
 _DONE, _USAGE = 0, 2
 _SLOW_BAUD: Final = 19_200
-"""At which a robot starts that was asked for it by its button."""
+"""The baud rate at which a robot starts after its button asked for it."""
 _MOST_PORT: Final = 65_535
 _SPEEDS: Final = (0.1, 20.0)
 _speed = number(

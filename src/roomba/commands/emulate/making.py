@@ -1,4 +1,4 @@
-"""What can be made up: each is put together from its parts, begun and ended."""
+"""What can be emulated: each robot or lidar is put together from its parts, begun and ended."""
 
 from __future__ import annotations
 
@@ -147,4 +147,4 @@ def _in_home(given: Given, config: SimulatedRobotConfig) -> Simulator:
 MADE_UP: Final[Mapping[str, Callable[[Given], AbstractContextManager[str]]]] = MappingProxyType(
     {"neato": _neato, "openneato": _openneato, "create2": _create2, "ld19": _ld19}
 )
-"""By name: what lives while its context lasts, which is told what to print of it."""
+"""By name, a context in which the emulation runs; it gives a text to print."""

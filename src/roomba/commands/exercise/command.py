@@ -21,7 +21,7 @@ _USAGE: Final = 2
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Return 0, also of an answer that passes; 1 of one that does not yet; 2 for wrong usage."""
+    """Return 0, also for an answer that passes; 1 if it does not pass yet; 2 for wrong usage."""
     parser = Parser(PROGRAM, "Tasks that teach the robot's parts, with checks.", "")
     parser.add_argument("number", nargs="?", type=whole(1, len(COURSE)), help="which one")
     parser.add_argument("--check", action="store_true", help="check what you wrote")

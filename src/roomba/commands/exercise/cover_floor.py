@@ -15,17 +15,17 @@ from roomba.commands.exercise.verdict import NotYetError, expect, function_of, j
 from roomba.raster.regions import dilated, numbered_regions
 
 _WIDTH: Final = 5
-"""Cells of 5 cm that the tool sweeps: the one the middle is in, and two to each side."""
+"""Cells of 5 cm, the tool's width: the middle cell and two on each side."""
 _SHARE: Final = 0.98
-"""0..1; of the floor that the tool can reach."""
+"""0..1; the share of the floor within the tool's reach that must be swept."""
 _MOST: Final = 2.0
-"""So many times the least way is allowed: that of the floor's cells by the tool's width."""
+"""The longest way that passes, as a factor of the least: the floor's area by the tool's width."""
 _STEPS: Final = 4
-"""Places a cell of way at which is looked."""
+"""Points of the way that are checked per cell."""
 
 
 def floors() -> dict[str, Mask]:
-    """Return where the middle may be, by names, bool [rows, columns]."""
+    """Return floors by name: where the robot's middle may be, bool [rows, columns]."""
     room = np.zeros((50, 60), np.bool_)
     room[2:-2, 2:-2] = True
     table = room.copy()

@@ -1,4 +1,4 @@
-"""Checks ``drive(pose, path, speed)``: a simulated robot is driven by it along paths."""
+"""Checks ``drive(pose, path, speed)``, which drives a simulated robot along paths."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _DT: Final = 0.05
 _SPEED: Final = 0.3
 """m/s."""
 _FASTEST_TURN: Final = 20.0
-"""rad/s; more is no robot's turning but degrees. This one reaches a fifth of it."""
+"""rad/s; a larger number must be degrees. This robot reaches a fifth of it."""
 _ASIDE: Final = 0.10
-"""m; farther off its path the robot is not to be."""
+"""m; the robot may be no farther off its path."""
 _NEAR: Final = 0.05
 """m; from the end of the path."""
 _PATHS: Final = (
@@ -39,7 +39,7 @@ def check(file: Path) -> str:
     home = load_home("empty", HOMES)
     x, y = home.frame.centre_of(home.frame.rows // 2, home.frame.columns // 2)
     worst = 0.0
-    # Each is one list all along, and none has the identity of one before it.
+    # Each path stays one list for the whole drive, and no two lists have the same identity.
     paths = {name: [(x + right, y + up) for right, up in corners] for name, corners in _PATHS}
     for name, path in paths.items():
         end, line = path[-1], shapely.LineString(path)

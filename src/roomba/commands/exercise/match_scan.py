@@ -1,4 +1,4 @@
-"""Checks ``matched_pose(...)``: scans of a simulated lidar, by a place that is a little off."""
+"""Checks ``matched_pose(...)``: scans of a simulated lidar, with a first guess a bit off."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from roomba.world.simulator import Simulator
 
 _SCANS: Final = 20
 _OFF: Final = (0.12, 0.12, 0.08)
-"""m, m, rad; the first guess is off by so much at most."""
+"""m, m, rad; the most by which the first guess is off."""
 _PLACE, _HEADING = 0.02, 0.01
-"""m, rad; so near to the truth it is to come in the median."""
+"""m, rad; how near to the truth the median result must be."""
 _WORST: Final = 0.06
-"""m; and at worst."""
+"""m; the worst error of a result that passes."""
 _PERSON, _HIDDEN = 0.7, 40
-"""m; so near a person stands, and hides so many beams in each scan."""
+"""m; how near a person stands, and how many beams of each scan the person hides."""
 _STAND: Final = 0.3
 """s that the robot stands, until there is a scan."""
 

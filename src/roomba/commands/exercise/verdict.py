@@ -12,7 +12,8 @@ from types import ModuleType
 from typing import Any, Final
 
 PASSED: Final = 10
-"""Exit status of a check; not 0, by which an answer that ends the process would pass."""
+"""Exit status of a passed check; not 0, since an answer that ends the process would pass by
+that."""
 NOT_YET: Final = 1
 
 
@@ -69,7 +70,7 @@ def judged(check: Callable[[Path], str]) -> int:
 def _line_in(file: Path, error: Exception) -> str:
     """Return where an error came up, in words: the last line of the learner's file, if any."""
     if isinstance(error, SyntaxError):
-        # It tells its line itself.
+        # A syntax error names its line itself.
         return ""
     frames = traceback.extract_tb(error.__traceback__)
     lines = [frame for frame in frames if Path(frame.filename) == file]

@@ -1,7 +1,7 @@
 """Localizes a recorded drive on a map, offline: ``./roomba localize --map FILE --bag FILE``.
 
-Any drive with a lidar's scans and odometry will do. The localizer is told the same as on the robot,
-but as fast as it can; the result is printed as a short table, and written to the files asked for.
+Any drive with a lidar's scans and odometry will do. The localizer gets the same data as on the
+robot, but as fast as it can work; the result is printed as a short table, and written to files.
 """
 
 from __future__ import annotations

@@ -33,17 +33,17 @@ _TYPES: Final = {
     "/localization": OWN_STATE,
     "/tf": TRANSFORMS,
 }
-"""Topics of the bag."""
+"""The type of the messages on each topic of the bag."""
 OUTPUT_TOPICS: Final = ("/pose", "/amcl_pose", "/localization")
-"""What a bag has beside the transforms on /tf."""
+"""The topics that the bag has besides the transforms on /tf."""
 _STATES: Final = {state: code for code, state in enumerate(Knowledge)}
-"""As the constants of roomba_robot/Localization."""
+"""The numbers of states, as in roomba_robot/Localization."""
 _AXES: Final = (0, 1, 5)
 """Of a covariance's six axes x, y, z and the turns about them: x, y and the turn about z."""
 _EARLIEST: Final = 10**6
-"""ns; a bag knows no time 0."""
+"""ns; a bag has no time 0."""
 _SAY_PERIOD: Final = 1.0
-"""s between two messages of the state, if nothing of it changes."""
+"""s between two messages of an unchanged state."""
 _MAP_FRAME: Final = "map"
 
 
@@ -114,11 +114,7 @@ class RowTrajectory:
 
 
 class RowBag:
-    """A bag of ROS 1 to be played beside the recorded one, with what the live node would have told.
-
-    ``/pose`` in each row; ``/amcl_pose`` and ``/tf`` (map -> odometry's frame) in every other one;
-    ``/localization`` at a change, and once a second.
-    """
+    """A bag of ROS 1 with the live node's messages, to be played beside the recorded one."""
 
     def __init__(self, path: Path, odometry_frame: str) -> None:
         """Begin the bag; raises OSError."""
@@ -208,7 +204,7 @@ class RowBag:
 
 
 def _covariance(estimate: Estimate) -> NDArray[np.float64]:
-    """Return a covariance of six axes, [36], of those of the floor."""
+    """Return a covariance of six axes, [36], from that of the planar pose."""
     of_all = np.zeros((6, 6))
     of_all[np.ix_(_AXES, _AXES)] = estimate.covariance
     return of_all.ravel()

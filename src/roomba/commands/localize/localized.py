@@ -1,4 +1,4 @@
-"""A recorded drive, localized: what was heard, and what came of it."""
+"""Localizes a recorded drive: its readings, and the result."""
 
 from __future__ import annotations
 
@@ -29,13 +29,15 @@ _SHOWN: Final = 64
 """Readings between two updates of the progress."""
 
 _LEAST_KNOWN: Final = 0.5
-"""Share of the time in which the place is known on the map of a drive, however hard that is."""
+"""Share of the time in which the place is known; below it the map is hardly one of the drive."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LocalizedDrive:
-    """What came of logs: ``start`` says where it began, ``own_poses`` which channel it had of its
-    own poses; ``stamps`` what was wrong with the times of how many messages.
+    """The result for some logs. ``start`` says in words where the drive began.
+
+    ``own_poses`` is the channel with the robot's own poses. ``stamps`` counts messages with faulty
+    times.
     """
 
     logs: tuple[Path, ...]
@@ -54,7 +56,7 @@ class LocalizedDrive:
 
     @property
     def placed_rows(self) -> list[Row]:
-        """Rows from when the place was first known; all of them if it never was."""
+        """Rows from the first known place on; all rows if the place was never known."""
         rows = self.tally.shown_rows
         placed = itertools.dropwhile(lambda row: not row.estimate.knowledge.is_usable, rows)
         return list(placed) or rows
@@ -109,7 +111,7 @@ def _replay(
             if row is None:
                 continue
             tally.take(row)
-            # What comes before the place is first known is no pose that a file should hold.
+            # Poses from before the place is first known do not belong in a file.
             is_placed = is_placed or row.estimate.knowledge.is_usable
             for file in files if is_placed else ():
                 file.write(row)
@@ -125,7 +127,7 @@ def _files(options: LocalizeOptions, drive: LoggedDrive) -> Iterator[RowFile]:
 
 
 def _moved_frame(drive: LoggedDrive) -> str:
-    """Return the frame that lies on the map where rows say: the body's, if none is of odometry."""
+    """Return the frame that rows place on the map: odometry's, or without it the body's."""
     return drive.odometry_frame if drive.chosen.has_odometry else drive.body_frame
 
 
@@ -141,7 +143,7 @@ def _remarks(options: LocalizeOptions, occupancy: OccupancyMap) -> list[str]:
 
 
 def _doubts(tally: Tally) -> list[str]:
-    """Return what is told of a map on which the place was found, and seldom known."""
+    """Return a doubt about a map on which the place was found, but seldom known."""
     known = tally.shares[Knowledge.KNOWN.value]
     if tally.found is None or known >= _LEAST_KNOWN or not tally.loss_count:
         return []
@@ -152,7 +154,10 @@ def _doubts(tally: Tally) -> list[str]:
 
 
 def _how_to_play(options: LocalizeOptions, drive: LoggedDrive) -> list[str]:
-    """Return what to leave out of a bag of ROS 1 to play it beside what was written."""
+    """Return how to play the recorded bag of ROS 1 beside the written one.
+
+    What both bags have is left out of the recorded one.
+    """
     bags = [path for path in options.logs if path.suffix == ".bag"]
     if options.output is None or not bags or not drive.names & {*OUTPUT_TOPICS, "/tf"}:
         return []

@@ -24,11 +24,11 @@ from roomba.recordings.readings import (
 from roomba.recordings.times.waiting import StampedScan, WaitingScan
 
 _ROW_PERIOD: Final = 0.045
-"""s; as often as the live node tells its pose, with something left for clocks that tremble."""
+"""s between two rows: a bit less than between two poses of the live node, as clocks jitter."""
 _SILENCE: Final = 0.25
-"""s; without odometry for so long the other messages tell that time passes."""
+"""s without odometry after which the stamps of other messages show that time passes."""
 _LATEST: Final = 1.0
-"""s; a scan that odometry is so far behind is of a time that it knows nothing of."""
+"""s; a scan that is newer than all odometry by more is left out: its pose is unknown."""
 _GIVEN_DEVIATION: Final = (0.1, 0.1)
 """m, rad; deviations of a start that was typed."""
 
@@ -37,10 +37,10 @@ _GIVEN_DEVIATION: Final = (0.1, 0.1)
 class Row:
     """What was known at a moment: ``stamp`` and ``arrival`` are those of the recording, s.
 
-    ``elapsed`` is the time of the recording that has passed, s; ``way`` what was travelled, m.
-    ``map_to_odometry`` is where the frame of the recorded odometry lies in the map.
-    ``scan_stamp`` is the time by the stamps of scans, which may come late: scans so stamped were
-    taken there, and a map of the drive has its places by them as well.
+    ``elapsed`` is the recording's time that has passed, s; ``way`` the distance travelled, m.
+    ``map_to_odometry`` is the pose of the recorded odometry's frame in the map. ``scan_stamp`` is
+    this moment in the stamps of scans, which may be late: a scan with this stamp was taken at this
+    pose. Maps of a drive have their places by the stamps of scans, too.
     """
 
     stamp: float
@@ -64,9 +64,9 @@ class Replay:
     ) -> None:
         """Begin at ``start``, map frame; without one the whole map is searched."""
         self.scans = 0
-        """Scans that were taken in."""
+        """Number of scans that were used."""
         self.was_told = False
-        """Whether it begins at a pose that was recorded."""
+        """Whether the drive begins at a recorded pose."""
         self._map, self._config, self._odometry = occupancy, config, odometry
         self._begin, self._deviation = start, _GIVEN_DEVIATION
         self._localizer: Localizer | None = None
@@ -83,7 +83,7 @@ class Replay:
         return [f"{count} {what}: left out" for what, count in self._left_out.items()]
 
     def hear(self, reading: Reading) -> Row | None:
-        """Take in a reading, in the order of time; return what is known then, if it is time to."""
+        """Take a reading, in the order of time; return a row if one is due."""
         stamp, value, _ = reading
         odometry = self._odometry.hear(reading)
         if odometry is not None:
@@ -139,7 +139,7 @@ class Replay:
         self.scans += 1
 
     def _hear_told(self, told: ToldPose) -> None:
-        """Begin anew at the first pose that was told, by a person or by the robot itself."""
+        """Begin anew at the first recorded pose that a person or the robot itself set."""
         if self._begin is not None:
             return
         self._begin, self._deviation = told
@@ -159,7 +159,7 @@ class Replay:
             self._elapsed += passed
         self._told_row = reading.stamp
         localizer.pass_time(reading.stamp)
-        # It never goes back, though the scans may turn out to be less late.
+        # The time never goes back, even if scans turn out to be less late.
         self._scan_stamp = max(self._scan_stamp, reading.stamp + localizer.latency)
         return Row(
             reading.stamp,

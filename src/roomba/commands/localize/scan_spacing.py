@@ -1,4 +1,4 @@
-"""How far apart the scans of a drive are: where they are rare, none is missed at once."""
+"""How far apart in time the scans of a drive are; where they are rare, none is missing at once."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ from roomba.recordings.drives.drive import LoggedDrive
 from roomba.recordings.readings import LidarScan
 
 _LOOKED_AT: Final = 100
-"""Scans; the first of a drive, which tell how far apart they are."""
+"""The first scans of a drive, from which the time between scans is known."""
 _LATE: Final = 3.0
-"""Spacings without a scan, from which on the lidar is taken to be silent."""
+"""Spacings without a scan after which the lidar counts as silent."""
 
 
 def with_patience(config: RobotConfig, drive: LoggedDrive) -> RobotConfig:
     """Return a configuration that waits for scans as rare as those of the drive.
 
-    That of the robot expects several a second, and goes by wheels and gyro when they stay away.
+    The robot's own configuration expects several scans a second; without them the localizer goes by
+    wheels and gyro alone.
     """
     scans = (each.stamp for each in drive.readings() if isinstance(each.value, LidarScan))
     stamps = list(itertools.islice(scans, _LOOKED_AT))

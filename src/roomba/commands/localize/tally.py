@@ -1,4 +1,4 @@
-"""Counting while a drive is gone through: how well the place was known, and where it was lost."""
+"""Counts, along a drive, how well the place was known and where it was lost."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _MOST_ROWS: Final = 40_000
 """Rows that are kept of a drive, however long it is."""
 _MOST_LOSSES: Final = 200
 _NEAR: Final = 0.5
-"""s; poses of the robot itself are compared between two rows that are not further apart."""
+"""s; a pose of the robot itself is compared only between two rows that are no farther apart."""
 
 
 class Thinned:
-    """Rows evenly spread over a drive: when there are too many, every other one goes."""
+    """Rows evenly spread over a drive: when there are too many, every second one is dropped."""
 
     def __init__(self) -> None:
         """Begin with none."""
@@ -40,9 +40,9 @@ class Thinned:
 
 @dataclass(slots=True)
 class Loss:
-    """The place was not known any more: when (s since the start, and stamp), where, m, and why.
+    """A loss of the place: when (s since the start, and stamp), where, m, and why.
 
-    ``seconds`` says for how long; None: to the end.
+    ``seconds`` is how long it lasted; None: to the end.
     """
 
     elapsed: float
@@ -114,14 +114,15 @@ class Tally:
                 self._begin_loss(before, row)
 
     def hear_own_pose(self, stamp: float, pose: Pose) -> None:
-        """Take where the robot itself believed to be, to be compared with the next rows."""
+        """Take the pose that the robot itself believed, to be compared with the next rows."""
         self._own.append((stamp, pose.x, pose.y))
 
     def _begin_loss(self, before: Row, row: Row) -> None:
         self.loss_count += 1
         if len(self.losses) < _MOST_LOSSES:
             pose = before.estimate.pose
-            # What helps a robot on the spot, after the semicolon, comes too late here.
+            # The text after the semicolon is advice for a robot on the spot: it comes too late
+            # here.
             reason = row.estimate.reason.partition(";")[0]
             self.losses.append(Loss(row.elapsed, row.stamp, pose.x, pose.y, reason))
 
@@ -130,7 +131,7 @@ class Tally:
             self.losses[-1].seconds = row.elapsed - self.losses[-1].elapsed
 
     def _compare(self, before: Row, row: Row) -> None:
-        """Compare the robot's own poses between two rows with what lies between these."""
+        """Compare the robot's own poses between two rows with the rows' poses."""
         is_known = before.estimate.knowledge.is_usable and row.estimate.knowledge.is_usable
         is_near = row.stamp - before.stamp <= _NEAR
         while self._own and self._own[0][0] <= row.stamp:

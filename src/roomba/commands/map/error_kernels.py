@@ -1,4 +1,4 @@
-"""Compiled: the sides of solid cells on two maps, compared; and what floor can be seen."""
+"""Compiled kernels: compare the sides of solid cells of two maps, and find the visible floor."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from roomba.compilation import entry, part
 
 ROW_STEPS: Final = (0, 1, 0, -1)
 COLUMN_STEPS: Final = (1, 0, -1, 0)
-"""To the cells beside one: along x, along y, and back; so the ways a side can face are numbered."""
+"""Steps to the neighbours of a cell: along x, along y, and back; a side's facing is such an
+index."""
 
 
 class TrueSurfaces(NamedTuple):
@@ -88,9 +89,10 @@ def count_surfaces(
     ground: TrueSurfaces, points: Floats, facings: NDArray[np.int64], behind: float, beside: float,
     counts: NDArray[np.int64],
 ) -> None:  # fmt: skip
-    """Fill ``counts`` [n] with how many sides that face alike lie straight behind ``points``.
+    """Fill ``counts`` [n] with how many sides of the same facing lie straight behind ``points``.
 
-    From ``beside`` before to ``behind`` behind, m; the most on three lines, ``beside`` apart.
+    Counted from ``beside`` before to ``behind`` behind a point, m, on three lines that are
+    ``beside`` apart; the most on a line counts.
     """
     size = ground.place[2]
     rows, columns = ground.solid.shape

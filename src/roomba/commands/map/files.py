@@ -21,5 +21,5 @@ def write_files(folder: Path, occupancy: OccupancyMap, station: Pose) -> None:
     try:
         write_map(StoredMap(occupancy, station, segment(occupancy)), folder)
     except (RoomsError, MapStoreError):
-        # A map without rooms is still a map.
+        # A map that cannot be cut into rooms is still a map.
         write_map(StoredMap(occupancy, station), folder)

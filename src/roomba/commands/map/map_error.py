@@ -27,7 +27,7 @@ from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.raster.regions import dilated, numbered_regions
 
 NEAR: Final = 0.05
-"""m; a side as near to a true one is right."""
+"""m; a mapped side counts as right if a true side is as near."""
 _REACH: Final = 0.5
 """m; farther sides are not looked for."""
 _CELL: Final = 0.01
@@ -35,22 +35,22 @@ _CELL: Final = 0.01
 _BAND: Final = 4_000_000
 """Cells that are compared at a time."""
 DOUBLED_FROM, DOUBLED_TO = 0.03, 0.30
-"""m; so far behind a side lies a second one if a wall was mapped twice."""
+"""m; how far behind a side a second one lies if a wall was mapped twice."""
 _LEAST_WALL: Final = 0.15
-"""m; a wall that is mapped twice is so for as long a stretch: less is a speck."""
+"""m; the least stretch on which a wall counts as mapped twice; a shorter one is a speck."""
 _FIT_REACH: Final = 0.3
 _FIT_ROUNDS: Final = 20
 
 
 @dataclass(frozen=True, slots=True)
 class MapError:
-    """``walls`` is the share of mapped sides within NEAR of a true one, 0..1; of all sides.
+    """The errors of a map; ``walls`` is the share of its sides within NEAR of a true side, 0..1.
 
-    ``wall_distance`` is their median distance, m. ``floor`` is free floor on both maps by that on
-    either one. ``doubled`` counts cells of walls that are mapped twice, ``specks`` those of shorter
-    stretches. ``shift`` x, y, m, and ``rotation``, rad, move the true map onto this one, about the
-    middle of its sides. ``extra`` is floor, m2, that is free on this map alone, ``missed`` on the
-    true one alone.
+    ``wall_distance`` is the median distance of all its sides to the true ones, m. ``floor`` is the
+    floor that is free on both maps, by that which is free on either one. ``doubled`` counts cells
+    of walls that are mapped twice, ``specks`` those of shorter stretches. ``shift`` x, y, m, and
+    ``rotation``, rad, move the true map onto this one, about the middle of its sides. ``extra`` is
+    floor, m2, that is free on this map alone, ``missed`` on the true one alone.
     """
 
     walls: float
@@ -148,7 +148,7 @@ def _doubled(occupancy: OccupancyMap, sides: WallSides, ground: TrueSurfaces) ->
 
 
 def _is_stretch(cells: Mask, facing: int, least: int) -> Mask:
-    """Return those cells that hang together over ``least`` cells across the way that they face.
+    """Return the connected cells that extend over ``least`` cells across their facing.
 
     Holes in a wall make sides that face along it: however many, they are no stretch.
     """
@@ -226,7 +226,7 @@ def _outside(occupancy: OccupancyMap, frame: GridFrame) -> float:
 
 
 def _cells(middles: Floats, occupancy: OccupancyMap, axis: int) -> NDArray[np.int64]:
-    """Return in which columns or rows of a map, padded by one cell, middles of cells lie."""
+    """Return the columns or rows of a map, padded by one cell, in which middles of cells lie."""
     frame = occupancy.frame
     origin = frame.origin_x if axis == 0 else frame.origin_y
     count = frame.columns if axis == 0 else frame.rows
@@ -238,7 +238,7 @@ def _cells(middles: Floats, occupancy: OccupancyMap, axis: int) -> NDArray[np.in
 def _fit(sides: WallSides, ground: TrueSurfaces) -> tuple[tuple[float, float], float]:
     """Return shift, m, and rotation, rad, that move the true map onto this one, least squares.
 
-    A side tells how far it lies before the true one that faces alike.
+    The data are the distances of sides before the true sides of the same facing.
     """
     middle = sides.middles.mean(axis=0)
     arms = sides.middles - middle

@@ -29,10 +29,10 @@ from roomba.world.home.home import Home
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Drawn:
-    """A map, how far it is off the truth, and how far off its maker took the robot to be.
+    """A map, its errors, and the errors of the pose by which it was made.
 
-    ``largest`` and ``last`` are of the robot's place, m, at any
-    tick, and at the end.
+    ``largest`` and ``last`` are the error of the robot's place, m, at its largest tick, and at the
+    end.
     """
 
     occupancy: OccupancyMap
@@ -43,7 +43,7 @@ class Drawn:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MapRun:
-    """What happened: the map that was ``made``, and beside it the one ``by_odometry`` alone.
+    """The result of a run: the map that was ``made``, and the one ``by_odometry`` alone.
 
     ``seen`` is the floor that counts, bool over the home's grid; ``station`` is where the robot's
     own map has its station.
@@ -73,16 +73,16 @@ RunObserver = Callable[["ObservedExplorer"], None]
 """Is shown the robot whenever it looked around: every few ticks, or at each."""
 
 _AS_OFTEN: Final = 0.9
-"""Of the way between keyframes: by its own odometry a robot sees each of them a bit sooner."""
+"""Factor on the way between keyframes: by its own odometry a robot reaches each a bit sooner."""
 
 
 class ObservedExplorer(HeadlessMission):
-    """A robot that makes its map while another map is made by its odometry alone."""
+    """A robot that makes its map, and beside it another map by odometry alone."""
 
     observers: tuple[RunObserver, ...] = ()
 
     def begin_blind(self, mapping: MappingConfig) -> None:
-        """Draw by dead reckoning from now on; it stands on its station."""
+        """Begin the map by dead reckoning; the robot stands on its station."""
         numbers = self.robot_config.localization, self.robot_config.gyro
         apart = {"keyframe_way": mapping.keyframe_way, "keyframe_turn": mapping.keyframe_turn}
         often = {name: _AS_OFTEN * value for name, value in apart.items()}
@@ -97,14 +97,14 @@ class ObservedExplorer(HeadlessMission):
         return Pose(*self.mapper.trajectory[0].tolist())
 
     def advance(self) -> None:
-        """Let time pass, and look at what it brought."""
+        """Let time pass, and look at the result."""
         super().advance()
         self._hear(self.rows[-1])
         for observe in self.observers:
             observe(self)
 
     def _hear(self, rows: Floats) -> None:
-        """Let the other map go on by ticks that passed, float64 [n, PASSED]."""
+        """Update the map by odometry with the ticks that passed, float64 [n, PASSED]."""
         blind = self.blind
         for row in rows.tolist():
             blind.move(row[TIME], Pose(*row[ODOMETRY]), row[GYRO])

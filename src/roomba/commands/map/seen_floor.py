@@ -1,4 +1,4 @@
-"""The floor that counts: what a lidar can see from where the robot can get to from its station."""
+"""The floor that counts: what a lidar sees from the places that the robot can reach."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from roomba.raster.distance import distance_to_nearest
 from roomba.raster.regions import numbered_regions
 
 _APART: Final = 0.15
-"""m; between two places from which is looked around."""
+"""m between two places from which the lidar looks around."""
 _MOST_PLACES: Final = 20_000
 _BEAMS: Final = 720
 

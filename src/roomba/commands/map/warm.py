@@ -19,21 +19,21 @@ from roomba.perception.rooms.rooms import segment
 from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher
 
 _ALWAYS: Final[dict[str, Any]] = {"submap_keyframes": 4, "link_points": 50, "redrawn_shift": 1e-6}
-"""So that submaps are closed, linked, and drawn anew even in a closet."""
+"""So that even in a closet submaps are closed, linked, and drawn anew."""
 
 
 @functools.cache
 def warm_up() -> None:
     """Explore it once in this process, compare the map with it, and cut it into rooms.
 
-    Before that it is walked through tick by tick, as nodes do, and as recorded drives are mapped.
+    Before that, walk through it tick by tick, as nodes and maps of recorded drives do.
     """
     home = closet()
     HeadlessMission(home, known=MappingConfig(), longest_burst=0).walk(0.9, 0.9)
     station = (home.station.x, home.station.y)
     robot = HeadlessMission(home, known=MappingConfig(**_ALWAYS))
     made = robot.explore().occupancy
-    # What it does where it got stuck between things that it did not see.
+    # The motions of a robot that gets stuck between unseen things.
     robot.mission.context.squeeze((0.6, 0.9), (1.0, 0.5), [(0.8, 0.7, 0.02)])
     _match_in_wide_windows()
     seen = seen_floor(home.solid, home.frame, station, RobotConfig())
@@ -42,7 +42,7 @@ def warm_up() -> None:
 
 
 def _match_in_wide_windows() -> None:
-    """Match as where a loop closes, for which a closet is too small."""
+    """Match in wide windows as loop closures do, for which a closet is too small."""
     angles = np.linspace(0.0, 6.0, 60)
     normals = np.column_stack([np.cos(angles), np.sin(angles)])
     points = np.hstack([2.0 * normals, -normals])

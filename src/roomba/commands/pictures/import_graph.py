@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from grimp import ImportGraph
 
 PACKAGES: Final = ("roomba_ros", "roomba")
-"""From the upper layers to the lower."""
+"""The packages, the upper layer first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ def layers_of(imports: Mapping[str, Iterable[str]]) -> list[list[str]]:
 
 
 def reduced(imports: Mapping[str, Iterable[str]]) -> dict[str, set[str]]:
-    """Return the imports between folders without those that a longer way says as well."""
+    """Return the imports between folders without those that follow from a chain of imports."""
     reached: dict[str, set[str]] = {}
     for layer in layers_of(imports):
         for folder in layer:

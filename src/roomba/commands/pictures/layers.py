@@ -91,7 +91,7 @@ def _imports_by_folder() -> dict[str, set[str]]:
 
 
 def _ordered(layers: list[list[str]], arrows: Mapping[str, set[str]]) -> list[list[str]]:
-    """Return the layers with each folder near to the mean of those that it is joined to."""
+    """Return the layers, each sorted so that folders lie near the folders they are joined to."""
     joined: dict[str, set[str]] = {folder: set(below) for folder, below in arrows.items()}
     for folder, below in arrows.items():
         for other in below:
@@ -110,7 +110,7 @@ def _mean_x(places: _Places, folders: set[str], otherwise: float) -> float:
 
 
 def _places(layers: Sequence[Sequence[str]]) -> _Places:
-    """Return the middle of each folder's box, px; the layers fill the picture's width."""
+    """Return the middle of each folder's box, px; each layer fills the picture's width."""
     rise = (_HEIGHT - _LEGEND[0] - 1.0 * _BOX[1]) / len(layers)
     return {
         folder: (_WIDTH * (index + 0.5) / len(layer), 0.9 * _BOX[1] + rise * height)

@@ -1,4 +1,4 @@
-"""Knowing the place: the error over time beside odometry, and finding it again on the map."""
+"""Localization: the error over time beside that of odometry, and relocation on the map."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ from roomba.world.home.home import Home
 _EVERY: Final = 20
 """Ticks between two looks."""
 SHARES: Final = (0.02, 0.2, 0.45, 1.0)
-"""Of the whole time: what is shown."""
+"""Shares of the whole time at which the map is shown."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

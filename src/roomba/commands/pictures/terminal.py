@@ -25,7 +25,7 @@ _SIZE: Final = (130, 42)
 _WIDTH: Final = 1200
 """px of the picture."""
 _FONTS: Final = re.compile(r"@font-face\s*\{.*?\}", re.DOTALL)
-"""Of the drawing: they are elsewhere, and those of this machine do."""
+"""The drawing's fonts: they are on another machine, and this machine's own will do."""
 
 
 def picture_of_top(home: Home) -> Picture:

@@ -1,4 +1,4 @@
-"""A tour of a home, recorded: where the robot was, and where it took itself to be by what."""
+"""A recorded tour of a home: the true poses, and the poses by each way to know them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A robot that people own and that has no lidar, from take-over to give-back."""
+"""A robot on a line without a lidar, from take-over to give-back."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class BumpingLife:
         self._body: LineBody = kind.body_on(line, config, lidar_line, has_lidar=False)
         try:
             self._body.start(has_lidar=False)
-            # No two of its days are to be alike.
+            # Seeded by chance: no two runs are to be alike.
             rng = np.random.default_rng()
             brain = BumpingBrain(config, bumping, docking, config.body.max_speed, rng)
             self.client = BumpingClient(kind.name, BumpingRobot(self._body, brain))

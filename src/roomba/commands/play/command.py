@@ -51,11 +51,11 @@ def main(arguments: list[str] | None = None) -> int:
     parser = _parser()
     wanted = parser.parse_args(arguments)
     require_fitting(parser, wanted)
-    # However the program is told to end, a robot on a line is given back.
+    # By this, a robot on a line is given back, however the program is told to end.
     ending = ToldToEnd()
     with contextlib.ExitStack() as until_end:
         try:
-            if wanted.lidar != "none":  # a robot that goes by its bumper needs none of it
+            if wanted.lidar != "none":  # without a lidar nothing of it is used
                 require_compiled(is_quiet=False)
             client, source, told = _robot(wanted, until_end, _repeat(arguments))
             file = wanted.smart_home
@@ -73,7 +73,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _robot(
     wanted: argparse.Namespace, until_end: contextlib.ExitStack, repeat: str
 ) -> tuple[LiveClient | BumpingClient | RemoteClient, RunSource, str]:
-    """Return the robot, whose life it is, and what is told of it; raises RoombaError."""
+    """Return the robot, where its runs come from, and a text for the user; raises RoombaError."""
     if wanted.robot is None:
         client = wanted_robot(wanted)
         until_end.callback(client.end)
@@ -133,7 +133,7 @@ def _repeat(arguments: list[str] | None) -> str:
 
 
 def _warn(text: str) -> None:
-    # A terminal that is gone must not end what tells: a thread, or how the robot is given back.
+    # A lost terminal must not end a thread that prints, nor interrupt how a robot is given back.
     with contextlib.suppress(OSError):
         print(f"{PROGRAM}: {text}", file=sys.stderr, flush=True)
 

@@ -1,4 +1,4 @@
-"""A robot that lives in a simulated home: its options on the command line, and how it is made."""
+"""A robot that lives in a simulated home: its command-line options, and how it is made."""
 
 from __future__ import annotations
 
@@ -69,13 +69,13 @@ def live_client(
         longest_burst=int(speed) if speed >= 2.0 else 0,
         empties_bin_after=math.inf,
     )
-    # When it is emptied the household says.
+    # The household tells when the bin is emptied.
     mission.is_emptied_at_station = False
     return LiveClient(Playing(home, mission), mission, rooms, speed, zones=zones)
 
 
 def require_demo(parser: argparse.ArgumentParser, wanted: argparse.Namespace) -> None:
-    """Leave with status 2 where options of a robot of its own are given without ``--demo``."""
+    """End with status 2 if options of a robot of its own are given without ``--demo``."""
     for name in _OPTIONS:
         if not wanted.demo and getattr(wanted, name) != parser.get_default(name):
             parser.error(f"--{name}: of a robot in a simulated home, so expected --demo as well")

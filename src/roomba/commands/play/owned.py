@@ -25,7 +25,7 @@ from roomba.storage.map_store import MapStore, StoredMap
 from roomba.storage.maps_folder import maps_folder
 
 _SIMULATED: Final = ("home", "seed", "speed", "bin", "empties", "wheels")
-"""Options of a robot in a simulated home alone."""
+"""Options that only a robot in a simulated home has."""
 NOT_DOCKED: Final = (
     "it has no current from a station: where it stands now counts as its station's place"
 )
@@ -70,7 +70,7 @@ def add_lidar_option(parser: argparse.ArgumentParser) -> None:
 
 
 def require_fitting(parser: argparse.ArgumentParser, wanted: argparse.Namespace) -> None:
-    """Leave with status 2 where options of an owned and of a simulated robot are mixed."""
+    """End with status 2 if options of an owned and of a simulated robot are mixed."""
     if (wanted.robot is None) is not (wanted.line is None):
         parser.error("expected --robot NAME and --line DEVICE together")
     if wanted.robot is None and wanted.lidar:
@@ -85,8 +85,8 @@ def require_fitting(parser: argparse.ArgumentParser, wanted: argparse.Namespace)
 class OwnedLife:
     """A robot that people own, from taking it over to giving it back.
 
-    ``makes_map`` lets it forget the map that it made before. ``tell`` is told in sentences what a
-    person should know. ``lidar_line`` is that of a lidar that has one of its own.
+    With ``makes_map`` the map of an earlier use is forgotten. ``tell`` is called with sentences for
+    the user. ``lidar_line`` is the line of a lidar that has its own.
     """
 
     def __init__(
@@ -122,7 +122,7 @@ class OwnedLife:
 
 
 def _brain(config: RobotConfig, stored: StoredMap | None) -> Brain:
-    """Return the brain of a robot on the map that it made, or of one that makes it."""
+    """Return the brain of a robot with its stored map, or of one that makes a map."""
     mission = mission_config(config)
     docking = load_config(DockingConfig, CONFIGURATION / "docking.yaml")
     if stored is None:
@@ -133,7 +133,7 @@ def _brain(config: RobotConfig, stored: StoredMap | None) -> Brain:
 
 
 def _tell_place(robot: Embodied, tell: Tell) -> None:
-    """Tell what follows where the robot does not begin on its station."""
+    """Tell the user what follows when the robot does not begin on its station."""
     if robot.now.battery.is_docked:
         return
     if robot.brain.localizer is None:

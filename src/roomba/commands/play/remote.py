@@ -1,4 +1,4 @@
-"""A robot that people own and that cannot be driven: watched, and told to clean by itself."""
+"""A robot that people own and that no program can drive: watched, and told to clean."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ NOT_DRIVEN: Final = (
 
 
 def remote_client(wanted: argparse.Namespace, tell: Tell) -> RemoteClient | None:
-    """Return the robot that was asked for, if it can only be told; raises RoombaError.
+    """Return the wanted robot, if it can only be told to clean; raises RoombaError.
 
-    ``tell`` is told what is not there then.
+    ``tell`` is called with what such a robot lacks.
     """
     kind = kind_of(wanted)
     config = kind.config()
     remote = kind.remote_on(wanted.line, config)
     if remote is None:
         return None
-    remote.look()  # another program that is there is told before there is a page
+    remote.look()  # first, so that another program on the line is reported before there is a page
     tell(NOT_DRIVEN)
     return RemoteClient(kind.name, remote, config)

@@ -1,4 +1,4 @@
-"""Serving a page until Ctrl-C, with the address that is printed."""
+"""Serves a page until Ctrl-C, and prints its address."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from roomba.ui.web.kept_token import kept_token
 from roomba.ui.web.server import PageServer, listen
 
 _HEARD_WITHIN: Final = 0.2
-"""s of wall time within which it ends although Python dropped the exception."""
+"""s of wall time within which the program ends even if Python dropped the KeyboardInterrupt."""
 
 
 def add_page_options(parser: argparse.ArgumentParser) -> None:
-    """Add what is the same for every page: where it is, and whether a browser is opened."""
+    """Add the options of every page: its address, and whether a browser is opened."""
     parser.add_argument(
         "--port",
         type=whole(0, LAST_PORT),
@@ -51,7 +51,7 @@ def add_page_options(parser: argparse.ArgumentParser) -> None:
 
 
 def listen_at(wanted: argparse.Namespace) -> socket.socket:
-    """Return a socket where the options want the page; raises ServerError."""
+    """Return a socket that listens where the options say; raises ServerError."""
     port = DEFAULT_PORT if wanted.port is None else wanted.port
     return listen(wanted.host, port, is_fixed=wanted.port is not None)
 
@@ -75,7 +75,7 @@ def serve_page(
         guard = guard_for(kept_token(), bound.getsockname()[0])
         server = PageServer(create_app(robot, guard, keeper, household=household), bound)
         until_end.callback(server.stop)
-        # In a thread: Ctrl-C comes here alone, and not to a loop of events that is being made.
+        # In a thread, so that Ctrl-C reaches this code and never an event loop that is being made.
         server.start()
         _tell(bound, guard, told)
         if is_opened:

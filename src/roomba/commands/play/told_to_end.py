@@ -1,4 +1,4 @@
-"""How a program that serves a page is told to end."""
+"""Remembers signals that tell a program with a page to end."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from typing import Final
 from roomba.commands.process_end import ending_signals
 
 _PATIENCE: Final = 10.0
-"""s that an end may take: a robot is given back, its map and its history are kept."""
+"""s that an end may take: it gives a robot back, and saves its map and its history."""
 
 
 class ToldToEnd:
-    """SIGINT, SIGTERM and SIGHUP are remembered, and the first of them raises KeyboardInterrupt.
+    """Remembers SIGINT, SIGTERM and SIGHUP; the first one raises KeyboardInterrupt.
 
-    The others do not: they would interrupt the end that the first one began, and with it how a
-    robot is given back. One that comes ``patience`` s later ends the process as it would without
-    this: such an end hangs.
+    Later signals raise nothing: they would interrupt the end that the first one began, such as how
+    a robot is given back. If that end hangs, a signal ``patience`` s after the first ends the
+    process.
 
-    Python drops an exception that a signal raises while an object is being deleted: a program
-    that only waited for it would then serve for ever.
+    Python drops an exception that a signal raises while an object is being deleted. A program that
+    only waited for the exception would then serve for ever, so ``is_told`` is set as well.
     """
 
     def __init__(self, patience: float = _PATIENCE) -> None:
-        """Listen from now on; shells have their background jobs ignore SIGINT."""
+        """Listen from now on, also to SIGINT, which shells let background jobs ignore."""
         self.is_told = False
         """Whether a signal came."""
         self._patience, self._told_at = patience, 0.0

@@ -1,4 +1,4 @@
-"""``roomba report``: the runs that were kept, told as tables, CSV and HTML."""
+"""``roomba report``: the recorded runs as tables, CSV and HTML."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from roomba.history.run_rows import KeptRun
 
 PROGRAM: Final = spelled("report")
 _LISTED: Final = 20
-"""Runs of the list in a terminal."""
+"""The most runs that the list on a terminal has."""
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Tell of the runs; returns 0, 1 when a file cannot be written, 2 for what there is not.
+    """Print the runs; returns 0, 1 if a file cannot be written, 2 for a run that is not there.
 
     Raises BrokenPipeError, when the reader of the output has closed it.
     """
@@ -71,7 +71,7 @@ def _tell(wanted: argparse.Namespace, history: History) -> None:
 
 
 def _write_figures(wanted: argparse.Namespace, history: History) -> None:
-    """Write the runs for programs."""
+    """Write the figures of runs for programs."""
     if wanted.csv is not None:
         _write(wanted.csv, csv_of(_all(history)))
     if wanted.json is not None:
@@ -130,12 +130,12 @@ def _write_document(wanted: argparse.Namespace, usual: Path, text: str) -> None:
 
 
 def _told_to(wanted: argparse.Namespace) -> TextIO:
-    """Return where words for people go: not where figures are told."""
+    """Return the stream for people's text: standard error if figures take standard output."""
     return sys.stderr if _taken_output(wanted) else sys.stdout
 
 
 def _taken_output(wanted: argparse.Namespace) -> str | None:
-    """Return standard output if figures, or the report, have it for themselves."""
+    """Return ``-`` if figures or the report take standard output, else None."""
     files = (wanted.json, str(wanted.csv), str(wanted.out))
     return STANDARD_OUTPUT if STANDARD_OUTPUT in files else None
 

@@ -40,7 +40,7 @@ _TOLD: Final[dict[str, Callable[[KeptRun], str]]] = {
     "way": lambda run: words.number(run.figures.distance, 0, "m"),
     "dirt": lambda run: words.number(run.figures.dirt, 1, "g"),
 }
-"""What the columns of a list tell, in their order."""
+"""By column of the list, the function that gives its text, in the order of the columns."""
 _BY_WORTH: Final = (
     "run", "began", "home", "outcome", "clean", "time", "missed", "dirt", "way", "program",
 )  # fmt: skip
@@ -129,7 +129,7 @@ def runs_table(runs: Sequence[KeptRun], width: int) -> Table:
 
 
 def _fitting(cells: Mapping[str, Sequence[str]], width: int) -> list[str]:
-    """Return the names of the columns for which there is room, in the order of the table."""
+    """Return the names of the columns that fit the width, in the table's order."""
     needed = {name: _GAP + max(map(len, (name, *texts))) for name, texts in cells.items()}
     taken: set[str] = set()
     for name in _BY_WORTH:

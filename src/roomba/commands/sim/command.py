@@ -29,12 +29,12 @@ if TYPE_CHECKING:
     from roomba.mission.inputs.planning_context import PlanningContext
 
 BagOpener = Callable[[Path, "TrialSetup"], AbstractContextManager["RunObserver"]]
-"""Opens a bag; what it gives is shown the robot again and again."""
+"""Opens a bag; the context gives a function that is called with the robot again and again."""
 
 BAG_BURST: Final = 2
-"""Ticks between two looks for a bag: its fastest topics have 10 Hz."""
+"""Ticks between two records of a bag, as its fastest topics have 10 Hz."""
 _SHOWN: Final = 0.1
-"""s between two updates of the progress: its words cost more than some ticks of the robot."""
+"""s between two updates of the progress: to format its text takes as long as some ticks."""
 
 
 def main(arguments: list[str] | None = None, open_bag: BagOpener | None = None) -> int:
@@ -74,7 +74,7 @@ def _run_one(options: SimOptions, open_bag: BagOpener | None, words: list[str]) 
         run = setup.run(observers)
     _tell_run(options, run, setup.robot.context)
     if options.keep:
-        # What keeps it is loaded once the table stands.
+        # The history is loaded only once the table is printed.
         from roomba.commands.sim.kept_run import keep_run
 
         try:
@@ -95,7 +95,7 @@ def _shown_by(show: Show) -> RunObserver:
             return
         looked = time.monotonic()
         passed, left = robot.seen.time, robot.mission.seconds_to_go()
-        if left > 0.0:  # before there is a plan nothing is known of it
+        if left > 0.0:  # before there is a plan the time to go is unknown
             share = passed / (passed + left)
         show(share, f"{clock(passed)} of robot time, {robot.mission.state.phase.value}")
 

@@ -31,7 +31,7 @@ from roomba.mission.cleaning.checkpoint import request_values
 
 VERSION: Final = 1
 TIMES: Final = ("wall_s", "planning_s", "times_real_time")
-"""What differs between two runs of the same trial."""
+"""The values that differ between two runs of the same trial."""
 
 
 def run_as_json(run: Run, unreached: Unreached = NOTHING) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""A run of ``sim`` as the history keeps it."""
+"""Stores a run of ``sim`` in the history."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from roomba.mission.cleaning.result import CleanOutcome
 from roomba.perception.swept.visits import Visits
 
 _COLUMNS: Final = TRACE[4:]
-"""What is looked at; poses are in the trajectory."""
+"""The columns of the robot's state; its poses are in the trajectory."""
 _COVERAGE_STRIDE: Final = 2
-"""Poses of the trajectory from one to the next between which the tool is drawn."""
+"""Every so many poses of the trajectory are used to draw the swept floor."""
 
 
 def keep_run(run: Run, samples: StateSamples, repeat: str) -> int:
@@ -47,7 +47,7 @@ def keep_run(run: Run, samples: StateSamples, repeat: str) -> int:
 
 
 def figures_of(figures: Figures, source: RunSource) -> RunFigures:
-    """Return the figures: what is covered and wanted are true areas, of floor that can be."""
+    """Return the figures; covered and wanted areas are true ones, of floor that can be covered."""
     return RunFigures(
         source,
         "clean",
@@ -70,7 +70,7 @@ def figures_of(figures: Figures, source: RunSource) -> RunFigures:
 
 
 def recording_of(run: Run, samples: StateSamples) -> RunRecording:
-    """Return what was seen: true poses, and the state as of the last look at it."""
+    """Return the recording: true poses, and each time the state of the last look."""
     began = float(run.trajectory[0, 0])
     words = tuple(replace(word, time=max(word.time - began, 0.0)) for word in samples.words)
     visits = Visits(run.home.map.frame, run.figures.tool_width_m)
@@ -88,7 +88,7 @@ def _trace(run: Run, samples: StateSamples) -> Floats32:
     trace = np.zeros((len(poses), len(TRACE)))
     trace[:, :4] = poses - [run.trajectory[0, 0], 0.0, 0.0, 0.0]
     states = np.array(samples.rows).reshape(-1, 1 + len(_COLUMNS))
-    # Before, not at: a look at the very end finds no clean under way any more.
+    # The state before a pose, not at it: at the very end no clean is under way any more.
     latest = np.maximum(np.searchsorted(states[:, 0], poses[:, 0], side="left") - 1, 0)
     trace[:, 4:] = states[latest, 1:]
     result: Floats32 = trace.astype(np.float32)

@@ -39,12 +39,12 @@ MOST_HOMES: Final = 100_000
 _LONGEST_WAIT: Final = 3600.0
 """s"""
 _CAN_KEEP: Final = find_spec("fcntl") is not None
-"""Whether what is kept can be locked, as Linux and macOS do."""
+"""Whether kept files can be locked, which needs fcntl of Linux and macOS."""
 
 
 @dataclass(frozen=True, slots=True)
 class SimOptions:
-    """``homes`` runs (None: the trial alone), and what is told of them; ``json`` "-" is output."""
+    """What is run and what is told: ``homes`` runs, None: one trial; ``json`` "-" is stdout."""
 
     trial: Trial
     homes: int | None
@@ -91,7 +91,7 @@ def options_of(arguments: list[str] | None) -> SimOptions:
 
 
 def repeating(words: list[str]) -> str:
-    """Return the command that repeats one of many runs, of these ``words``, but for its seed."""
+    """Return the command that repeats one of many runs, without its seed, from these ``words``."""
     of_many = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     for option in ("--homes", "--seed"):
         of_many.add_argument(option)
@@ -202,7 +202,7 @@ def _add_circumstances(parser: argparse.ArgumentParser) -> None:
 
 
 def _stage(text: str) -> tuple[str, str]:
-    """Return a stage's name, and what takes its place."""
+    """Return a stage's name and the import path of its replacement."""
     parts = re.fullmatch(r"(\w+)=([\w.]+:[\w.]+)", text)
     if parts is None:
         raise argparse.ArgumentTypeError(f"expected STAGE=MODULE:FUNCTION, got {text!r}")
@@ -260,7 +260,7 @@ _NEEDED: Final = {
     "zone": CleanMode.ZONES,
     "spot": CleanMode.SPOT,
 }
-"""What an option means; the mode need not be said then."""
+"""The mode that an option implies, so that the mode need not be given."""
 
 
 def _request_of(given: argparse.Namespace) -> CleanRequest:

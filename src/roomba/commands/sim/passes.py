@@ -1,4 +1,4 @@
-"""How often the tool came over the floor, for a picture of it."""
+"""Counts how often the tool passed over each piece of floor, for a picture."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from roomba.grid import GridFrame
 _PIECE: Final = 10
 """Poses that are drawn at a time."""
 _LEAST_AWAY: Final = 3.0
-"""s; a robot that comes back sooner has not been away."""
+"""s; a robot that comes back sooner still counts as the same pass."""
 _SHIFT: Final = 4
-"""OpenCV's fixed point: 4 bits behind the point of a pixel."""
+"""Fractional bits of OpenCV's fixed-point coordinates."""
 
 
 def passes_over(

@@ -34,10 +34,10 @@ _MARGIN: Final = 0.3
 _MOST_CELLS: Final = 30_000_000
 """Larger floors are drawn as swept or not: counting passes would take long."""
 _SHOWN_CELLS: Final = 2400
-"""Along a side of the picture of the floor; finer is not seen."""
+"""Cells; more cells are drawn as swept or not, since to count passes would take long."""
 _MOST_MARKS: Final = 12
 SWEPT: Final = ("#D3E9DF", "#A5D0BF", "#6FB09A")
-"""Once, twice, more often."""
+"""The colours of floor that was swept once, twice, and more often."""
 MISSED: Final = "#F0A582"
 _THING: Final = "#5B5F66"
 _SHORT: Final = {

@@ -22,7 +22,8 @@ def lines_of(
 ) -> list[tuple[str, str]]:
     """Return the rows of a run's table: a name and a text.
 
-    ``place`` is who said where the station stands: what that leaves out a person can mend.
+    ``place`` is how the station's place is known; unless it was given, the rows tell how to give
+    it.
     """
     ratio = figures.path_ratio
     lines = [
@@ -64,7 +65,7 @@ def lines_of(
 def table_of(
     figures: Figures, unreached: Unreached = NOTHING, place: StationPlace = StationPlace.TOLD
 ) -> Table:
-    """Return a run's table, as of :func:`lines_of`."""
+    """Return a run's table, with the rows of :func:`lines_of`."""
     rows = lines_of(figures, unreached, place)
     return named_table(rows, {"outcome": "green" if figures.is_completed else "red"})
 
@@ -116,14 +117,14 @@ def _dirt(figures: Figures) -> str:
 
 
 def _rate(figures: Figures) -> str:
-    """Return what is told of how quick it was, behind its time."""
+    """Return a text about the speed of a clean, to follow its time."""
     if figures.rate is None or figures.times_least is None:
         return ""
     return f", {figures.rate:.2f} m² a minute, {figures.times_least:.2f} times the least time"
 
 
 def _times(figures: Figures) -> list[tuple[str, str]]:
-    """Return where its time went, if that was counted."""
+    """Return where a run's time went, if that was counted."""
     told = [f"{name} {clock(seconds)}" for name, seconds in figures.times.parts if seconds >= 0.5]
     return [("of it", ", ".join(told))] if told else []
 

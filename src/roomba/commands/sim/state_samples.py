@@ -1,4 +1,4 @@
-"""What is looked at while a run of ``sim`` goes on, for the history."""
+"""Samples the robot's state during a run of ``sim``, for the history."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class StateSamples:
 
     @property
     def home(self) -> dict[str, object]:
-        """What the robot knows of its home, as a page is told it; nothing before the first look."""
+        """The home as the robot knows it, in a page's form; empty before the first sample."""
         if self._robot is None:
             return {}
         # Imported here: a run should begin at once, and needs no camera.

@@ -12,7 +12,7 @@ from roomba.errors import RoombaError
 
 
 class NoRobotError(RoombaError):
-    """No robot answers; the message says where it was looked for, and what helps."""
+    """No robot answers; the message says which address was tried, and what helps."""
 
 
 def find_robot(ports: Iterable[int], host: str = HERE) -> int:

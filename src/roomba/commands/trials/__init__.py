@@ -1,1 +1,1 @@
-"""One run of the robot in a home: what it is to be, and what came of it."""
+"""One run of the robot in a home: its specification, and its result."""

@@ -29,9 +29,10 @@ class Figures:
 
     The figures are explained where they are written: :mod:`roomba.commands.sim.json_file`.
 
-    ``calibration`` tells what the robot measured of its own errors. By the wheels alone it is off
-    by ``wheels_error``, m per m of way, and by wheels and gyro by ``odometry_error``; None of too
-    short a way. ``calibrated_...`` are the same with what was measured taken out.
+    ``calibration`` tells the errors that the robot measured of itself. ``wheels_error`` is the
+    error of dead reckoning by the wheels alone, m per m of way, ``odometry_error`` that by wheels
+    and gyro; None if the way is too short. ``calibrated_...`` are the same after correction by the
+    calibration.
     """
 
     outcome: str
@@ -65,12 +66,12 @@ class Figures:
 
     @property
     def fraction(self) -> float:
-        """Share of the floor that the tool can reach that it passed over, 0..1."""
+        """Share of the reachable floor that the tool passed over, 0..1."""
         return self.covered_m2 / self.coverable_m2 if self.coverable_m2 > 0.0 else 1.0
 
     @property
     def path_ratio(self) -> float | None:
-        """Way, by the least way that could sweep that floor: its area by the tool's width."""
+        """Way driven by the least way: the reachable floor's area by the tool's width."""
         least = self.coverable_m2 / self.tool_width_m
         return self.distance_m / least if least > 0.0 else None
 

@@ -1,4 +1,4 @@
-"""The home of a trial: of a file or made by the seed; its doors shut, turned, if so asked."""
+"""The home of a trial: from files or made by the seed; with doors shut and turned, if asked for."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def with_doors_shut(home: Home) -> Home:
 def rooms_of(home: Home) -> Rooms:
     """Return the rooms as the home's layer names them, else as its map shows them.
 
-    A room within another one is no part of that.
+    A room that lies within another one is cut out of that one.
     """
     names = [room.name for room in home.rooms]
     outlines = _apart([shapely.Polygon(room.outline) for room in home.rooms])
@@ -67,13 +67,13 @@ def rooms_of(home: Home) -> Rooms:
             named = list(zip(names, outlines, strict=True))
             return Rooms.from_outlines(home.frame, home.map.values == FREE, named)
         except RoomsError:
-            # Outlines of a layer are for people and may overlap: the robot's own rooms do not.
+            # A layer's outlines are for people and may overlap; the robot's own rooms must not.
             pass
     return segment(home.map)
 
 
 def _apart(outlines: Sequence[shapely.Polygon]) -> list[shapely.Geometry]:
-    """Return outlines, each without those that lie within it."""
+    """Return outlines, from each of which those within it are cut out."""
     apart = []
     for room in outlines:
         within = [each for each in outlines if each is not room and room.contains(each)]

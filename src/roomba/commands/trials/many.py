@@ -1,4 +1,4 @@
-"""Much work on all cores, in a pool of processes; what fails takes nothing else with it."""
+"""Runs much work on all cores, in a pool of processes; one failure does not affect other work."""
 
 from __future__ import annotations
 
@@ -26,24 +26,24 @@ from roomba.errors import RoombaError
 _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
 Outcome: TypeAlias = Figures | str
-"""The figures of a run, or why there are none."""
+"""The figures of a run, or a text with the reason why there are none."""
 
 LONGEST_RUN: Final = 900.0
-"""s; a run that takes longer than that hangs."""
+"""s; a run that takes longer counts as hanging."""
 _LOOK: Final = 1.0
-"""s between two looks whether the pool is whole."""
+"""s between two looks whether the pool still works."""
 _MOST_BROKEN: Final = 3
-"""Pools one after the other that broke before anything was done."""
+"""Pools that may break in a row before any work was done."""
 _THREADS: Final = (
     "NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS",
     "OPENCV_FOR_THREADS_NUM",
 )  # fmt: skip
-"""What libraries read about how many threads they start."""
+"""Environment variables by which libraries choose their number of threads."""
 
 
 def figures_of(trial: Trial) -> Outcome:
-    """Run one trial; an error becomes its text."""
-    # Here, so that the parent, which only waits, does not load it all.
+    """Run one trial; an error is returned as its text."""
+    # Imported here, so that the parent, which only waits, does not load it all.
     from roomba.commands.trials.runs import run_trial
     from roomba.commands.trials.warm import warm_up
 
@@ -64,9 +64,9 @@ def run_many(
 ) -> Iterator[tuple[_Item, _Result | str]]:
     """Yield each item with what came of it, in the order in which they end.
 
-    In place of a result is the reason, a text, where a process died or hung for LONGEST_RUN; such
-    processes are replaced. Closing the iterator ends them all. ``method`` is how processes start:
-    spawned ones share nothing with this one, whose compiled code may have threads that a fork would
+    If a process died or hung for LONGEST_RUN, the result is a text with the reason, and the process
+    is replaced. Closing the iterator ends all processes. ``method`` is how processes start: spawned
+    ones share nothing with this process, whose compiled code may have threads that a fork would
     lose.
     """
     left, broken = deque(items), 0
@@ -83,9 +83,9 @@ def run_many(
 def _run_in_pool(
     left: deque[_Item], work: Callable[[_Item], _Result], processes: int | None, method: str
 ) -> Generator[tuple[_Item, _Result | str]]:
-    """Run what is left until all is done or the pool breaks; what was at work then is left again.
+    """Run the items left until all are done or the pool breaks; unfinished items are put back.
 
-    A pool breaks when a process dies that has nothing to do.
+    A pool breaks when an idle process dies.
     """
     count = min(processes or usable_cores(), len(left))
     others = set(multiprocessing.active_children())
@@ -113,7 +113,7 @@ def _run_in_pool(
         finally:
             left.extendleft(at_work.values())
             pool.stop()
-            # One that only starts would tell by a traceback that the pool's locks are gone.
+            # A process that is still starting would print a traceback about the lost pool.
             for process in set(multiprocessing.active_children()) - others:
                 process.kill()
             pool.join()
@@ -130,7 +130,7 @@ def _result_of(future: Future[Any]) -> Any:
 
 @contextlib.contextmanager
 def one_thread_each() -> Iterator[None]:
-    """Let programs that are started meanwhile compute in one thread: a core each is theirs."""
+    """Let programs that are started meanwhile compute in one thread: each has one core."""
     before = {name: os.environ.get(name) for name in _THREADS}
     os.environ.update(dict.fromkeys(_THREADS, "1"))
     try:
@@ -145,12 +145,12 @@ def one_thread_each() -> Iterator[None]:
 
 @contextlib.contextmanager
 def undisturbed() -> Iterator[None]:
-    """Put off Ctrl-C; what is started meanwhile never sees it: it is for this process."""
+    """Defer Ctrl-C for this process; processes that are started meanwhile never get it."""
     came: list[Any] = []
-    # Python starts it before the first process, and lets the signal through again.
+    # Started now: Python would start it with the first process and unblock the signal.
     resource_tracker.ensure_running()
     handler = signal.signal(signal.SIGINT, lambda *_: came.append(True))
-    # Inherited by what is started; here another thread may get the signal all the same.
+    # Started processes inherit the mask. In this one, another thread may still get the signal.
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

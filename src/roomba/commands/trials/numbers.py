@@ -1,7 +1,7 @@
 """Numbers of the configuration that a trial changes, by dotted names: mission.coverage.turning.
 
-The first word names the file that says the number otherwise: ``robot``, ``simulation``,
-``mission`` or ``docking``.
+The first word names the file whose number is replaced: ``robot``, ``simulation``, ``mission`` or
+``docking``.
 """
 
 from __future__ import annotations

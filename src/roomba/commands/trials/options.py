@@ -1,4 +1,4 @@
-"""Options of a trial that several commands have: where it is, and with which body."""
+"""Options of a trial that several commands share: the place, and the robot's body."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def add_circumstances(parser: argparse.ArgumentParser) -> argparse._ArgumentGrou
 
 
 def check_place(given: argparse.Namespace) -> None:
-    """Refuse two homes at once, and a map that is not there; raises UsageError."""
+    """Refuse two homes at once, and a missing map; raises UsageError."""
     if given.map is not None and given.home is not None:
         raise UsageError("expected --home or --map, got both; leave one out")
     if given.map is not None and not given.map.expanduser().is_file():
@@ -90,5 +90,5 @@ def home_name(given: argparse.Namespace) -> str:
 
 
 def station_of(given: argparse.Namespace) -> Pose | None:
-    """Return the pose of the docked robot, None for the home's own."""
+    """Return the pose of the docked robot; None: the home's own station counts."""
     return None if given.station is None else Pose(*given.station)

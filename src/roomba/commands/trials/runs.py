@@ -1,4 +1,4 @@
-"""One run: a robot is put into the home of a trial, cleans it, and what came of it is counted."""
+"""One run: a robot is put into a trial's home and cleans it, and the result is counted."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ from roomba.world.home.home import Home
 from roomba.world.home.raster import largest_component, where_body_fits
 
 RunObserver = Callable[[HeadlessMission], None]
-"""Is shown the robot whenever some of its time has passed."""
+"""Called with the robot whenever some of its time has passed."""
 
 TRAJECTORY_STEP: Final = 0.1
 """s between two poses of the trajectory."""
@@ -51,7 +51,7 @@ TRAJECTORY_STEP: Final = 0.1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Run:
-    """What happened: ``trajectory`` has rows t (s), x, y (m), theta (rad), true ones.
+    """The result of a run: ``trajectory`` has rows t (s), x, y (m), theta (rad), true poses.
 
     ``coverable`` is bool over ``truth.frame``: the floor that could be cleaned.
     """
@@ -68,7 +68,7 @@ class Run:
 
 
 class ObservedMission(HeadlessMission):
-    """A robot that is looked at while it cleans."""
+    """A robot that observers look at while it cleans."""
 
     observers: tuple[RunObserver, ...] = ()
 
@@ -206,7 +206,7 @@ def robot_config_of(trial: Trial) -> SimulatedRobotConfig:
 
 
 def with_simulation(config: SimulatedRobotConfig, true: SimulationConfig) -> SimulatedRobotConfig:
-    """Return a robot of which something else is true; raises ConfigError."""
+    """Return a robot with another simulated truth; raises ConfigError."""
     values = config.model_dump() | {SIMULATION: true.model_dump()}
     return validated(SimulatedRobotConfig, values, "numbers: ")
 
@@ -227,7 +227,7 @@ def docking_config(numbers: Iterable[Setting] = ()) -> DockingConfig:
 
 
 def _things_of(trial: Trial, home: Home, config: RobotConfig, staging: Pose) -> list[RoundObstacle]:
-    """Return where things stand: on floor where the body fits, that the robot takes for free."""
+    """Return things on floor where the body fits and that the robot's map shows as free."""
     if not trial.things:
         return []
     free = (true_map(home).values == FREE) & (home.map.values == FREE)

@@ -1,4 +1,4 @@
-"""Stages of planning coverage of one's own, by import path: ``{swaths: my_module:my_swaths}``."""
+"""A user's own stages of coverage planning, by import path: ``{swaths: my_module:my_swaths}``."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from roomba.planning.coverage.stages import OUR_STAGES, CoverageStages
 
 NAMES: Final = tuple(field.name for field in fields(CoverageStages))
 _OF_ONE_LINE: Final = ("connection", "polish", "rounding")
-"""Stages that give one line; the others give a list of lines."""
+"""Stages that return one line; the others return a list of lines."""
 
 
 class StageError(RoombaError):
-    """A stage failed, or gave what is no line of places."""
+    """A stage failed, or returned something else than lines."""
 
 
 def stages_of(paths: Iterable[tuple[str, str]], code: Path | None = None) -> CoverageStages:
     """Return the stages of a trial: of its import paths, and ours for the others.
 
-    Modules may lie in the folder ``code``. Raises UsageError for a stage that there is not and for
-    what cannot be imported.
+    Modules may lie in the folder ``code``. Raises UsageError for an unknown stage, and for a module
+    or function that cannot be imported.
     """
     chosen = {name: _checked(name, path, _function_of(name, path, code)) for name, path in paths}
     return CoverageStages(**chosen) if chosen else OUR_STAGES
@@ -42,7 +42,7 @@ def stages_of(paths: Iterable[tuple[str, str]], code: Path | None = None) -> Cov
 def files_of_stage(name: str, path: str, code: Path | None = None) -> dict[str, Path]:
     """Return the file that a stage is in, and those beside it that it imports, by their names.
 
-    Empty for a stage that is in no file. Raises UsageError.
+    Empty if the stage's module has no file. Raises UsageError.
     """
     module = _module_of(name, path, code)
     if module.__file__ is None:
@@ -50,7 +50,7 @@ def files_of_stage(name: str, path: str, code: Path | None = None) -> dict[str, 
     file = Path(module.__file__)
     root = code if code is not None and code in file.parents else file.parent
     finder = ModuleFinder([str(root)])
-    with contextlib.suppress(ImportError):  # a relative import: what was found until there counts
+    with contextlib.suppress(ImportError):  # a relative import: modules found before it count
         finder.run_script(str(file))
     modules: Iterable[Any] = finder.modules.values()
     found = (Path(each.__file__) for each in modules if each.__file__)
@@ -64,11 +64,11 @@ def _module_of(name: str, path: str, code: Path | None) -> Any:
     if not (module and sign and function):
         raise UsageError(f"stages: {name}: expected MODULE:FUNCTION, got {path!r}")
     if code is not None and sys.path[:1] != [str(code)]:
-        # Before the current folder: a file there may have the same name.
+        # First, before the current folder, where a file may have the same name.
         sys.path.insert(0, str(code))
     try:
         return importlib.import_module(module)
-    except (Exception, SystemExit) as error:  # a module of others may raise anything, or end
+    except (Exception, SystemExit) as error:  # a user's module may raise anything, or exit
         where = "" if code is None else f", also not in {code}"
         raise UsageError(
             f"stages: {name}: expected a module that can be imported, got {module!r}{where}: "
@@ -89,13 +89,13 @@ def _function_of(name: str, path: str, code: Path | None) -> Callable[..., Any]:
 
 
 def _checked(name: str, path: str, stage: Callable[..., Any]) -> Callable[..., Any]:
-    """Return the stage with a look at what it gives: what the next one cannot take is told."""
+    """Return the stage with a check of its result, which must suit the next stage."""
 
     @functools.wraps(stage)
     def checked(*arguments: Any) -> Any:
         try:
             given = stage(*arguments)
-        except (Exception, SystemExit) as error:  # code of others may raise anything, or end
+        except (Exception, SystemExit) as error:  # a user's code may raise anything, or exit
             raise StageError(f"{path}: {error!r}{_place_of(error)}") from error
         lines = [given] if name in _OF_ONE_LINE else given
         if not isinstance(lines, list) or not all(map(_is_line, lines)):

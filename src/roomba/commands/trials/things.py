@@ -13,7 +13,7 @@ from roomba.world.home.home import Home
 from roomba.world.home.raster import where_body_fits
 
 _STREAM: Final = 20_021
-"""Makes these random numbers others than those of noise for the same seed."""
+"""A stream of the seed's random numbers, so that they differ from those of noise."""
 _LEAST, _MOST = 0.04, 0.14
 """m; radius of a thing: from a drinking glass to a pile of books."""
 _FROM_STATION: Final = 1.2

@@ -1,4 +1,4 @@
-"""What a run is to be: all that decides about it, in one value that can be sent to a process."""
+"""The specification of a run: one value with all that determines it, which processes can send."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 RANDOM: Final = "random"
 """The name of a home that the seed makes."""
 MOST_THINGS: Final = 16
-"""Of one world: see :data:`roomba.world.engine.state.arrays.MOST_DISCS`."""
+"""The most things in one world: see :data:`roomba.world.engine.state.arrays.MOST_DISCS`."""
 
 Setting = tuple[str, float | str]
 """The dotted name of a number of the configuration, and its value."""

@@ -1,4 +1,4 @@
-"""What floor could really be cleaned, and what was: by the true home and true poses alone."""
+"""The floor that could truly be cleaned, and that was: by the true home and true poses alone."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from roomba.world.home.home import Home
 
 
 def true_map(home: Home) -> OccupancyMap:
-    """Return the map of what is really solid: things off the map, shut doors and drops included.
+    """Return the map of all true solids: things off the map, shut doors and drops included.
 
-    What moves by itself is left out.
+    Things that move by themselves are left out.
     """
     solid = home.solid | home.drop
     values = np.where(solid, np.int8(OCCUPIED), np.int8(FREE))
@@ -41,7 +41,7 @@ def coverable_floor(
 ) -> Mask:
     """Return the floor of a request that the tool can truly reach, bool over ``context.frame``.
 
-    ``context`` is the home as the robot knows it; an edge is what its map shows as one.
+    ``context`` is the home as the robot knows it: edges are those of its map.
     """
     truth = PlanningContext(
         true_map(home), home.station, robot, mission, docking, context.rooms, context.zones

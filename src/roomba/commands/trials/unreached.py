@@ -1,4 +1,4 @@
-"""Floor that no way leads to from the station: it is neither cleaned nor missed, but told."""
+"""Floor to which no way leads from the station: it counts neither as cleaned nor as missed."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from roomba.perception.rooms.zones import Zones
 from roomba.world.home.home import Home
 
 LEAST_TOLD: Final = 1.0
-"""m², of all pieces together; no room is smaller, and what is less lies between or behind
-furniture: it is not told."""
+"""m² of all unreached floor together, from which it is reported: no room is smaller, and smaller
+pieces lie between or behind furniture."""
 _HARDLY_ANY: Final = 0.05
-"""m²; less is not worth words."""
+"""m²; less floor in a room is not worth a mention."""
 
 
 class Unreached(NamedTuple):
-    """How much floor that is, m², in which rooms, if the home has any, and how much elsewhere.
+    """Unreached floor: its area, m², its rooms, if the home has any, and its area elsewhere.
 
-    Rooms in which it is little are not named.
+    Rooms with hardly any of it are not named.
     """
 
     area: float = 0.0
@@ -32,7 +32,7 @@ class Unreached(NamedTuple):
 
     @property
     def words(self) -> str:
-        """It in a line; nothing if there is none."""
+        """The unreached floor as a line of text; empty if there is none."""
         if not self.area:
             return ""
         count = len(self.rooms)
@@ -50,7 +50,10 @@ NOTHING: Final = Unreached()
 
 
 def unreached_of(home: Home, zones: Zones) -> Unreached:
-    """Return that of a home with zones for the shipped robot, as of :func:`unreached_in`."""
+    """Return the unreached floor of a home with zones for the shipped robot.
+
+    See :func:`unreached_in`.
+    """
     robot = robot_config_of(Trial())
     mission, docking = mission_config(robot), docking_config()
     rooms = rooms_of(home)
@@ -60,9 +63,9 @@ def unreached_of(home: Home, zones: Zones) -> Unreached:
 
 
 def unreached_in(context: PlanningContext) -> Unreached:
-    """Return what the tool could sweep from anywhere on the robot's map, but not from its station.
+    """Return floor that the tool could sweep by the map, but not coming from the station.
 
-    What lies in a zone that is to be kept out of does not count, what lies behind it does.
+    Floor in a no-go zone does not count, but floor behind it does.
     """
     floor = context.floor
     cell = floor.frame.resolution**2

@@ -1,8 +1,4 @@
-"""Loads or compiles all that a clean needs, by cleaning a closet: then a clean is timed alone.
-
-``python3 -m roomba.commands.trials.warm [ticks|bursts]``: tick by tick as nodes clean, by bursts as
-the headless robot does, or both.
-"""
+"""Loads or compiles all that a clean needs, by cleaning a closet; a clean is timed alone then."""
 
 from __future__ import annotations
 
@@ -36,7 +32,7 @@ def warm_up() -> None:
 
 
 def _look_back(robot: HeadlessMission) -> None:
-    """Do what pages and reports want to know of a clean."""
+    """Call what pages and reports need of a clean."""
     rows = robot.passed
     reckoned(rows, robot.robot_config, None)
     visits = Visits(robot.context.frame, robot.context.tool_width)
@@ -65,10 +61,10 @@ def closet() -> Home:
 def warm_up_half(longest_burst: int) -> None:
     """Walk, then clean it, with bursts of so many ticks; with 0, tick by tick as nodes do.
 
-    First it walks: :mod:`roomba.commands.warm_up`, which may run beside it, begins with planning.
-    Then it does the last stages of a plan, which the other one comes to last: what both begin to
-    compile at once is compiled twice. The burst, the largest loop of all, comes last, and takes the
-    place of one of these stages, so that both halves take as long.
+    A function that two processes compile at the same time is compiled twice. So this half walks
+    first, as :mod:`roomba.commands.warm_up`, which may run beside it, plans first. Then it does the
+    last stages of a plan, to which the other process comes last. The burst, the largest loop of
+    all, comes last; one of these stages is left out for it, so that both halves take equally long.
     """
     robot = HeadlessMission(closet(), longest_burst=longest_burst)
     robot.walk(0.9, 0.9)
@@ -77,7 +73,7 @@ def warm_up_half(longest_burst: int) -> None:
 
 
 def _finish_a_plan(*, is_polished: bool) -> None:
-    """Do the last stages of planning, on a way to and fro over free floor."""
+    """Do the last stages of planning, on a zigzag over free floor."""
     floor, config = np.ones((40, 40), np.bool_), CoverageConfig()
     way = np.array([[5.0, 5.0], [30.0, 5.0], [30.0, 12.0], [5.0, 12.0]])
     if is_polished:

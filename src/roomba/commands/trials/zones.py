@@ -18,7 +18,7 @@ from roomba.storage.map_bound import map_digest
 from roomba.storage.zones import load_zones
 
 ZONES_NAME: Final = "zones.yaml"
-"""The file of a home's zones in its folder."""
+"""The name of the file with a home's zones, in the home's folder."""
 
 
 def zones_of(trial: Trial) -> Zones:
@@ -36,7 +36,7 @@ def zones_of(trial: Trial) -> Zones:
 
 
 def _turned(zone: Zone, degrees: float) -> Zone:
-    """Return a zone of a home's folder where it lies in the turned home."""
+    """Return a zone, moved to where it lies in the turned home."""
     if not degrees:
         return zone
     points = Pose(0.0, 0.0, math.radians(degrees)).transform(np.array(zone.points))

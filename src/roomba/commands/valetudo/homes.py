@@ -1,4 +1,4 @@
-"""A home's folder from a map of Valetudo, and such a map from a home."""
+"""Converts a map of Valetudo into a home's folder, and a home into such a map."""
 
 from __future__ import annotations
 
@@ -34,25 +34,25 @@ from roomba.world.layers.definite_map import definite_map
 from roomba.world.layers.layer import load_home
 
 _LEAST_PART: Final = 0.5
-"""m²; no robot lives on less floor: it is a pocket between furniture."""
+"""m²; a smaller connected floor is a pocket between furniture, where no robot lives."""
 _BY_CHARGER: Final = 0.5
-"""m; floor that is farther from the charger is not what it stands on: that is not on the map."""
+"""m; if all floor is farther from the charger, the floor at the charger is not on the map."""
 _COMMENT = "# Imported from a map of Valetudo. Lengths in m, map frame, directions in rad.\n"
 
 
 def write_home(found: ValetudoHome, zones: Zones, folder: Path) -> Home:
-    """Write a home's folder, and return the home; nothing is left of one that is refused.
+    """Write a home's folder, and return the home; an invalid home leaves no files.
 
     Raises OSError when the disk refuses, and HomeError where no robot can stand on the station.
     """
-    # On the same disk, so that files can be moved; the folder may be the one that can be written.
+    # On the same disk, so that files can be moved. Only the folder itself may be writable.
     beside = next(each for each in (folder, *folder.parents) if each.is_dir())
     with tempfile.TemporaryDirectory(prefix=".import_", dir=beside) as temporary:
         made = Path(temporary) / folder.resolve().name
         _write_files(found, zones, made)
         home = _loaded(made)
         folder.mkdir(parents=True, exist_ok=True)
-        # The map last: by it a folder is a home.
+        # The map comes last: with it the folder becomes a home.
         for file in sorted(made.iterdir(), key=lambda each: each.name == MAP_NAME):
             os.replace(file, folder / file.name)
     return home
@@ -87,7 +87,7 @@ def _write_files(found: ValetudoHome, zones: Zones, folder: Path) -> None:
 
 
 def _loaded(folder: Path) -> Home:
-    """Return a home that was written; raises HomeError that names no file: it will be removed."""
+    """Return a home that was written; raises HomeError without naming its file, a temporary one."""
     try:
         return load_home(str(folder), HOMES, BodyConfig())
     except HomeError as error:
@@ -121,8 +121,9 @@ def _layer_of(found: ValetudoHome, zones: Zones, body: BodyConfig) -> dict[str, 
 def _station_by_charger(occupancy: OccupancyMap, zones: Zones, radius: float) -> Pose | None:
     """Return where to dock in the part of the floor by the charger, which is at (0, 0).
 
-    Zones part it as walls do. Where no floor is near it, the largest part is meant. None for that
-    without zones: there each body finds a place of its own.
+    Zones divide the floor as walls do. If no floor is near the charger, the largest part counts.
+    None if the largest part counts and there are no zones, as each body then finds a place of its
+    own; also None if all parts are too small.
     """
     floor = definite_map(occupancy)
     solid = _solid(floor, zones)
@@ -143,6 +144,6 @@ def _station_by_charger(occupancy: OccupancyMap, zones: Zones, radius: float) ->
 
 
 def _solid(floor: OccupancyMap, zones: Zones) -> Mask:
-    """Return where no body may be, zones among it, bool [rows, columns]."""
+    """Return where no body may be, zones included, bool [rows, columns]."""
     barred = [zone.cells(floor.frame) for zone in zones.barred]
     return np.asarray(np.logical_or.reduce([floor.solid, *barred]))

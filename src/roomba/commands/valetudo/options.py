@@ -9,7 +9,7 @@ from roomba.errors import RoombaError
 
 FORMATS = ("valetudo",)
 _GZIP = b"\x1f\x8b"
-"""How such a file begins."""
+"""The first bytes of a gzip file."""
 
 
 def parser_of(program: str, description: str) -> argparse.ArgumentParser:
@@ -25,7 +25,7 @@ def parser_of(program: str, description: str) -> argparse.ArgumentParser:
 
 
 def reason_of(error: Exception) -> str:
-    """Return in a line why a file was refused."""
+    """Return a line with the reason why a file was refused."""
     if isinstance(error, RoombaError):
         return " ".join(str(error).split())
     if isinstance(error, UnicodeDecodeError):

@@ -1,4 +1,4 @@
-"""The zones of a map of Valetudo as zones of a home."""
+"""Converts the zones of Valetudo's map into zones of a home."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from roomba.perception.rooms.zones import LEAST_AREA, Zone, ZoneKind, Zones, Zon
 from roomba.vocabulary import MOST_ZONES, listed
 
 _CROSSABLE: Final = 4
-"""Corners of an area, as Valetudo has them."""
+"""The number of an area's corners in Valetudo."""
 
 
 class TakenZones(NamedTuple):
@@ -23,7 +23,7 @@ class TakenZones(NamedTuple):
 
     @property
     def words(self) -> str:
-        """How many there are, and which were left out."""
+        """A text with the number of zones, and with those that were left out."""
         count = f"{len(self.zones.all)} zones"
         if not self.left_out:
             return count

@@ -1,4 +1,4 @@
-"""How the robot announces itself to Home Assistant by MQTT discovery: a device with entities."""
+"""Announces the robot to Home Assistant by MQTT discovery: a device with entities."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ _SENSORS: Final[dict[str, Json]] = {
     "room": {"name": "Room", "icon": "mdi:floor-plan"},
     "error": {"name": "Error", "icon": "mdi:alert-circle-outline"},
 }
-"""By the key of the state that each shows; those with a unit are measured."""
+"""By the key of the state that each sensor shows; those with a unit are measurements."""
 
 
 def announcements(topics: MqttTopics, robot: str, name: str) -> dict[str, Json]:
-    """Return what is told under which topic, retained; ``robot`` is its word, ``name`` its name."""
+    """Return retained messages by topic; ``robot`` is the word in ids, ``name`` the shown name."""
     common = {
         "availability_topic": topics.available,
         "payload_available": ONLINE,
@@ -46,7 +46,7 @@ def announcements(topics: MqttTopics, robot: str, name: str) -> dict[str, Json]:
             **entity,
             **common,
             "unique_id": f"roomba_robot_{own}",
-            # The older and the newer word for how its entity is called.
+            # The id of the entity: the second key is the newer name of the first.
             "object_id": own,
             "default_entity_id": f"{component}.{own}",
         }
@@ -64,7 +64,7 @@ def _entities(topics: MqttTopics, robot: str) -> Iterator[tuple[str, str, Json]]
     yield "sensor", f"{robot}_answer", _answer(topics)
     yield "binary_sensor", f"{robot}_bin_full", _bin_full(topics)
     yield "button", f"{robot}_empty_bin", _empty_bin(topics)
-    # The map card for Valetudo looks for a camera of this name.
+    # Valetudo's map card looks for a camera of this name.
     yield "camera", f"{robot}_map_data", {"name": "Map", "topic": topics.map}
 
 

@@ -1,9 +1,9 @@
 """The connection to an MQTT broker: it comes back by itself, and what waits for it is bounded.
 
-What the broker shall hold is one message a topic: a newer one takes the place of one that has not
-been sent. So a broker that is away, or takes nothing, costs no more than one message of each topic
-here, and one of each in the connection. Commands wait in a short queue. All waiting for the broker
-is done in a thread of the connection's own, in which alone paho is called.
+The broker shall hold one message of each topic: a newer one replaces one that has not been sent. So
+a broker that is away, or takes nothing, costs the memory of one message of each topic here, and one
+in the connection. Commands wait in a short queue. A thread of its own waits for the broker; paho is
+called only in that thread.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ from roomba.ui.smart_home.settings import MqttConfig, TlsConfig
 from roomba.ui.smart_home.topics import OFFLINE, ONLINE, MqttTopics
 
 MOST_WAITING: Final = 20
-"""Commands that wait; more are dropped, and counted."""
+"""Commands that wait; further ones are dropped and counted."""
 LONGEST_COMMAND: Final = 16384
-"""Bytes; longer ones are dropped. The broker is asked not to send any."""
+"""Bytes of a command; longer ones are dropped. The broker is asked not to send any."""
 MOST_RATE: Final = 50.0
-"""Messages per s that are taken from the broker; the rest waits there."""
+"""Messages per s that are taken from the broker; the others wait at the broker."""
 _AT_ONCE: Final = 20
-"""Messages that may come at once."""
+"""Messages that may come at once, beyond that rate."""
 _KEEP_ALIVE: Final = 10
 """s."""
 _RECONNECT: Final = (1.0, 20.0)
@@ -43,7 +43,7 @@ _CONNECT: Final = 5.0
 _LOOK: Final = 0.1
 """s after which the connection's thread looks for something to send."""
 _END: Final = 1.0
-"""s that the last message may take."""
+"""s that the last message, that the robot is gone, may take."""
 
 
 class BrokerError(RoombaError):
@@ -51,7 +51,7 @@ class BrokerError(RoombaError):
 
 
 class Broker:
-    """One connection. ``commands`` are topic and payload of what came; ``wake`` is called then."""
+    """One connection. ``commands`` holds topic and payload of each; ``wake`` tells of news."""
 
     def __init__(
         self,
@@ -63,18 +63,19 @@ class Broker:
     ) -> None:
         """Connect nothing yet; raises BrokerError when the authority of TLS cannot be read.
 
-        After ``keep_alive`` s of silence a sign of life is asked for, and waited for as long.
+        After ``keep_alive`` s of silence the broker is asked for a sign of life, and given as long
+        to answer.
         """
         self._keep_alive = keep_alive
         self._config, self._topics, self._wake = config, topics, wake
         self._tell = ToldOnce(lambda text: tell(f"smart home: {text}"))
         self.commands: queue.Queue[tuple[str, str]] = queue.Queue(MOST_WAITING)
         self.dropped = 0
-        """Messages that were not taken."""
+        """Messages that were dropped."""
         self.connections = 0
-        """How often it was connected."""
+        """How many times the broker accepted the connection."""
         self.is_connected = False
-        """Whether the broker took the connection."""
+        """Whether the broker has accepted the connection."""
         self._wanted: dict[str, bytes] = {}
         self._to_send: dict[str, None] = {}
         self._lock = threading.Lock()
@@ -89,12 +90,12 @@ class Broker:
         self._thread.start()
 
     def stop(self) -> None:
-        """Say that the robot is gone, and end: within 2 s, also if the broker takes nothing."""
+        """Tell the broker that the robot is gone, and end: within 2 s, even if the broker hangs."""
         self._ends.set()
         self._thread.join(2.0 * _END)
 
     def hold(self, topic: str, payload: str | bytes) -> None:
-        """Let the broker hold this for a topic, as soon as it can be told; never waits."""
+        """Let the broker hold a message of a topic, sent as soon as possible; never waits."""
         content = payload.encode() if isinstance(payload, str) else payload
         with self._lock:
             if self._wanted.get(topic) != content:
@@ -113,7 +114,7 @@ class Broker:
             before = self.connections
             try:
                 self._speak()
-            # A broker can send anything; what paho makes of it ends this connection alone.
+            # A broker can send anything; an error that paho makes of it ends this connection alone.
             except Exception as reason:
                 host, port = self._config.address
                 self._tell(f"no connection to the broker at {host}:{port}: {reason}")
@@ -137,7 +138,7 @@ class Broker:
                 self._send()
 
     def _send(self) -> None:
-        """Send what waits, but of no topic a second one before the first is out."""
+        """Send the waiting messages, except of topics whose last message has not left yet."""
         with self._lock:
             ready = [topic for topic in self._to_send if self._is_out(topic)]
             sent = {topic: self._wanted[topic] for topic in ready}
@@ -184,7 +185,7 @@ class Broker:
             self._tell(f"the broker refuses the robot: {reason}")
             return
         wanted = [(topic, SubscribeOptions(qos=1)) for topic in self._topics.heard]
-        # What others say of this robot from now on.
+        # Messages of others about this robot's availability, from now on.
         others = SubscribeOptions(
             qos=1, noLocal=True, retainHandling=SubscribeOptions.RETAIN_DO_NOT_SEND
         )
@@ -205,7 +206,7 @@ class Broker:
         self.is_connected = False
 
     def _came(self, _client: Any, _user_data: Any, message: mqtt.MQTTMessage) -> None:
-        """Queue what is short, and no command of before; too many wait at the broker."""
+        """Queue a command, unless it is too long or retained; beyond the rate, the broker waits."""
         self._wait_for_budget()
         if message.topic == self._topics.available:
             self._correct(message.payload)
@@ -222,10 +223,10 @@ class Broker:
         self._wake()
 
     def _correct(self, told: bytes | bytearray) -> None:
-        """Tell again that the robot is there, if its topic says otherwise meanwhile.
+        """Publish again that the robot is available, if its topic says otherwise.
 
-        The broker publishes the last will of a connection that was cut when it notices that, which
-        can be long after the next one began. Another program with the robot's name may end, too.
+        The broker publishes the last will of a cut connection when it notices the cut, perhaps long
+        after the next connection began. Another program with the robot's name may also end.
         """
         topic = self._topics.available
         with self._lock:

@@ -1,4 +1,4 @@
-"""What a smart home asks for, as commands of the robot."""
+"""The commands of a smart home, obeyed by the robot."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _FANS: Final = tuple(level.value for level in FanLevel)
 
 
 class SmartCommands:
-    """Commands by their names; ``fan`` is the level with which a clean begins."""
+    """Commands by name; ``fan`` is the fan level of the cleans that begin from now on."""
 
     def __init__(self, robot: ObservedRobot) -> None:
         """Command this robot."""
@@ -47,7 +47,7 @@ class SmartCommands:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All that :meth:`send` takes."""
+        """The names that :meth:`send` takes."""
         return *self._plain, *self._with_values
 
     def command(self, payload: str) -> dict[str, Any]:
@@ -82,7 +82,7 @@ class SmartCommands:
         return self._answered(name, None if values else self._plain.get(name))
 
     def _answered(self, name: str, command: Callable[[], None] | None) -> dict[str, Any]:
-        """Return what came of it; what is no command is refused."""
+        """Return a command's result as an answer; an unknown command is refused."""
         refusal = ""
         if command is None:
             refusal = f"expected one of {', '.join(self.names)}, got {name[:60]!a}"
@@ -94,7 +94,7 @@ class SmartCommands:
         return {"command": name[:60], "ok": not refusal, "message": shortened(refusal)}
 
     def _start(self) -> None:
-        """Go on with what is paused, else clean all; what goes on by itself is left alone."""
+        """Resume a paused robot, else clean all; leave a robot alone that goes on by itself."""
         vacuum = self._robot.robot().vacuum
         if vacuum.phase in HELD:
             self._robot.resume()

@@ -1,4 +1,4 @@
-"""The map as a picture for cameras of a smart home: PNG, in which Valetudo's map stands as well."""
+"""The map as a PNG picture for a smart home's cameras; Valetudo's map is stored inside as well."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _FLOOR: Final = (226, 222, 213)
 _WAY, _ROOM, _NO_GO = (38, 84, 124), (120, 112, 100), (196, 50, 40)
 _ROBOT, _STATION, _TEXT = (20, 60, 100), (30, 130, 80), (60, 54, 46)
 _KEYWORD: Final = "ValetudoMap"
-"""By which the map card finds its map in the picture."""
+"""The keyword under which Valetudo's map card finds the map in the PNG."""
 
 
 def picture_of(floor: FloorMap, valetudo: str = "") -> bytes:
@@ -45,7 +45,7 @@ def picture_of(floor: FloorMap, valetudo: str = "") -> bytes:
 
 
 class _Drawing:
-    """One picture; places in m become pixels."""
+    """One picture, with places in m drawn at pixels."""
 
     def __init__(self, floor: FloorMap) -> None:
         self._floor = floor
@@ -129,7 +129,7 @@ class _Drawing:
 
 
 def _known(layer: GridLayer) -> tuple[slice, slice]:
-    """Return the rows and columns of what is known, with some around; all if nothing is."""
+    """Return the rows and columns of the known cells and a margin; all cells if none is known."""
     found = []
     for axis, size in ((1, layer.cells.shape[0]), (0, layer.cells.shape[1])):
         known = np.flatnonzero(layer.cells.any(axis=axis))

@@ -1,7 +1,6 @@
-"""What the broker is told of one robot, and what comes of the commands that it hands on.
+"""Tells the broker about one robot, and obeys the commands that come from the broker.
 
-:class:`~roomba.ui.smart_home.smart_home.SmartHome` calls it. It draws the map in a
-thread of its own.
+:class:`~roomba.ui.smart_home.smart_home.SmartHome` calls it. A thread of its own draws the map.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ from roomba.ui.smart_home.topics import OFFLINE, ONLINE, MqttTopics
 _BIRTH_PERIOD: Final = 0.5
 """s between two births that are answered."""
 _MOST_WAY: Final = 2000
-"""Places of the way that are kept; older ones are forgotten."""
+"""Places of the robot's way that are kept; the oldest are dropped."""
 _STEP: Final = 0.05
 """m between two of them."""
 
@@ -73,7 +72,7 @@ class MqttBridge:
         self._broker.stop()
 
     def obey(self) -> bool:
-        """Obey what came; returns whether something did."""
+        """Obey the commands that came; return whether one was obeyed."""
         has_obeyed = False
         while True:
             try:
@@ -93,11 +92,11 @@ class MqttBridge:
             self._state_told = -math.inf
 
     def show_gone(self) -> None:
-        """Tell that the robot does not answer."""
+        """Publish that the robot does not answer."""
         self._broker.hold(self.topics.available, OFFLINE)
 
     def show(self, view: RobotView, home: HomeView, *, is_new_run: bool) -> None:
-        """Tell what is seen now, not more often than is wanted."""
+        """Publish what was seen now, at most as often as the configuration says."""
         self._broker.hold(self.topics.available, ONLINE)
         now = time.monotonic()
         if is_new_run:
@@ -118,17 +117,17 @@ class MqttBridge:
             way = tuple(self._way)
             self._drawing = self._painter.submit(self._show_map, view, home, way)
             if before is not None:
-                before.result()  # what went wrong with it is told as of any look
+                before.result()  # raises the error of the drawing, if there was one
 
     def _announce_again(self, payload: str) -> None:
-        """Home Assistant has started: it knows nothing any more."""
+        """Send all messages again: Home Assistant has started, and knows none of them."""
         now = time.monotonic()
         if payload == ONLINE and now - self._announced >= _BIRTH_PERIOD:
             self._announced = now
             self._broker.hold_again()
 
     def _show_map(self, view: RobotView, home: HomeView, way: tuple[Point, ...]) -> None:
-        """Draw the map, if it is not the one that was drawn last."""
+        """Draw the map, if it differs from the one that was drawn last."""
         cells = self._robot.layer(LayerName.MAP)
         if cells is None or not cells.cells.any():
             return

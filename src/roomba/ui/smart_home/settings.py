@@ -1,4 +1,4 @@
-"""What a smart home's file says: the broker, and who is told of events; its secrets stay secret."""
+"""The configuration file of a smart home: the broker, the webhook, and secrets that stay secret."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class MqttConfig(Frozen):
 
 
 class WebhookConfig(Frozen):
-    """Where events are posted to; ``secret`` signs them. ``url`` may hold a secret of its own."""
+    """Where events are posted; ``secret`` signs them. The ``url`` may contain another secret."""
 
     url: SecretStr
     secret: SecretStr | None = None
@@ -94,14 +94,14 @@ class WebhookConfig(Frozen):
 
 
 class SmartHomeConfig(Frozen):
-    """A whole file; what is left out is not done."""
+    """The whole file; a part that is left out is not used."""
 
     mqtt: MqttConfig | None = None
     webhook: WebhookConfig | None = None
 
     @property
     def secrets(self) -> list[str]:
-        """Where in the file secrets stand."""
+        """The places in the file where secrets stand."""
         found = {
             "mqtt.password": self.mqtt and self.mqtt.password,
             "webhook.secret": self.webhook and self.webhook.secret,
@@ -138,7 +138,7 @@ def read_settings(path: Path) -> SmartHomeConfig:
 
 
 def _read(path: Path) -> tuple[str, os.stat_result]:
-    """Return what a regular file holds, and what it is."""
+    """Return the content of a regular file, and its status."""
     try:
         with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as file:
             found = os.fstat(file.fileno())
@@ -156,7 +156,7 @@ def _read(path: Path) -> tuple[str, os.stat_result]:
 
 
 def _reason(error: ValidationError) -> str:
-    """Return where the first fault is, and what was expected, without what came."""
+    """Return where the first fault is and what was expected, without the wrong value."""
     first = error.errors(include_input=False, include_url=False, include_context=False)[0]
     where = ".".join(str(part) for part in first["loc"])
     return f"{where}: {first['msg'].removeprefix('Value error, ')}" if where else first["msg"]

@@ -1,7 +1,7 @@
 """The robot in a smart home: looks at it, tells the broker and the webhook, and obeys commands.
 
-It speaks to the client protocol alone, as the page does, so it serves any robot that a page serves.
-All happens in threads of its own: the robot waits for none of them.
+It uses the client protocol alone, as the page does, so it serves any robot that a page serves. It
+works in threads of its own: the robot waits for none of them.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class SmartHome:
                 if obeyed or time.monotonic() - looked >= _LOOK:
                     looked = time.monotonic()
                     self._look()
-            # What a robot of another program answers is not known here: the next look may do.
+            # A robot of another program may raise anything; the next look may succeed.
             except Exception as fault:
                 self._tell(f"smart home: a look failed: {type(fault).__name__}: {fault}")
 

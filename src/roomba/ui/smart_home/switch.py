@@ -1,4 +1,4 @@
-"""The smart home switched on by the path of its file, without which nothing of it is loaded."""
+"""Loads the smart home only when the path of its file is given."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from roomba.ui.smart_home.settings import read_settings
 
 
 class SmartHomeError(RoombaError):
-    """There is no smart home to be in; the message says why."""
+    """The smart home cannot be used; the message says why."""
 
 
 class Switched(Protocol):
-    """What was switched on."""
+    """The smart home that is in use."""
 
     def start(self) -> None:
         """Begin."""

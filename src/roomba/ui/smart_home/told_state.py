@@ -1,4 +1,4 @@
-"""The state as a smart home is told it: plain values, rounded so that they seldom change."""
+"""The state as published to a smart home: plain values, rounded so that they seldom change."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from roomba.vocabulary import Phase
 _LONGEST: Final = 255
 """Characters of a state in Home Assistant."""
 _STEP: Final = 5
-"""s; a time in steps of that changes less often than the robot is looked at."""
+"""s; times are rounded to it, so that they change less often than the robot is looked at."""
 
 
 class StateTeller:
-    """Follows one robot, and tells its state; the time of a run is counted here."""
+    """Makes the published state of one robot, and measures the time of its runs."""
 
     def __init__(self) -> None:
         """Begin before the first look."""

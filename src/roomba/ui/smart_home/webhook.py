@@ -25,7 +25,7 @@ from roomba.client.told_once import ToldOnce
 from roomba.ui.smart_home.settings import WebhookConfig
 
 MOST_WAITING: Final = 100
-"""Events that wait; then the oldest is dropped, and counted."""
+"""Events that wait; beyond that the oldest is dropped and counted."""
 ATTEMPTS: Final = 4
 """How often an event is tried."""
 _PAUSES: Final = (1.0, 5.0, 20.0)
@@ -33,12 +33,12 @@ _PAUSES: Final = (1.0, 5.0, 20.0)
 _WITHIN: Final = 5.0
 """s that an attempt may take, from the connection to the status."""
 _FAULTY: Final = range(400, 500)
-"""Statuses of a request that will not do better when it is repeated, apart from these two:"""
+"""Statuses that a repeated request would get again, apart from these two:"""
 _LATER: Final = (408, 429)
 
 
 class Webhook:
-    """One receiver; ``tell`` is told once of each kind of trouble."""
+    """One receiver; ``tell`` is called once with each kind of trouble."""
 
     def __init__(
         self,
@@ -96,7 +96,7 @@ class Webhook:
                 self.dropped += 1
 
     def _deliver(self, body: bytes) -> bool:
-        """Post until it is taken, or for good refused; returns whether it was taken."""
+        """Post an event until it is taken or refused for good; return whether it was taken."""
         for attempt in range(ATTEMPTS):
             if attempt and self._ends.wait(self._pauses[min(attempt, len(self._pauses)) - 1]):
                 return False
@@ -127,7 +127,7 @@ class Webhook:
             connection = http.client.HTTPConnection(host, parts.port, timeout=self._within)
         path = f"{parts.path or '/'}{'?' + parts.query if parts.query else ''}"
         connection.connect()
-        # A time-out of a socket begins anew with each byte: this one does not.
+        # A socket's own time-out begins anew with each byte; this deadline does not.
         deadline = threading.Timer(self._within, _shut, (connection.sock,))
         deadline.daemon = True
         deadline.start()

@@ -37,7 +37,7 @@ _LINKS: Final = {
 
 
 class TopApp(App[int]):
-    """Shows a robot until its user leaves; what the robot refuses is told in its own sentence."""
+    """Shows a robot until the user leaves; a refused command is shown in the robot's sentence."""
 
     TITLE = "roomba top"
     CSS = """
@@ -119,7 +119,7 @@ class TopApp(App[int]):
         self._log_changes()
 
     def _lines(self) -> list[tuple[str, str]]:
-        """Return what is told of the robot, and of the connection where that is not well."""
+        """Return lines about the robot, and about the connection where that has a problem."""
         link = self.link
         lines = lines_of(link.state) if "vacuum" in link.state else []
         if link.link != "live":
@@ -200,7 +200,7 @@ class TopApp(App[int]):
             await self._obeyed("emergency_stop", wish={"reason": "a key of ./roomba top"})
 
     async def action_drive(self, forward: int, left: int) -> None:
-        """Drive by hand for half a second; a key that is held goes on."""
+        """Drive by hand for half a second; a key that is held down repeats this."""
 
         async def drive() -> None:
             if not self._limits:
@@ -220,7 +220,7 @@ class TopApp(App[int]):
             self._say(told or f"{name.replace('_', ' ')}: asked for")
 
     async def _tried(self, command: Callable[[], Awaitable[None]]) -> bool:
-        """Whether a command was passed on; what is refused is told."""
+        """Return whether a command was passed on; show a refusal."""
         try:
             await command()
         except (RequestRefusedError, RobotUnavailableError) as refusal:

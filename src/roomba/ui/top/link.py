@@ -1,4 +1,4 @@
-"""The link to a robot: what the server of its page shows, and the wishes that it passes on."""
+"""The link to a robot by its page's server, which shows the robot and passes on wishes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _LARGEST: Final = 64 << 20
 
 
 class PageLink:
-    """What is seen of one robot: it comes by itself, and comes back when it was lost.
+    """The newest state of one robot, which the server sends; a lost connection is renewed.
 
     ``state`` and ``home`` are as the API tells them, empty at first; ``grids`` are layers by name.
     ``link`` is connecting, live, gone (the robot does not answer) or lost (its server does not).
@@ -70,11 +70,11 @@ class PageLink:
         await asyncio.to_thread(self._api.send, name, wish)
 
     async def limits(self) -> dict[str, Any]:
-        """Return what may be asked for; raises RequestRefusedError, RobotUnavailableError."""
+        """Return the robot's limits; raises RequestRefusedError, RobotUnavailableError."""
         return await asyncio.to_thread(self._api.get, "api/v1/limits")
 
     def _take(self, message: str | bytes) -> None:
-        """Take in what the server shows; raises ValueError for what makes no sense."""
+        """Take a message of the server; raises ValueError for a senseless one."""
         if isinstance(message, bytes):
             take_tiles(self.grids, message)
             return
@@ -94,4 +94,4 @@ NO_TOKEN: Final = (
     "its server obeys only who has its token, and none that fits was found: give ./roomba top the "
     "whole address that ./roomba run or play printed"
 )
-"""Why nothing can be changed."""
+"""Why the user cannot change anything."""

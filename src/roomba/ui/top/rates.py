@@ -1,7 +1,7 @@
-"""How often each topic of a ROS graph is told, asked of its nodes: nothing is subscribed for it.
+"""The rate of each topic of a ROS graph, asked of its nodes: nothing is subscribed to for it.
 
-Each node counts what it sent, and tells that by its XML-RPC interface (``getBusStats``): a topic
-that no program hears is not sent, and so not counted. No ROS is needed to ask.
+Each node counts what it sent, and returns that by its XML-RPC interface (``getBusStats``). A topic
+without subscribers is not sent, and so not counted. No ROS is needed to ask.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class TopicRates:
         return [Rate(topic, rates[topic], hearers[topic]) for topic in sorted(hearers)]
 
     def _sent_by(self, node: str) -> list[tuple[str, int, int]]:
-        """Return topic, number of messages and of hearers, of each topic of a node."""
+        """Return topic, number of messages and number of subscribers, of each topic of a node."""
         try:
             uri = self._called(self._master, "lookupNode", node)
             told = self._called(uri, "getBusStats")[0]
@@ -73,7 +73,7 @@ class TopicRates:
         found = []
         for topic, _, connections in told:
             if connections:
-                # Each hearer gets every message; one that came late was sent fewer.
+                # Each subscriber gets every message; one that came late was sent fewer.
                 found.append(
                     (str(topic), max(int(each[2]) for each in connections), len(connections))
                 )

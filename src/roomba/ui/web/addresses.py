@@ -36,7 +36,7 @@ def guard_for(token: str, host: str) -> Guard:
 def hosts_of(host: str, outside: str = "") -> list[str]:
     """Return the hosts by which a page that is served at ``host`` is reached, its own first.
 
-    ``outside`` is this machine's address in its network where the process cannot see it.
+    ``outside`` is this machine's address in its network, for a process that cannot find it out.
     """
     if host != ALL:
         return [host]

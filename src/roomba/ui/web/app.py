@@ -50,8 +50,9 @@ def create_app(
 ) -> FastAPI:
     """Return the application for a robot; what changes anything needs the guard's token.
 
-    The keeper keeps its runs in the history, which the page shows then. The bridge speaks rosbridge
-    with programs, if the robot is one of ROS. With a household the page shows upkeep and plans.
+    With a ``keeper`` the runs are kept in the history, which the page shows. The ``bridge`` speaks
+    rosbridge with programs, if the robot is one on ROS. With a ``household`` the page shows upkeep
+    and plans.
     """
     feed = Feed(robot, keeper, household)
     replays = (
@@ -110,7 +111,7 @@ def create_app(
 
 
 class _PageFiles(StaticFiles):
-    """The files of the page; what comes here of the API is there by another method, or not."""
+    """The files of the page; also gets requests of the API with a wrong path or method."""
 
     async def get_response(self, path: str, scope: Scope) -> Response:
         """Return a file."""
@@ -120,4 +121,4 @@ class _PageFiles(StaticFiles):
 
 
 def _forget(_: object) -> None:
-    """Keep nothing of what was asked for."""
+    """Use as a callback that keeps nothing."""

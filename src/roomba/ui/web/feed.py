@@ -1,7 +1,7 @@
-"""One look at the robot for all viewers: its state, layers and home, ten times a second.
+"""Looks at the robot ten times a second for all viewers: its state, layers and home.
 
-However many viewers there are, the robot is asked once, and what they get is made text once. A
-viewer takes the newest when it is ready for more; there is no queue.
+However many viewers there are, the robot is asked once, and the answer is made text once. A viewer
+takes the newest state when it is ready for more; there is no queue.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _LAYERS_EVERY: Final = 3
 
 
 class Feed:
-    """What viewers are shown; ``number`` grows with each look."""
+    """The newest state for viewers; ``number`` grows with each look."""
 
     def __init__(
         self,
@@ -46,7 +46,7 @@ class Feed:
         self._looked = asyncio.Event()
         self._looks = 0
         self._layers: dict[LayerName, GridLayer] = {}
-        """Those that were looked at last, as they were then."""
+        """The layers as they were when last looked at."""
         self._last: CleanReport | None = None
         self.number = 0
         self.events = Events(first_of(time.time()))
@@ -57,7 +57,7 @@ class Feed:
         self.layers = {name: TiledLayer(name.value) for name in LayerName}
         self.trail = ShownTrail()
         self._jumps = 0
-        """Times that another time of a recording was chosen."""
+        """How often a viewer of a recording jumped to another time."""
 
     async def run(self) -> None:
         """Look at the robot until it is cancelled; what was seen is kept before it ends."""
@@ -80,12 +80,13 @@ class Feed:
             self._show(view, home)
             if self._keeping is not None:
                 self._keeping.look(view, home, self._layers)
-            # Not in the thread that looks: viewers take tiles and their version meanwhile.
+            # In the event loop's thread, not the looking one: viewers take tiles and versions
+            # meanwhile.
             for name, layer in layers.items():
                 self.layers[name].update(layer)
         except RoombaError as reason:
             self._lose_sight(str(reason))
-        # What a robot of another program answers is not known here: the next look may do.
+        # A robot of another program may raise anything; the next look may succeed.
         except Exception as fault:
             self._lose_sight(f"a look failed: {type(fault).__name__}: {fault}")
         self.number += 1
@@ -99,7 +100,7 @@ class Feed:
         return self.number
 
     def _show(self, view: RobotView, home: HomeView) -> None:
-        """Let viewers have what was seen."""
+        """Publish a view and a home to the viewers."""
         if self._recorded is not None:
             self._follow_jumps(self._recorded)
         self.trail.follow(view.time, view.pose[0], view.pose[1])
@@ -115,15 +116,15 @@ class Feed:
         self.metrics.look(view, self.events.note(view))
 
     def _lose_sight(self, reason: str) -> None:
-        """Leave on the page what was seen last, greyed, with the reason."""
+        """Keep the last state on the page, greyed, with the reason."""
         self.state = Told({**self.state.value, "link": "gone", "reason": reason})
         self.trail.lose_sight()
         self.metrics.look(None, self.events.note_gone(reason))
 
     def _look_at_robot(self) -> tuple[RobotView, HomeView, dict[LayerName, GridLayer]]:
-        """Return what there is to see; of the layers, those that are looked at this time.
+        """Return the robot's state and home, and its layers if they are due.
 
-        They are looked at when a run has ended, too: so the history keeps the floor of that time.
+        Layers are also due when a run has ended, so that the history has the floor of that time.
         """
         view, home = self._robot.robot(), self._robot.home()
         is_end = view.last is not self._last
@@ -137,7 +138,7 @@ class Feed:
         return {name: layer for name, layer in layers if layer is not None}
 
     def _follow_jumps(self, recorded: Timeline) -> None:
-        """When another time was chosen, let the way up to it take the place of the trail."""
+        """After a jump to another time, replace the trail by the way up to that time."""
         jumps = recorded.timeline().jumps
         if jumps != self._jumps:
             self._jumps = jumps

@@ -1,8 +1,8 @@
-"""Who may do what: only pages of this server, and only with its token may anything be changed.
+"""Access control: only pages of this server are served, and changes need its token.
 
-The server listens on loopback, or where its user opened it. A page of another site that is open in
-the same browser reaches it as well, so Host and Origin are checked (DNS rebinding, cross-site
-requests), and each request that changes something must carry the token of the printed address.
+The server listens on loopback, or where its user opened it. A page of another site in the same
+browser can reach it as well, so Host and Origin are checked (DNS rebinding, cross-site requests),
+and each request that changes something must carry the token of the printed address.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ def new_token() -> str:
 class Guard:
     """Checks requests; ``hosts`` are names by which the server may be called.
 
-    With ``takes_numbers`` it may be called by any address in numbers as well: a name can be made to
-    lead here by its owner (DNS rebinding), a number cannot.
+    With ``takes_numbers`` any numeric address is allowed, too: the owner of a name can point it at
+    this server (DNS rebinding), but not a number.
     """
 
     token: str

@@ -1,4 +1,4 @@
-"""Requests are looked at before they are read: of this server's pages, and with the token."""
+"""Checks each request before it is read: its page is of this server, and it has the token."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _FOREIGN: Final = 4403
 class GuardedRequests:
     """Refuses requests of other sites, and changes without the token, before they are read.
 
-    A WebSocket changes nothing by being opened; what it may do it proves by what it says.
+    To open a WebSocket changes nothing; the token comes in its messages.
     """
 
     def __init__(self, app: ASGIApp, guard: Guard) -> None:
@@ -63,7 +63,7 @@ class GuardedRequests:
             return 403, "requests of other sites are refused"
         if request.method in _SAFE_METHODS:
             return None
-        # Without both of these there is no body (RFC 9112, 6.3).
+        # Without either of these headers a request has no body (RFC 9112, 6.3).
         length = headers.get("content-length", "" if "transfer-encoding" in headers else "0")
         if not (length.isascii() and length.isdigit() and len(length) < 10) or (
             int(length) > MOST_BODY
@@ -78,7 +78,7 @@ class GuardedRequests:
 
 
 def _with_policy(send: Send) -> Send:
-    """Return a sender that adds the headers which bind a browser."""
+    """Return a sender that adds security headers to responses."""
 
     async def sending(message: Any) -> None:
         if message["type"] == "http.response.start":
@@ -96,5 +96,5 @@ def _with_policy(send: Send) -> Send:
 
 
 def _has_policy(message: Any) -> bool:
-    """Whether a response binds a browser more tightly itself."""
+    """Whether a response has a content security policy of its own."""
     return any(name == b"content-security-policy" for name, _ in message["headers"])

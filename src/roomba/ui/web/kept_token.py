@@ -1,4 +1,4 @@
-"""The token that a page's server goes by: the one from before, so that open pages keep theirs."""
+"""The token of the page's server, kept over restarts so that open pages stay valid."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from roomba.ui.web.guard import new_token
 def kept_token(path: Path | None = None) -> str:
     """Return this user's token, and make it if there is none.
 
-    One that others could read, or whose form is wrong, is replaced. Where nothing can be written
-    the token is of this server alone.
+    A token that other users could read, or of a wrong form, is replaced. Where no file can be
+    written, the token holds for this server alone.
     """
     file = path or token_file()
     kept = read_token(file)

@@ -1,4 +1,4 @@
-"""What does not fit into a request, in plain words: what was expected, and what came."""
+"""Faults of a request in plain words: what was expected, and what came."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel
 
 _EXPECTED: Final = re.compile(r".*? should (?:be|have|match) (.*?)(?: after validation.*)?")
-"""How pydantic begins its sentences."""
+"""The beginning of pydantic's sentences."""
 _CHOICES: Final = ("enum", "literal_error")
-"""Kinds of faults whose sentence lists what there is; that of others has a cause after a comma."""
+"""Kinds of faults whose sentence lists the choices; other sentences have a cause after a comma."""
 
 
 class Refusal(BaseModel):
@@ -28,16 +28,16 @@ async def refuse_unfit(_: Request, fault: Exception) -> Response:
     """Answer 422 with a sentence for each fault of a request."""
     assert isinstance(fault, RequestValidationError)
     detail = "; ".join(sentence_of(error) for error in fault.errors())
-    # Half a character, which JSON may hold, is no UTF-8: all but ASCII is escaped.
+    # JSON may hold half a surrogate pair, which is no UTF-8: all but ASCII is escaped.
     return Response(json.dumps({"detail": detail}), 422, media_type="application/json")
 
 
 def sentence_of(error: Mapping[str, Any]) -> str:
-    """Return what pydantic tells of one fault as the project's own errors read."""
+    """Return pydantic's fault as a sentence in the style of the project's own errors."""
     where, told = error["loc"], str(error["msg"])
     name = ".".join(map(str, where[1:])) or where[0]
     match error["type"]:
-        case "value_error":  # of a validator, which says itself what came
+        case "value_error":  # of a validator, whose own sentence says what came
             return told.removeprefix("Value error, ")
         case "json_invalid":
             return f"expected JSON, got something else from character {where[-1]} on"

@@ -1,4 +1,4 @@
-"""Where programs reach a bridge: the WebSockets by which they speak rosbridge."""
+"""The WebSockets on which programs speak rosbridge."""
 
 from __future__ import annotations
 
@@ -14,17 +14,14 @@ class Bridge(Protocol):
     """Speaks with programs over WebSockets."""
 
     limits: Mapping[str, int]
-    """What it gives to them at most."""
+    """The limits of what programs get."""
 
     async def serve(self, socket: WebSocket, guard: Guard, *, may_change: bool) -> None:
         """Speak with one program until it goes; without the token it may only read."""
 
 
 def add_bridge(app: FastAPI, bridge: Bridge, guard: Guard) -> None:
-    """Serve a bridge at ``/rosbridge``, and at ``/`` for programs that know host and port alone.
-
-    The token comes as ``?token=TOKEN`` or ``Authorization: Bearer TOKEN``.
-    """
+    """Serve a bridge at ``/rosbridge``, and at ``/`` for programs that only know host and port."""
 
     async def speak(socket: WebSocket) -> None:
         given = _token_of(socket)

@@ -34,11 +34,12 @@ def listen(host: str, port: int, *, is_fixed: bool) -> socket.socket:
     for tried in range(port, last + 1):
         bound = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        # Of each connection: the system would take megabytes for a slow viewer, all out of date.
+        # Inherited by each connection: the system would queue megabytes for a slow viewer,
+        # outdated.
         bound.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SENT_AHEAD)
         try:
             bound.bind((host, tried))
-            # Who opens the address as soon as it is printed waits, and is not refused.
+            # A browser that opens the address before the server runs waits, and is not refused.
             bound.listen()
         except OSError as error:
             bound.close()
@@ -63,19 +64,20 @@ class PageServer:
         """Serve nothing yet."""
         self._socket = bound
         self.address = addresses_of(bound)[0]
-        """Where it is reached."""
+        """The address at which the page is reached."""
         self._server = uvicorn.Server(
             uvicorn.Config(
                 app,
                 http=GuardedConnection,
                 ws=GuardedSocket,
-                # Its own set-up asks the standard output for its terminal, and that may be closed.
+                # uvicorn's own set-up asks standard output whether it is a terminal, and that may
+                # be closed.
                 log_config=None,
-                # Not of each request that is none, nor of addresses with tokens in them.
+                # Neither senseless requests nor addresses with tokens belong in the log.
                 log_level="error",
                 access_log=False,
                 ws_max_size=MOST_BODY,
-                # Loopback is fast, and each viewer would have to be compressed for by itself.
+                # Loopback is fast, and compression would have to be done for each viewer.
                 ws_per_message_deflate=False,
                 ws_ping_interval=PING,
                 ws_ping_timeout=PING,
@@ -85,13 +87,13 @@ class PageServer:
             )
         )
         self._thread: threading.Thread | None = None
-        # To join a thread must not be interrupted: then Python takes one that runs for ended.
+        # An event, as an interrupted Thread.join makes Python take a running thread for ended.
         self._ended = threading.Event()
         self._broken: BaseException | None = None
 
     @property
     def connections(self) -> int:
-        """How many there are."""
+        """How many connections there are."""
         return len(self._server.server_state.connections)
 
     def start(self) -> None:
@@ -115,7 +117,7 @@ class PageServer:
     def stop(self) -> None:
         """End the thread that serves."""
         self._server.should_exit = True
-        # Also one that Ctrl-C interrupted as it was started: it may not have run yet.
+        # Ctrl-C may have interrupted the thread's start: it may not have run yet.
         if self._thread in threading.enumerate():
             self._ended.wait(_START)
 
@@ -126,7 +128,7 @@ class PageServer:
     def _serve(self) -> None:
         try:
             asyncio.run(self._server.serve(sockets=[self._socket]))
-        except BaseException as error:  # SystemExit, too, which would end this thread alone
+        except BaseException as error:  # SystemExit, too: it would silently end this thread alone
             self._broken = error
         finally:
             self._ended.set()

@@ -1,7 +1,7 @@
-"""Layers as differences: a viewer gets the tiles that changed since what it has.
+"""Sends layers as differences: a viewer gets the tiles that changed since its version.
 
-Each tile remembers at which version of its layer it changed last. So one layer serves any number of
-viewers, each of which is at a version of its own, and a slow one skips what is out of date.
+Each tile remembers the version of its layer at which it last changed. So one layer serves any
+number of viewers, each at a version of its own, and a slow viewer skips outdated states.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class TiledLayer:
         self._packed.clear()
 
     def since(self, version: int) -> bytes | None:
-        """Return what changed after a version, 0 for all; None if that is nothing.
+        """Return the tiles that changed after a version, 0 for all; None if none did.
 
         A header's length (uint32, little endian), the header (JSON: ``layer``, ``version``,
         ``whole``, ``resolution``, ``origin``, ``rows``, ``columns``, ``tiles`` as row, column,

@@ -1,4 +1,4 @@
-"""Viewers of the page: each is shown the newest that it has not seen, and may drive by hand."""
+"""Serves viewers of the page: each gets the newest unseen state, and may drive by hand."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from roomba.ui.web.routes.wishes import DriveWish, SeenWish
 from roomba.ui.web.streams.told import text_of
 
 SENSELESS: Final = 1008
-"""The code with which a WebSocket is closed that says nothing sensible."""
+"""The code with which a WebSocket is closed after senseless messages."""
 
 
 class Viewers:
@@ -40,7 +40,7 @@ class Viewers:
         await until_one_ends(hearing, showing)
 
     async def _show(self, socket: WebSocket, seen: _Seen) -> None:
-        """Send the newest whenever the last was taken: a slow viewer skips what is out of date."""
+        """Send the newest state when the viewer took the last: a slow viewer skips old states."""
         feed = self._feed
         number, home, trail = 0, 0, 0
         versions = dict.fromkeys(feed.layers, 0)
@@ -63,7 +63,7 @@ class Viewers:
             await seen.has_come(state.value.get("looked", 0.0))
 
     async def _hear(self, socket: WebSocket, seen: _Seen) -> None:
-        """Take a viewer's stream of drives by hand, which begins with the token."""
+        """Take a viewer's messages: first the token, then twists for driving by hand."""
         may_drive, garbage = False, 0
         while garbage < MOST_GARBAGE:
             try:
@@ -89,16 +89,16 @@ class Viewers:
                 garbage += 1
                 reason = "expected JSON with a type that is known"
                 await socket.send_text(text_of({"type": "refused", "reason": reason}))
-            # Messages that are there already come without waiting: others have their turn, too.
+            # Received messages come here without waiting: give other tasks their turn.
             await asyncio.sleep(0)
         await socket.close(SENSELESS, "expected JSON with a type that is known")
 
 
 class _Seen:
-    """Which look a viewer has, as it says itself: the next one is sent when it has the last.
+    """The newest look that a viewer confirmed; the next one is sent only after that.
 
-    One that never says so only listens. It is sent what its connection takes, of which much may be
-    on its way.
+    A viewer that never confirms any gets each look that its connection takes, so that many may be
+    on their way.
     """
 
     def __init__(self) -> None:
@@ -106,12 +106,12 @@ class _Seen:
         self._is_told = asyncio.Event()
 
     def note(self, looked: float) -> None:
-        """It has the look of a time, s since 1970."""
+        """Note that the viewer has the look of a time, s since 1970."""
         self._newest = max(looked, self._newest or 0.0)
         self._is_told.set()
 
     async def has_come(self, looked: float) -> None:
-        """Wait until a viewer that says so has that look; that it lives, its pings tell."""
+        """Wait until a confirming viewer has that look; pings tell whether it still lives."""
         while self._newest is not None and self._newest < looked:
             self._is_told.clear()
             await self._is_told.wait()

@@ -1,1 +1,1 @@
-"""The runs of a campaign: what they are to be, where they are made, and what is stored."""
+"""The runs of a campaign: their definition, where they are made, and their results."""

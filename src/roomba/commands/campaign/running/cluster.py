@@ -1,7 +1,7 @@
-"""Runs on a cluster of dask.distributed: workers may come and go, and the scheduler come back.
+"""Runs on a cluster of dask.distributed: workers come and go, and the scheduler may come back.
 
-A run that a worker takes with it is given to another one, by the scheduler. When the scheduler is
-gone, what had no result yet is given to the one that comes back under its address.
+When a worker is gone, the scheduler gives its runs to another worker. When the scheduler is gone,
+the runs without a result are given to the scheduler that comes back under its address.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ _LOOK: Final = 1.0
 _ENDING: Final = 10.0
 """s for workers to end."""
 _AHEAD: Final = 2
-"""Runs that each thread of a worker is given at a time: no one waits for this machine."""
+"""Runs that each thread of a worker has in advance, so that none waits for this machine."""
 _LEAST_AHEAD: Final = 4
 _LATE: Final = (TimeoutError, asyncio.TimeoutError)
-"""Two before Python 3.11."""
+"""Timeouts: they are two different classes before Python 3.11."""
 _GONE: Final = (CancelledError, OSError, *_LATE)
 """What dask raises when the connection to the scheduler is lost."""
 
@@ -48,7 +48,7 @@ class ClusterError(RoombaError):
 
 
 def check_cluster(text: str) -> None:
-    """Refuse what is no local:N and no address; raises UsageError."""
+    """Refuse a text that is neither local:N nor an address; raises UsageError."""
     local = _LOCAL.fullmatch(text)
     if not (local and int(local[1])) and not (text[:6] != "local:" and _ADDRESS.fullmatch(text)):
         raise UsageError(
@@ -79,7 +79,7 @@ def run_on_cluster(
 
 @contextlib.contextmanager
 def _local_cluster(workers: int) -> Iterator[LocalCluster]:
-    """Start a cluster of this machine's own, that no other can reach."""
+    """Start a cluster on this machine, which no other machine can reach."""
     with one_thread_each():
         with undisturbed():
             cluster = LocalCluster(
@@ -116,13 +116,13 @@ class _Round:
     """Runs given to one scheduler, until all have ended or it is gone."""
 
     def __init__(self, client: Client, left: deque[CampaignRun], patience: float) -> None:
-        """Take runs from ``left``; what has no end when the scheduler is gone is put back."""
+        """Take runs from ``left``; runs without a result are put back if the scheduler is gone."""
         self._client, self._left, self._patience = client, left, patience
         self._at_work: dict[Any, CampaignRun] = {}
         self._worker_seen = self._end_seen = time.monotonic()
 
     def run(self, work: Work) -> Generator[tuple[CampaignRun, RunEnd | str]]:
-        """Yield the ends."""
+        """Yield each run with its result."""
         try:
             while self._left or self._at_work:
                 self._give(work)
@@ -154,7 +154,7 @@ class _Round:
             self._at_work[self._client.submit(work, run, pure=False)] = run
 
     def _ended(self) -> list[Any]:
-        """Wait for the next ends, a while; raises one of _GONE when the scheduler is gone."""
+        """Wait a while for the next results; raises one of _GONE when the scheduler is gone."""
         with contextlib.suppress(*_LATE):
             wait(list(self._at_work), timeout=_LOOK, return_when="FIRST_COMPLETED")
         ended = [future for future in self._at_work if future.done()]

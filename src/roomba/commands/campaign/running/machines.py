@@ -12,7 +12,7 @@ from roomba.commands.campaign.running.work import RunEnd, Work, carried_out
 from roomba.commands.trials.many import run_many
 
 ATTEMPTS: Final = 3
-"""How often a run is begun that comes to no end: its process dies, or the machine fails it."""
+"""How often a run is begun when it gives no result: its process dies, or the machine fails it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,14 +26,14 @@ class Machines:
 def run_on(
     machines: Machines, runs: Sequence[CampaignRun], work: Work = carried_out
 ) -> Generator[tuple[CampaignRun, RunEnd | str]]:
-    """Yield each run with what came of it, in the order in which they end.
+    """Yield each run with its result, in the order in which the runs end.
 
-    In place of an end is the reason, a text, of a run that has none after ATTEMPTS: it took its
-    process with it, or may have failed for the machine's sake. Raises OtherMachineError, and
-    ClusterError without a scheduler or workers.
+    A run that still has no result after ATTEMPTS yields the reason, a text: its process died, or
+    the machine had no memory or disk. Raises OtherMachineError, and ClusterError without a
+    scheduler or workers.
     """
     if machines.cluster is not None:
-        # Here: dask is an extra.
+        # Imported here, since dask is an optional extra.
         from roomba.commands.campaign.running.cluster import run_on_cluster
 
         with contextlib.closing(run_on_cluster(machines.cluster, runs, work)) as ends:

@@ -1,4 +1,4 @@
-"""What runs are compared by: figures of a run, as its row of the results has them."""
+"""The measures by which runs are compared: figures in the rows of the results."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 COMPLETED: Final = "completed"
-"""1 of a run that did all and stands on its station, else 0; of one without figures 0 as well."""
+"""1 for a run that cleaned all and docked; 0 for any other, also for one without figures."""
 
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """How a table calls a figure, with its unit, and with how many digits it writes it."""
+    """A figure's name in a table, with its unit, and the digits that are written."""
 
     label: str
     digits: int

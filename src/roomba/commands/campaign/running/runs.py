@@ -1,4 +1,4 @@
-"""The runs of a campaign, each with a key: the same key means the same run, bit for bit."""
+"""The runs of a campaign; each has a key, and runs with the same key are the same bit for bit."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from roomba.mission.cleaning.checkpoint import request_values
 from roomba.storage.map_bound import map_digest
 
 _ENTRY: Final = PACKAGE / "commands" / "trials" / "runs.py"
-"""What a run is made of is this file and all that it imports."""
+"""The program of a run is this file and all that it imports."""
 _COMPUTE: Final = ("numpy", "numba")
-"""Packages by whose version numbers may differ in the last bit."""
+"""Packages whose other versions may change numbers in the last bit."""
 _MOST_BYTES: Final = 64_000_000
 """Of one file of a home."""
 _DIGITS: Final = 24
@@ -36,15 +36,15 @@ _DIGITS: Final = 24
 
 
 class OtherMachineError(RoombaError):
-    """A machine that would not do the same run: its program or files are others."""
+    """This machine would not make the same run: its program or its files differ."""
 
 
 @dataclass(frozen=True, slots=True)
 class CampaignRun:
     """One run, as it is sent to a worker.
 
-    ``home`` is as the file names it. ``program`` and ``content`` are hashes of the program, and of
-    the home and the stages, that the run must be made of.
+    ``home`` is the home's name in the campaign's file. The run must be made with a program of the
+    hash ``program``, and with files of home and stages of the hash ``content``.
     """
 
     home: str
@@ -57,10 +57,7 @@ class CampaignRun:
 
 
 def runs_of(campaign: Campaign) -> list[CampaignRun]:
-    """Return the runs; those of one home and seed one after the other, to be compared.
-
-    Raises HomeError and UsageError for homes and stages that cannot be read.
-    """
+    """Return the runs; runs of the same home and seed follow one another, to be compared."""
     file = campaign.file
     contents: dict[tuple[str, tuple[tuple[str, str], ...]], str] = {}
     runs = []
@@ -120,9 +117,9 @@ def content_of(trial: Trial) -> str:
 
 @functools.cache
 def program() -> str:
-    """Return a hash of all that decides about a run beside its trial: sources, numbers, packages.
+    """Return a hash of all that determines a run, besides its trial: sources, numbers, packages.
 
-    A change of another part of the program, or of a page, leaves it as it is.
+    Changes of other parts of the program, such as the page, do not change the hash.
     """
     sources = Sources(PACKAGE).key(_ENTRY)
     files = [(path.name, path) for path in sorted(CONFIGURATION.rglob("*.yaml"))]

@@ -58,11 +58,11 @@ Seeds = Annotated[
     | Annotated[tuple[Seed, ...], Field(min_length=1), Tag("list")],
     Discriminator(_form_of_seeds),
 ]
-"""So that what is wrong is told of the form that was written."""
+"""A tagged union, so that an error is reported for the form that the file uses."""
 
 
 class Variant(Frozen):
-    """What is other than usual; each name means what the option of ``sim`` of that name does."""
+    """What differs from the defaults; each name means the same as that option of ``sim``."""
 
     sensors: Literal["noisy", "ideal"] | None = None
     lidar: str | None = None

@@ -54,7 +54,7 @@ class ResultStore:
         self._rows[run.key] = row
 
     def rows_of(self, runs: Iterable[CampaignRun]) -> list[Row]:
-        """Return the rows of those runs that are stored, named as the campaign names them now."""
+        """Return the rows of those runs that are stored, with the campaign's present names."""
         return [
             self._rows[run.key] | {"home": run.home, "variant": run.variant}
             for run in runs
@@ -64,7 +64,7 @@ class ResultStore:
 
 @contextlib.contextmanager
 def opened_store(folder: Path) -> Iterator[ResultStore]:
-    """Open the results in a folder, which is made; raises UsageError while another one does."""
+    """Open the results in a folder, made if needed; raises UsageError if it is in use."""
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / _LOCK).open("w") as lock:
         if not try_to_lock(lock.fileno()):

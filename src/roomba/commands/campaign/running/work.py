@@ -15,9 +15,9 @@ from roomba.commands.trials.figures import Figures
 from roomba.errors import RoombaError
 
 _ONE_AT_A_TIME: Final = threading.Lock()
-"""Of a process: a worker with several threads would let runs slow each other down."""
+"""Held by the run of this process: a worker's threads would slow each other's runs down."""
 _OF_THE_MACHINE: Final = (MemoryError, OSError)
-"""What a run fails by where memory or disk are wanting."""
+"""Errors of a run that are due to the machine: not enough memory or disk."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,14 +34,14 @@ class RunEnd:
 
 
 Work = Callable[[CampaignRun], RunEnd | str]
-"""Makes a run, or returns why it has no end here: what a worker does with each."""
+"""What a worker does with each run: makes it, or returns why it has no result on this machine."""
 
 
 def carried_out(run: CampaignRun) -> RunEnd | str:
-    """Make a run; a failure that it would have anywhere is its end.
+    """Make a run; an error that it would have on any machine is its result.
 
-    One without memory or disk is this machine's: that run has no end, and may be made again. Raises
-    OtherMachineError where this machine would not do the same run.
+    Without memory or disk the run has no result, and may be made again elsewhere. Raises
+    OtherMachineError where this machine would not make the same run.
     """
     with _ONE_AT_A_TIME:
         require_same(run)
@@ -52,7 +52,7 @@ def carried_out(run: CampaignRun) -> RunEnd | str:
 
 
 def _end_of(run: CampaignRun) -> RunEnd:
-    # Here, so that the machine that only waits does not load it all.
+    # Imported here, so that the machine that only waits does not load it all.
     from roomba.commands.trials.runs import run_trial
     from roomba.commands.trials.warm import warm_up
 

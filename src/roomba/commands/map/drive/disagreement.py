@@ -1,8 +1,8 @@
 """Times of a drive in which odometry and the map tell of different ways.
 
-Wheels may slip; but scans may be wrong as well: what moves along with the robot, in a bare corridor
-that shows nothing else, looks as if the robot stood. Which of both was right nothing tells, so that
-the people who look at the map must.
+Wheels may slip. Scans may mislead as well: in a bare corridor, something that moves along with the
+robot looks as if the robot stood. Nothing shows which of both was right, so the people who look at
+the map must judge.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ import numpy as np
 from roomba.arrays import Floats
 
 _COMPARED_OVER: Final = 3.0
-"""s; over so long a time both are compared: for a moment odometry is often off."""
+"""s over which both distances are compared: for a moment odometry is often off."""
 _FAR: Final = 0.5
 _SHARE: Final = 0.4
-"""m, and share of the longer one, by which the two ways differ then: less is what wheels slip."""
+"""m, and share of the longer distance, by which both must differ: wheels slip by less."""
 _MOST_TOLD: Final = 3
-"""Times that are told one by one."""
+"""The most times that are listed one by one."""
 
 
 class Disagreement(NamedTuple):
@@ -77,7 +77,7 @@ def told_disagreements(found: Sequence[Disagreement]) -> list[str]:
 
 
 def _apart_in(stamps: Floats, first: int, last: int) -> list[int]:
-    """Return the rows from one to another that are as far apart as both ways were compared over."""
+    """Return rows from first to last, spaced by the time over which distances are compared."""
     rows = [first]
     while rows[-1] < last:
         next_one = int(np.searchsorted(stamps, stamps[rows[-1]] + _COMPARED_OVER))
@@ -86,7 +86,7 @@ def _apart_in(stamps: Floats, first: int, last: int) -> list[int]:
 
 
 def _way_of(places: Floats) -> float:
-    """Return the way from place to place, m: standing, those of odometry and scans jitter."""
+    """Return the distance along places, m; with close places, their jitter would add up."""
     return float(np.hypot(*np.diff(places, axis=0).T).sum())
 
 
@@ -95,7 +95,7 @@ def _apart(found: Disagreement) -> float:
 
 
 def _joined(firsts: list[int], lasts: list[int]) -> list[tuple[int, int]]:
-    """Return stretches, in order, with those joined that overlap."""
+    """Return stretches in order; those that overlap are joined."""
     joined: list[tuple[int, int]] = []
     for first, last in zip(firsts, lasts, strict=True):
         if joined and first <= joined[-1][1]:

@@ -1,4 +1,4 @@
-"""A look at a drive before it is followed: what was not told of it, or told wrong."""
+"""Checks a drive before it is mapped: facts that are missing in the logs, or wrong there."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from roomba.recordings.drives.mounting import degrees_aside
 from roomba.recordings.readings import UNUSABLE_ODOMETRY, Kind
 
 _ANOTHER_WAY: Final = 0.25
-"""rad; a lidar that looks so far to a side is not taken to look ahead. Less is what its mounting is
-off, as the map's calibration tells."""
+"""rad; a lidar whose scans show it turned by more does not look ahead. A smaller angle is an
+inaccurate mounting, which the map's calibration measures."""
 
 
 def look_at_drive(drive: LoggedDrive) -> None:
-    """Find out what odometry and lidar are like; have the drive read so, and say so."""
+    """Find out faults of odometry and lidar; correct the drive's reading, and report them."""
     if not drive.chosen.has_odometry:
         return
     all_samples = samples = LidarSamples(drive.readings())
@@ -37,7 +37,7 @@ def look_at_drive(drive: LoggedDrive) -> None:
         samples = LidarSamples(drive.readings())
     fault = _odometry_fault(drive, samples)
     if fault and hidden.any():
-        # They were found by headings that may be as wrong.
+        # The hidden beams were found by headings of a faulty odometry.
         hidden = hidden_beams(all_samples, shown_headings(samples))
         drive.leave_beams(hidden)
         samples = LidarSamples(drive.readings())
@@ -54,7 +54,7 @@ def look_at_drive(drive: LoggedDrive) -> None:
 
 
 def hidden_beams(samples: LidarSamples, headings: Sequence[float]) -> Mask:
-    """Return which beams a thing hides on the robot, [beams], of most scans.
+    """Return which beams hit a thing on the robot itself in most scans, [beams].
 
     ``headings`` are the robot's at the scans, rad, not wrapped. Without scans there are no beams.
     """
@@ -77,7 +77,7 @@ def _usual_beams(samples: LidarSamples) -> int:
 
 
 def _told_hidden(samples: LidarSamples, hidden: Mask) -> str:
-    """Return what is told of beams, [beams], that a thing hides on the robot."""
+    """Return a remark about beams, [beams], that a thing on the robot hides."""
     ranges = np.array(
         [
             sample.scan.ranges[hidden]
@@ -93,7 +93,7 @@ def _told_hidden(samples: LidarSamples, hidden: Mask) -> str:
 
 
 def _odometry_fault(drive: LoggedDrive, samples: LidarSamples) -> str:
-    """Return what is wrong with the odometry; "" if nothing is, or there are no scans beside it."""
+    """Return what is wrong with the odometry; "" if nothing is, or no scans can show it."""
     if samples.has_odometry or not samples.count:
         return odometry_fault(samples)
     reason = drive.reason_of(UNUSABLE_ODOMETRY)
@@ -103,7 +103,7 @@ def _odometry_fault(drive: LoggedDrive, samples: LidarSamples) -> str:
 def _look_at_lidar(drive: LoggedDrive, samples: LidarSamples) -> None:
     """Find out how the lidar is mounted and how it sweeps.
 
-    A mount that was told is left as it is. Without odometry nothing is found out.
+    A mount that the user gave is kept. Without odometry nothing can be found out.
     """
     shown = shown_mount(samples)
     is_other = shown is not None and _is_other(shown)
@@ -122,14 +122,14 @@ def _look_at_lidar(drive: LoggedDrive, samples: LidarSamples) -> None:
         f"{sweep}: so they are taken, and not as the driver tells"
     )
     if shown is not None and is_other:
-        # Scans that are no longer bent tell it better.
+        # Scans that are no longer bent show the mount better.
         drive.take_mount(Mount())
         closer = shown_mount(LidarSamples(drive.readings()))
         drive.take_mount(_mount_of(closer or shown))
 
 
 def _look_at_gyro(drive: LoggedDrive) -> None:
-    """Find out whether the gyro tells turns; its lidar is read as it was found to be."""
+    """Find out whether the gyro measures turns, by the lidar as it is read by now."""
     fault = gyro_fault(LidarSamples(drive.readings()))
     if fault and drive.keeps_gyro:
         drive.remark(f"the gyro is doubtful: {fault}")
@@ -147,7 +147,7 @@ def _mount_of(shown: ShownMount) -> Mount:
 
 
 def _contradiction(shown: ShownMount) -> str:
-    """Return what is told of a lidar that is mounted another way than was told."""
+    """Return a remark about a lidar whose scans contradict the mount that was given."""
     if shown.is_turned_over:
         wrong = (
             "its scans turn one way and the odometry the other one: one of the two is mirrored, or "

@@ -1,4 +1,4 @@
-"""A recorded drive, mapped: what went into the map, and what came of it."""
+"""Maps a recorded drive: its logs, and the result."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ _SHOWN: Final = 64
 class MappedDrive:
     """A map that was made of logs, and the replay that made it.
 
-    ``true`` is float64 [n, 3] of t (s), x, y (m), empty where unknown; ``begin`` where the drive
-    began on the map; ``stamps`` what was wrong with the times of how many messages;
-    ``refused_scans`` of how many scans why they were not used.
+    ``true`` is float64 [n, 3] of t (s), x, y (m), empty if unknown; ``begin`` is the drive's first
+    pose on the map. ``stamps`` counts messages with faulty times, ``refused_scans`` unused scans by
+    reason.
     """
 
     logs: tuple[Path, ...]
@@ -55,7 +55,7 @@ class MappedDrive:
 
     @property
     def online(self) -> Floats:
-        """The same, as known when it drove there."""
+        """The same rows, as the pose was known at the time."""
         return self.replay.trajectory.online
 
     @property
@@ -100,7 +100,7 @@ def mapped_drive(logs: Sequence[Path], wanted: Wanted, show: Show) -> MappedDriv
 
 
 def _doubts(replay: MapReplay) -> list[str]:
-    """Return what makes the finished map of a drive doubtful: its odometry tells another way."""
+    """Return doubts about the finished map of a drive, where its odometry contradicts the map."""
     if not replay.has_odometry:
         return []
     on_map = replay.trajectory.at_the_end(replay.mapper)
@@ -127,7 +127,7 @@ def _replayed(
 
 
 def _first_truth(drive: LoggedDrive) -> Pose | None:
-    """Return where the drive truly began, so that the map lies as the true one does."""
+    """Return the first true pose, so that the map gets the frame of the truth."""
     if all(channel.kind is not Kind.TRUTH for channel in drive.chosen.channels):
         return None
     values = (reading.value for reading in drive.readings())

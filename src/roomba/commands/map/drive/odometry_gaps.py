@@ -1,4 +1,4 @@
-"""Times of a drive in which odometry tells nothing: it is not there, or stands while scans move."""
+"""Gaps in a drive's odometry: it is missing, or stands still while scans show motion."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from roomba.recordings.readings import LidarScan, Odometry, Reading
 
 _MISSING: Final = 1.0
 _LATER: Final = 3.0
-"""s, and times the usual time between two messages of odometry, after which it is missing."""
+"""Odometry is missing after this time, s, and after this many times its usual spacing."""
 _KNOWN: Final = 3
-"""Steps between messages from which their usual time is known."""
+"""Spacings of odometry messages from which the usual one is known."""
 _UNSEEN: Final = 1.5
-"""s between two scans, after which these do not tell either how the robot went on."""
+"""s; with scans farther apart than this, scans cannot show the robot's motion either."""
 _LATE: Final = 0.5
-"""s; scans may be so late: they show what was before odometry stood still."""
+"""s by which stamps of scans may be late: such scans are from before odometry stood still."""
 _CHANGED: Final = 0.15
-"""m; beams that measure a range that is so much another one see something else."""
+"""m; a beam whose range changes by more sees something else."""
 _SHARE: Final = 0.5
-"""Share of the beams that see something else when the robot has moved: people are fewer."""
+"""Share of beams that see something else once the robot has moved; people cover fewer."""
 
 
 class OdometryGap(NamedTuple):
-    """From the last message that told something, ``begin``, s, until the last that told nothing."""
+    """A gap: from the last useful odometry, ``begin``, s, to the last useless or missing one."""
 
     begin: float
     end: float
@@ -39,7 +39,7 @@ ALWAYS: Final = OdometryGap(-math.inf, math.inf)
 
 
 class GapsInOrder:
-    """The gaps of a drive, asked for in the order of time."""
+    """The gaps of a drive, looked up in the order of time."""
 
     def __init__(self, gaps: Iterable[OdometryGap]) -> None:
         """Begin before the first one."""
@@ -53,12 +53,12 @@ class GapsInOrder:
 
     @property
     def begin(self) -> float:
-        """When the gap began, s, in which the newest time is that was asked for."""
+        """The begin, s, of the gap that the last time asked for is in."""
         return self._gaps[0].begin
 
 
 def gaps_of(drive: LoggedDrive) -> Sequence[OdometryGap]:
-    """Return when odometry tells nothing in a drive, and say so there."""
+    """Return the gaps in a drive's odometry, and add a remark about them to the drive."""
     if not drive.chosen.has_odometry:
         return (ALWAYS,)
     gaps = odometry_gaps(drive.readings())
@@ -88,9 +88,9 @@ def told_gaps(gaps: Sequence[OdometryGap]) -> str:
 
 
 class _GapSeeker:
-    """Looks for gaps; ``_since`` is when odometry changed last, ``_newest`` when it last came.
+    """Finds gaps; ``_since`` is when odometry last changed, ``_newest`` when it last came.
 
-    ``_unseen``, s, is the longest time without a scan since then.
+    ``_unseen``, s, is the longest time without a scan since ``_newest``.
     """
 
     def __init__(self) -> None:
@@ -106,7 +106,7 @@ class _GapSeeker:
     def hear(self, stamp: float, pose: Pose) -> None:
         """Take a message of odometry."""
         since = self._first_scan if self._pose is None else self._newest
-        # What is usual takes a while to reckon, and is seldom asked for.
+        # Checked second: the usual spacing takes a while to compute, and is seldom needed.
         is_missing = stamp - since > _MISSING and stamp - since > self._longest()
         if is_missing and max(self._unseen, stamp - self._scanned) <= _UNSEEN:
             self._end_standstill()
@@ -153,7 +153,7 @@ class _GapSeeker:
 
 
 def _is_comparable(before: LidarScan, scan: LidarScan) -> bool:
-    """Whether most beams met something both times: a lidar that spins up sees nothing."""
+    """Whether most beams of both scans hit something: a lidar that spins up measures nothing."""
     if before.ranges.shape != scan.ranges.shape:
         return False
     met = [np.isfinite(each.ranges) for each in (before, scan)]
@@ -162,7 +162,7 @@ def _is_comparable(before: LidarScan, scan: LidarScan) -> bool:
 
 
 def _is_another(before: LidarScan, scan: LidarScan) -> bool:
-    """Whether most beams that met something both times see something else than before."""
+    """Whether most of the beams that hit something in both scans see something else now."""
     both = np.isfinite(before.ranges) & np.isfinite(scan.ranges)
     changed = np.abs(scan.ranges[both] - before.ranges[both]) > _CHANGED
     return bool(np.count_nonzero(changed) > _SHARE * len(changed))

@@ -32,30 +32,30 @@ _GUESSED: Final = {
     "turn_noise": 0.1,
     "turn_way_noise": 0.1,
 }
-"""m, rad per square root of m, rad: of motion that is only guessed from what was before."""
+"""m, rad per square root of m, rad: noise of motion that is only guessed from the pace so far."""
 _MAY_START: Final = {"standing_deviation": 0.05, "standing_heading": 0.05}
-"""m, rad; of a guessed step of a robot that stood: it may start at any time."""
+"""m, rad: noise of a guessed step of a robot that stood, which may start at any time."""
 _LONGEST: Final = 1.5
-"""s; over a longer time a robot does not go on as it did."""
+"""s; after a longer time the robot's pace so far says nothing about its motion."""
 _FEWEST: Final = 10
-"""Scans; of a drive with fewer it is not told that most of them fitted nothing."""
+"""Scans; only a drive with as many is reported as one whose scans mostly fit nothing."""
 _MOST_UNFITTING: Final = 0.5
-"""Share of the scans that fitted nothing; with more a map is hardly worth anything."""
+"""Share of the scans that fit nothing; with more of them a map is hardly of any use."""
 _MOST_BENT: Final = 4.0
-"""Degrees; a map that may be bent by more, two standard deviations, is told of."""
+"""Degrees; a map is reported that may be bent by more, at two standard deviations."""
 _LATEST: Final = 1.0
-"""s; a scan that odometry is so far behind is of a time that it knows nothing of."""
+"""s; a scan that is newer than all odometry by more is left out: its pose is unknown."""
 
 
 class PacedOdometry:
-    """In place of odometry that tells nothing: the robot goes on as scans showed that it did."""
+    """Replaces odometry in its gaps: the robot goes on at the pace that scans showed so far."""
 
     def __init__(self, pose: Pose, stamp: float) -> None:
-        """Begin where odometry ended, at ``stamp``, s, which is infinite where there was none."""
+        """Begin where odometry ended, at ``stamp``, s; infinite if there was none."""
         self._pose, self._stamp = pose, stamp
 
     def at(self, stamp: float, pace: NDArray[np.float64]) -> Pose:
-        """Return where it is at a scan, s, by its pace so far, [3], m/s and rad/s."""
+        """Return the robot's pose at a scan, s, by its pace so far, [3], m/s and rad/s."""
         elapsed, self._stamp = stamp - self._stamp, stamp
         if 0.0 < elapsed < _LONGEST:
             self._pose = self._pose.compose(Pose(*(elapsed * pace).tolist()))
@@ -85,19 +85,20 @@ class MapReplay:
         self.blind = BlindMap(mapping, config.localization, config.gyro, start)
         self.trajectory = Trajectory()
         self.scans = 0
-        """Scans that were taken in."""
+        """Number of scans that were used."""
         self.unconfirmed = 0
-        """Of these, the ones that fitted nothing of what was seen before."""
+        """Number of used scans that fitted nothing seen before."""
         self.way = self.elapsed = 0.0
         self.seconds = 0.0
         """s of one core that the mapper took."""
         self.left_out: Counter[str] = Counter()
         self.lidar: LidarModel | None = None
-        """That of the newest scan."""
+        """The lidar of the newest scan."""
         self._blind_rows: list[tuple[float, float, float, float]] = []
         self._stamp = -math.inf
         self._fed = self._frame = Pose()
-        """The newest pose in the frame of the first odometry, and where that of the present is."""
+        """The newest pose in the frame of the first odometry, and the present odometry's frame in
+        that."""
         self._at: Pose | None = None
         self._is_lifted = False
         self._turning = NewestTurning()
@@ -107,13 +108,13 @@ class MapReplay:
     def by_odometry(self) -> NDArray[np.float64]:
         """Rows of t (s), x, y (m), theta (rad) at each scan by odometry alone.
 
-        Without odometry: as if the robot always went on as it did between the scans before.
+        Without odometry the robot is assumed to keep its pace between the scans before.
         """
         return np.array(self._blind_rows).reshape(-1, 4)
 
     @property
     def notes(self) -> list[str]:
-        """What was left out, what no scan joined to the map, and how far it may be bent."""
+        """Notes on left-out readings, on scans that fitted nothing, and on a bent map."""
         told = [f"{count} {what}: left out" for what, count in self.left_out.items()]
         if self.scans >= _FEWEST and self.unconfirmed > _MOST_UNFITTING * self.scans:
             told.append(
@@ -182,7 +183,7 @@ class MapReplay:
         self._move(stamp, self._by_scans.at(stamp, self.mapper.pace))
 
     def _move(self, stamp: float, pose: Pose) -> None:
-        """Move on to where the robot is in the frame of the first odometry."""
+        """Move to the robot's pose in the frame of the first odometry."""
         if math.isfinite(self._stamp):
             self.elapsed += max(0.0, stamp - self._stamp)
         self._stamp, self._fed = stamp, pose
@@ -198,9 +199,9 @@ class MapReplay:
         self._see(self._waiting.ready(stamp))
 
     def _hear_lifted(self, *, is_lifted: bool) -> None:
-        """Leave out what it sees while it is carried; it goes on wherever it is set down."""
+        """Leave out scans while the robot is carried; mapping goes on where it is set down."""
         if is_lifted:
-            # What waits for more odometry was seen on the floor.
+            # The scan that waits for odometry was taken on the floor.
             self._see(self._waiting.last())
             self.mapper.lift(is_lifted)
         elif self._is_lifted:

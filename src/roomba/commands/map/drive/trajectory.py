@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Trajectory:
-    """Keeps for each scan its place beside the newest keyframe, which may move afterwards."""
+    """Keeps each scan's pose relative to the newest keyframe, which may be moved afterwards."""
 
     def __init__(self) -> None:
         """Begin without a scan."""

@@ -1,4 +1,4 @@
-"""Odometry of a whole drive: where the recorded one tells nothing, it goes on by scans."""
+"""Odometry of a whole drive: in the gaps of the recorded one it continues by scans."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from roomba.recordings.readings import LidarScan, Odometry, Reading
 
 
 class WholeOdometry:
-    """Recorded odometry, and in its ``gaps`` the steps that a map shows which is made meanwhile.
+    """Recorded odometry; in its ``gaps`` a map that is made meanwhile gives the robot's steps.
 
-    ``frame`` is where the frame of the recorded odometry lies in that of this one. They are the
-    same until the first gap.
+    ``frame`` is where the frame of the recorded odometry lies in the frame of this one. They are
+    the same until the first gap.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class WholeOdometry:
         has_gap = self._gaps.has(reading.stamp)
         is_told = isinstance(value, Odometry) and not has_gap
         is_guessed = isinstance(value, LidarScan) and has_gap
-        # The step from a guessed pose to the next one, guessed or told, is the map's.
+        # The step from a guessed pose to the next pose, guessed or recorded, is the map's.
         goes_on = is_guessed or (is_told and self._is_guessed)
         before = _Place(replay.mapper) if goes_on else None
         replay.hear(reading.stamp, value)
@@ -63,13 +63,13 @@ class WholeOdometry:
 
 
 def whole_odometry_of(drive: LoggedDrive, config: RobotConfig) -> WholeOdometry:
-    """Return that of a drive, with a remark there on its gaps."""
+    """Return the odometry of a drive, and add a remark about its gaps to the drive."""
     mapping = load_config(MappingConfig, CONFIGURATION / "mapping.yaml")
     return WholeOdometry(config, mapping, gaps_of(drive))
 
 
 class _Place:
-    """Where a mapped robot is, beside the newest keyframe, which may move afterwards."""
+    """A robot's pose relative to the newest keyframe, which may be moved afterwards."""
 
     def __init__(self, mapper: Mapper) -> None:
         """Note where it is."""

@@ -20,7 +20,7 @@ _LOW = 0.1
 _DT, _STEPS = 0.1, 10
 """s, and how many of them lie between two points of the plot."""
 _SECONDS = 60
-"""Points of a drive that are shown as one: its power changes with each turn."""
+"""Points that are averaged to one while driving, as the power changes with each turn."""
 _HOUR = 3600.0
 
 
@@ -62,7 +62,7 @@ def picture_of_battery(home: Home, most_hours: float = 6.0) -> Figure:
 
 
 def _by_minutes(values: Floats, docked: NDArray[np.bool_]) -> Floats:
-    """Return means over whole minutes while it drives, and what follows as it is."""
+    """Return means over whole minutes of driving; later values stay as they are."""
     minutes = int(np.count_nonzero(~docked) / _SECONDS)
     driven = values[: minutes * _SECONDS].reshape(minutes, _SECONDS).mean(axis=1)
     return np.concatenate([driven, values[docked]])

@@ -29,11 +29,11 @@ _STAND = Pose(1.1, 1.4, 0.4)
 """A place in the flat from which doors and other rooms are seen."""
 _SOLD = "neato"
 _MOST_LINES = 20
-"""Beams that were lost are drawn one by one, if they are no more."""
+"""Lost beams are drawn one by one, unless there are more than this."""
 _BINS = np.arange(-20.0, 20.1, 1.0)
 """mm"""
 _ABOVE = 1.3
-"""The axis is so many times as high as what is drawn: the legend stands above that."""
+"""The axis is higher than the data by this factor, so that the legend has room."""
 
 
 @drawn

@@ -1,8 +1,8 @@
-"""Connections to the page's server, guarded: none lasts that says nothing, and none is owed much.
+"""Guards connections to the page's server: silent ones are closed, and none queues much output.
 
-uvicorn waits for a request as long as it takes, answers pings of a client that does not read, and
-waits for such a client before it closes. There are no settings for that, so its protocols are
-derived from here.
+uvicorn waits for a request without a deadline, answers pings of a client that does not read, and
+waits for such a client before it closes. It has no settings for that, so its protocols are
+subclassed here.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ from roomba.ui.web.bounded.limits import (
 )
 
 _UNSENT_CALM: Final = SENT_AHEAD // 4
-"""Bytes below which a sender that waited for its reader goes on."""
+"""Bytes of waiting output below which a paused sender goes on."""
 
 
 def most_connections() -> int:
-    """Return how many connections there may be, after asking the system for as many files."""
+    """Return the most connections, after asking the system for as many open files."""
     wanted = MOST_CONNECTIONS + OWN_FILES
     allowed, most = resource.getrlimit(resource.RLIMIT_NOFILE)
     if allowed == resource.RLIM_INFINITY or allowed >= wanted:
         return MOST_CONNECTIONS
     asked_for = wanted if most == resource.RLIM_INFINITY else min(wanted, most)
-    # A service may be forbidden to ask.
+    # A service may not be allowed to raise the limit.
     with contextlib.suppress(OSError, ValueError):
         resource.setrlimit(resource.RLIMIT_NOFILE, (asked_for, most))
         allowed = asked_for
@@ -45,7 +45,7 @@ def most_connections() -> int:
 
 
 class GuardedConnection(H11Protocol):
-    """A connection that must bring each request whole within some seconds."""
+    """A connection on which each request must come whole within some seconds."""
 
     _deadline: asyncio.TimerHandle | None = None
 
@@ -59,7 +59,7 @@ class GuardedConnection(H11Protocol):
             self._set_deadline()
 
     def data_received(self, data: bytes) -> None:
-        """Take what came; a request that is whole, or a WebSocket, needs no deadline any more."""
+        """Take received bytes; a whole request, or a WebSocket, ends the deadline."""
         super().data_received(data)
         is_socket = self.transport.get_protocol() is not self
         is_partial = self.conn.their_state is h11.SEND_BODY or (
@@ -85,10 +85,10 @@ class GuardedConnection(H11Protocol):
 
 
 class GuardedSocket(WebSocketsSansIOProtocol):
-    """A WebSocket that is closed when its client does not read, or sends without end."""
+    """A WebSocket that is closed when its client does not read, or sends an endless message."""
 
     def handle_ping(self) -> None:
-        """Answer, unless answers are not read."""
+        """Answer a ping, unless too many answers wait unread."""
         super().handle_ping()
         self._close_if_owed()
 
@@ -99,12 +99,12 @@ class GuardedSocket(WebSocketsSansIOProtocol):
             self.transport.abort()
 
     def keepalive_timeout(self) -> None:
-        """Close at once: what was not read will not be read."""
+        """Close at once: the client will not read what waits."""
         super().keepalive_timeout()
         self.transport.abort()
 
     async def send(self, message: Any) -> None:
-        """Send; of a client that is to be closed nothing is waited for."""
+        """Send; a client that is to be closed gets some seconds to close."""
         await super().send(message)
         if message["type"] == "websocket.close":
             self.loop.call_later(BODY_WITHIN, self.transport.abort)

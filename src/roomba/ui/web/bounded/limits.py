@@ -7,25 +7,27 @@ from typing import Final
 MOST_BODY: Final = 65536
 """Bytes of a request's body, and of what comes over a WebSocket at once."""
 BODY_WITHIN: Final = 10.0
-"""s of wall time until a request must have come whole."""
+"""s of wall time within which a whole request must come."""
 MOST_CONNECTIONS: Final = 1200
-"""At the same time; more are closed at once, and fewer stay where the system allows fewer files."""
+"""Connections at the same time; more are closed at once. Where the system allows fewer open files,
+fewer connections are allowed."""
 OWN_FILES: Final = 300
-"""Files and connections that a process needs for all else, such as those to other nodes."""
+"""Files and connections that a process needs for all its other work, such as for other nodes."""
 BACKLOG: Final = 256
 """Connections that may wait to be taken, or to be closed because there are too many."""
 MOST_LISTENERS: Final = 50
 """Programs that listen to events at the same time."""
 SENT_AHEAD: Final = 65536
-"""Bytes that wait in the system for a slow reader: more would be a queue of what is out of date."""
+"""Bytes that the system queues for a slow reader; more would be outdated when they are read."""
 UNSENT: Final = 1 << 20
-"""Bytes that wait for a reader which lets the server answer and does not read: it is closed."""
+"""Bytes queued for a reader that does not read its answers; beyond that its connection is
+closed."""
 MOST_FRAGMENTS: Final = 1024
 """Parts of one message over a WebSocket."""
 PING: Final = 10.0
-"""s of wall time between two signs of life that a WebSocket is asked for, and for its answer."""
+"""s of wall time between two pings on a WebSocket, and for the answer to each."""
 MOST_GARBAGE: Final = 100
-"""Messages in a row that mean nothing; then a WebSocket is closed."""
+"""Senseless messages in a row after which a WebSocket is closed."""
 SERVER_LIMITS: Final = {
     "body_bytes": MOST_BODY,
     "body_seconds": BODY_WITHIN,
@@ -34,4 +36,4 @@ SERVER_LIMITS: Final = {
     "socket_message_bytes": MOST_BODY,
     "socket_garbage": MOST_GARBAGE,
 }
-"""The same by the names under which the API publishes them."""
+"""The limits by the names that the API uses."""

@@ -49,8 +49,8 @@ def api_of(
 ) -> APIRouter:
     """Return the routes for one robot; ``limits`` are those of its server.
 
-    ``note`` is told what each clean is asked for by, and None when the robot refuses it. Its state
-    tells of its household, if there is one.
+    ``note`` is called with the body of each request to clean, and with None when the robot refuses
+    it. The state includes the household, if there is one.
     """
     api = APIRouter(prefix="/api/v1")
     _add_views(api, robot, limits, household)
@@ -87,7 +87,7 @@ def _add_views(
 def _add_errands(api: APIRouter, robot: ObservedRobot, note: Note) -> None:
     @api.post("/clean", summary="Begin a clean")
     def clean(wish: CleanWish) -> Answer:
-        # Before it: the run may have begun when the robot has answered.
+        # Noted before the robot's answer, as the run may have begun when that comes.
         note(wish.model_dump(mode="json"))
         try:
             return obeyed(lambda: robot.clean(request_of(wish)))
@@ -134,7 +134,7 @@ def _add_errands(api: APIRouter, robot: ObservedRobot, note: Note) -> None:
 
 
 def _pause(robot: ObservedRobot) -> None:
-    """Pause it; one that is paused already is as it was wished."""
+    """Pause the robot; one that is paused already is as wished."""
     try:
         robot.pause()
     except RequestRefusedError:
@@ -169,7 +169,7 @@ def _add_edits(api: APIRouter, robot: ObservedRobot) -> None:
 
 
 def _add_low_things(api: APIRouter, robot: ObservedRobot) -> None:
-    """Add what an owner says of zones that the robot offers."""
+    """Add the routes for zones that the robot offers."""
     if not isinstance(robot, FeelsLowThings):
         return
 
@@ -209,7 +209,7 @@ def _add_maps(api: APIRouter, robot: ObservedRobot) -> None:
 
 
 def _add_camera(api: APIRouter, robot: ObservedRobot) -> None:
-    """Add the camera, if it has one; a picture of a home from inside needs the token, too."""
+    """Add the camera, if there is one; its pictures show the home's inside and need the token."""
     if not isinstance(robot, CameraClient):
         return
 
@@ -222,7 +222,7 @@ def _add_camera(api: APIRouter, robot: ObservedRobot) -> None:
 
 
 def _add_replay(api: APIRouter, robot: ObservedRobot) -> None:
-    """Add what can be done to a recording, if it is one."""
+    """Add the routes that control a recording, if the robot is one."""
     if not isinstance(robot, Timeline):
         return
 
@@ -238,7 +238,7 @@ def _add_replay(api: APIRouter, robot: ObservedRobot) -> None:
 
 
 def obeying(command: Callable[[], None]) -> Callable[[], Answer]:
-    """Return what answers a request by a command."""
+    """Return a route's function that obeys a request by a command."""
 
     def obey() -> Answer:
         return obeyed(command)
@@ -247,13 +247,13 @@ def obeying(command: Callable[[], None]) -> Callable[[], Answer]:
 
 
 def obeyed(command: Callable[[], None]) -> Answer:
-    """Let the robot obey; its refusal is 409 with its sentence, its silence 503."""
+    """Let the robot obey; a refusal becomes 409 with its sentence, silence 503."""
     _asked(command)
     return Answer()
 
 
 def _asked(ask: Callable[[], _Value]) -> _Value:
-    """Return the robot's answer; its refusal is 409 with its sentence, its silence 503."""
+    """Return the robot's answer; a refusal becomes 409 with its sentence, silence 503."""
     try:
         return ask()
     except RequestRefusedError as refusal:

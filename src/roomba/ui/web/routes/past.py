@@ -43,7 +43,7 @@ def history_api(history: History) -> APIRouter:
     api = APIRouter(prefix="/api/v1/history")
 
     def asked(ask: Callable[[], _Value]) -> _Value:
-        """Return what the history answers; what it does not have is 404 with its sentence."""
+        """Return the history's answer; its error is 404 with the error's sentence."""
         try:
             return ask()
         except RoombaError as refusal:
@@ -107,18 +107,18 @@ def _document(text: str) -> HTMLResponse:
 
 
 def _sentence(refusal: RoombaError, history: History) -> str:
-    """Return what the history says, without where on the disk it is: pages need not know that."""
+    """Return the history's sentence without its folder: pages need not know that."""
     told = str(refusal).removeprefix(f"{history.path}: ")
     return told.replace(str(history.path.parent), "the history's folder")
 
 
 class _AllWatchedError(RoombaError):
-    """No further run can be opened: those that are open are all in use."""
+    """No further run can be opened: all places are taken by runs in use."""
 
 
 @dataclass(slots=True)
 class _OpenRun:
-    """A run that is played, and how many requests and viewers are at it now."""
+    """A run that is played, with the number of its requests and viewers now."""
 
     app: ASGIApp
     life: contextlib.AsyncExitStack
@@ -126,13 +126,13 @@ class _OpenRun:
 
 
 class Replays:
-    """Serves ``/NUMBER/…``: the page over each run that is opened, as an application of its own."""
+    """Serves ``/NUMBER/…``: each opened run has its page as an application of its own."""
 
     def __init__(self, history: History, app_of: Callable[[ObservedRobot], FastAPI]) -> None:
         """Open nothing yet; ``app_of`` makes the application for a recorded robot."""
         self._history, self._app_of = history, app_of
         self._open: dict[int, _OpenRun] = {}
-        # One run at a time is opened: none twice, and other work keeps its threads.
+        # Runs are opened one at a time: none twice, and other work keeps its threads.
         self._opening = asyncio.Lock()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -177,7 +177,7 @@ class Replays:
         return self._app_of(RecordedRobot(run.figures, self._history.recording(number)))
 
     async def _make_room(self) -> None:
-        """Close the run that was opened first of those not in use, unless there is room."""
+        """Close the oldest run that is not in use, unless there is room."""
         if len(self._open) < _MOST_OPEN:
             return
         unused = next((number for number, run in self._open.items() if not run.users), None)

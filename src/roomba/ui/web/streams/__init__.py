@@ -1,1 +1,1 @@
-"""What is told to many at once: messages made text once, and events for programs."""
+"""Data for many viewers at once: messages that become text once, and events for programs."""

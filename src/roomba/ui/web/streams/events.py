@@ -1,7 +1,7 @@
-"""Events of a robot for programs: what changed, as one stream that all listeners share.
+"""A robot's events for programs: changes, in one stream that all listeners share.
 
-Events are kept for a while by their numbers. A listener takes those after the last one that it has:
-a slow one, or one that comes back, misses nothing that is still kept, and there is no queue for it.
+Events are kept for a while by number. A listener takes those after the last number it has. So a
+slow listener, or one that comes back, misses nothing that is still kept, and needs no queue.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ SILENCE: Final = 15.0
 
 
 class Events:
-    """The newest events of one robot: those of :class:`roomba.client.events.EventFinder`.
+    """The newest events of one robot, found by :class:`roomba.client.events.EventFinder`.
 
-    ``missed``: of some older ones a listener knows nothing any more.
+    The event ``missed`` tells a listener that older events are no longer kept.
     """
 
     def __init__(self, first: int = 1) -> None:
@@ -39,7 +39,7 @@ class Events:
 
     @property
     def newest(self) -> int:
-        """The number of the newest event; one below the first one before that."""
+        """The number of the newest event; one less than the first number before there is one."""
         return self._kept[-1][0] if self._kept else self._first - 1
 
     def note(self, view: RobotView) -> list[RobotEvent]:
@@ -51,9 +51,9 @@ class Events:
         return self._keep(self._finder.gone(reason))
 
     async def after(self, number: int) -> AsyncIterator[str]:
-        """Give all events after a number as lines of an event stream, for ever; 0: all.
+        """Yield all events after a number as lines of an event stream, for ever; 0: all.
 
-        A number of a server from before is none of this one's: how many were missed is not known.
+        A number of an earlier server does not count here: how many events were missed is unknown.
         """
         if number and not self._first - 1 <= number <= self.newest:
             number = self._first - 1
@@ -85,7 +85,7 @@ class Events:
 def first_of(now: float) -> int:
     """Return the number of the first event of a server that begins ``now``, s since 1970.
 
-    It is above all those of a server from before, which notes less than one in a millisecond.
+    It is above all numbers of an earlier server, which notes less than one event in a millisecond.
     """
     return round(1000.0 * now)
 

@@ -37,7 +37,7 @@ events are kept. Every 15 s of silence an empty line comes."""
 
 
 class _Listening(StreamingResponse):
-    """The stream of one listener, which is counted from before it begins until it is over."""
+    """One listener's stream; it is counted from before its begin until its end."""
 
     def __init__(self, stream: AsyncIterator[str], listeners: set[object]) -> None:
         super().__init__(stream, media_type="text/event-stream")
@@ -59,7 +59,7 @@ def events_api(events: Events) -> APIRouter:
     listeners: set[object] = set()
 
     async def stream(after: int) -> AsyncIterator[str]:
-        # At once, so that a program knows that it listens.
+        # Sent at once, so that the program knows that it is listening.
         yield ":\n\n"
         async for text in events.after(after):
             yield text

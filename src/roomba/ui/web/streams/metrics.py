@@ -33,8 +33,8 @@ _MISSING: Final = (
 class RobotMetrics:
     """The newest state and what was counted since the server began; a collector of Prometheus.
 
-    It is asked for its metrics in the thread of a request, and told of looks in the server's own:
-    each look is one assignment.
+    Metrics are collected in the thread of a request, and looks come in the server's own thread:
+    each look is one assignment, so no lock is needed.
     """
 
     def __init__(self, robot: ObservedRobot) -> None:
@@ -46,7 +46,7 @@ class RobotMetrics:
         self._troubles = 0
 
     def look(self, view: RobotView | None, events: Iterable[RobotEvent]) -> None:
-        """Take what was seen, None for a robot that does not answer, and what changed by it."""
+        """Take what a look saw, None for a silent robot, and the events that it found."""
         self._view = view
         for event in events:
             if event.kind == "ended":
@@ -57,7 +57,7 @@ class RobotMetrics:
                 self._troubles += 1
 
     def collect(self) -> Iterator[Metric]:
-        """Give all metrics; the name of the method is Prometheus's."""
+        """Yield all metrics; Prometheus prescribes the method's name."""
         from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
 
         view = self._view

@@ -1,4 +1,4 @@
-"""What is told to many: plain values that become text once, however many get it."""
+"""Plain values that become JSON text once, however many viewers get it."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ Json = dict[str, Any]
 
 
 class Told:
-    """One message; the first who takes its text makes it."""
+    """One message; its text is made when it is first needed."""
 
     def __init__(self, value: Json) -> None:
-        """Tell plain values, which are not changed any more."""
+        """Take plain values, which must not be changed any more."""
         self.value = value
         self._text: str | None = None
 

@@ -1,4 +1,4 @@
-"""The way that viewers are shown: places where the robot was, and where it was carried between."""
+"""The robot's trail for viewers: where it drove, with breaks where it was carried."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ _STEP: Final = 0.03
 """m between two places of the trail."""
 _MOST_PLACES: Final = 20000
 _FASTEST: Final = 1.0
-"""m/s that no robot drives."""
+"""m/s; no robot drives faster."""
 _CORRECTED: Final = 0.15
-"""m by which a place may be corrected from one look to the next."""
+"""m by which localization may correct the pose between two looks."""
 
 Place = tuple[float, float] | tuple[float, float, bool]
-"""x and y, m; True where the way begins anew: the robot did not drive there from the one before."""
+"""x and y, m; a third value True: the robot was carried here, so no line leads here."""
 
 
 class ShownTrail:
-    """The newest places of a way that grows; viewers count the places that there ever were."""
+    """The newest places of the robot's way; viewers count all places that there ever were."""
 
     def __init__(self) -> None:
         """Begin with no place."""
         self._places: list[Place] = []
         self._began = 0
-        """Places that there were before the first one that is kept."""
+        """Number of places that were dropped, which came before the first kept one."""
         self._told: dict[int, Told] = {}
-        """What follows a count of places, until there are more."""
+        """Messages with the places after a count, by that count; cleared when a place is added."""
         self._seen: tuple[float, float, float] | None = None
-        """When, s, and where it was at the last look, x and y, m."""
+        """Time, s, and x and y, m, of the last look at the robot."""
 
     @property
     def places(self) -> tuple[Place, ...]:
@@ -53,11 +53,11 @@ class ShownTrail:
             self._began += surplus
 
     def lose_sight(self) -> None:
-        """From now on it is not known what the robot does, until it is followed again."""
+        """Stop following: until the next look it is unknown what the robot does."""
         self._seen = None
 
     def replace(self, way: Sequence[tuple[float, float]]) -> None:
-        """Let another way, places in m, be what was driven up to now."""
+        """Replace the trail by another way, places in m."""
         self._seen = None
         self._told.clear()
         self._began += len(self._places) + 1
@@ -66,7 +66,8 @@ class ShownTrail:
     def since(self, count: int) -> Told | None:
         """Return the places after the first ``count`` of all that there ever were; None for none.
 
-        It is told as the ``whole`` way to those who have none, or one that is not kept any more.
+        It is marked ``whole`` for viewers that have no places, or only places that are dropped by
+        now.
         """
         if count not in self._told:
             first = max(count - self._began, 0)
@@ -83,8 +84,8 @@ class ShownTrail:
         return self._told[count]
 
     def _may_have_driven(self, now: float, x: float, y: float) -> bool:
-        """Whether the robot can have come here by its wheels since it was seen last."""
-        if self._seen is None:  # of what it did meanwhile nothing is known
+        """Whether the robot can have driven here since the last look."""
+        if self._seen is None:  # unknown what the robot did meanwhile
             return not self._places or math.dist(self._places[-1][:2], (x, y)) <= _CORRECTED
         then, *before = self._seen
         reach = _FASTEST * max(now - then, 0.0) + _CORRECTED

@@ -1,4 +1,4 @@
-"""Scans of a drive by which its lidar is looked at, and where odometry had the robot."""
+"""Sampled scans of a drive, to find out facts about its lidar, and odometry's poses of them."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from roomba.recordings.drives.sweeps import Sweep, SweptScans
 from roomba.recordings.readings import LidarScan, Odometry, Reading, Turning
 
 _APART_WAY, _APART_TURN = 0.03, 0.03
-"""m, rad; between scans that are kept: a robot that stands shows nothing new."""
+"""m, rad; sampled scans are at least so far apart: a robot that stands shows nothing new."""
 _MOST: Final = 600
 """Scans that are kept at most, with 18 m of way or 18 rad of turns between them."""
 _REACH: Final = 12.0
-"""m; farther points of a scan do not count when it is laid on another one."""
+"""m; farther points of a scan do not count when scans are matched."""
 _AROUND: Final = 2.0
-"""s; of odometry before and after a scan that is looked at."""
+"""s of odometry before and after a scan that is used with it."""
 _TIMES: Final = 4
-"""Odometry that is needed to tell anything."""
+"""Messages of odometry that are needed to find out anything."""
 
 
 class Sample(NamedTuple):
@@ -62,10 +62,11 @@ class _Path:
 class LidarSamples:
     """Scans that were kept, in the order of time.
 
-    ``period`` is the usual time between two, s, ``odometry_period`` that of odometry; 0 without.
-    ``count`` is how many scans came, also of which odometry tells nothing. With ``has_odometry``
-    there is enough of it to tell anything; if it ``never_changes``, it has one pose alone.
-    ``turnings`` are rows of stamp, s, and turning speed, rad/s, of a gyro till the last scan.
+    ``period`` is the usual time between two scans of the drive, s, ``odometry_period`` that of
+    odometry; 0 without. ``count`` is the number of scans read, also of those without odometry. With
+    ``has_odometry`` there is enough odometry to find out anything; if it ``never_changes``, all its
+    poses are equal. ``turnings`` are rows of stamp, s, and turning speed, rad/s, of a gyro till the
+    last scan.
     """
 
     def __init__(self, readings: Iterable[Reading]) -> None:
@@ -115,13 +116,13 @@ class LidarSamples:
         ]
 
     def turning(self, sample: Sample) -> float:
-        """Return how far the robot turned from a scan on until the next one usually came, rad."""
+        """Return how far the robot turned within the usual time to the next scan, rad."""
         return float(self._path.at(sample.stamp + self.period)[2] - sample.pose[2])
 
     def between(self, one: Sample, other: Sample, late: float = 0.0) -> Floats:
-        """Return where odometry had the robot at a scan, as seen from it at another one, [3].
+        """Return the pose at one scan as seen from that at another, by odometry, [3].
 
-        Scans are stamped ``late``, s.
+        The scans' stamps are ``late`` by so many s.
         """
         at = (self._path.at(each.stamp - late).tolist() for each in (one, other))
         return np.array(seen_from(np.array(next(at)), np.array(next(at))))
@@ -129,7 +130,7 @@ class LidarSamples:
     def points(self, sample: Sample, sweep: Sweep | None = None, late: float = 0.0) -> Floats:
         """Return the points that a scan shows, [n, 4], as :func:`surface_points` does.
 
-        None is the sweep that the driver tells; scans are stamped ``late``, s.
+        ``sweep`` None is the driver's own; the scans' stamps are ``late`` by so many s.
         """
         scan = sample.scan
         if sweep is not None:
@@ -143,11 +144,11 @@ class LidarSamples:
 def laid_on(
     place: Floats, points: Floats, around: Floats, window: float, turn: float, least: float = 0.0
 ) -> CorrelativeMatch | None:
-    """Lay the points of a scan on those of another one, ``place``.
+    """Match the points of a scan to those of another one, ``place``.
 
     Both are as :meth:`LidarSamples.points` returns them. Returns the best pose within ``window``,
     m, and ``turn``, rad, of the pose ``around`` [3] in the frame of ``place``; None if one of them
-    shows nothing near, or they fit nowhere by a mean likelihood of more than ``least``, 0..1.
+    shows nothing near, or no pose has a mean likelihood above ``least``, 0..1.
     """
     if not (np.hypot(place[:, 0], place[:, 1]) < _REACH).any():
         return None

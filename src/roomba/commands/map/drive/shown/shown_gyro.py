@@ -1,8 +1,8 @@
-"""What is wrong with the gyro of a drive, as its scans show: how far it says that the robot turned.
+"""Finds faults of a drive's gyro by comparing its turns with those that scans show.
 
-A gyro counts more than wheels do, so that one which stands still, is mirrored, measures about
-another axis or in degrees bends the map. Only what no good gyro does is told: turns that are others
-than those of scans and of odometry, which agree, most of the time.
+A gyro counts more than wheels do. So a gyro that stands still, is mirrored, measures about another
+axis or in degrees bends the map. Only what no good gyro does is reported: most of its turns differ
+from those on which scans and odometry agree.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from roomba.commands.map.drive.shown.lidar_samples import LidarSamples
 from roomba.commands.map.drive.shown.shown_mount import shown_moves
 
 _TURN: Final = 0.2
-"""rad; turns are compared that scans show to be so large."""
+"""rad; only turns that scans show to be at least so large are compared."""
 _LEAST: Final = 8
-"""Turns from which anything is said."""
+"""Turns that are needed before anything is reported."""
 _SELDOM: Final = 0.3
-"""s between two samples; of a time in which they are rarer a gyro tells no turn."""
+"""s between two samples; where samples are rarer, the gyro shows no turn."""
 _SHARE, _NOISE, _BIAS = 0.5, 0.1, 0.05
-"""Share of a turn, rad, and rad/s, by which another turn may be told and agree."""
+"""Share of a turn, rad, and rad/s, by which the gyro's turn may differ and still agree."""
 _MOST: Final = 0.7
-"""Share of the turns that agree, or do not, if anything is said."""
+"""Share of the turns that must agree, or differ, before anything is reported."""
 
 
 class _Turns(NamedTuple):
@@ -36,13 +36,13 @@ class _Turns(NamedTuple):
     spent: Floats
 
     def agreeing(self, told: Floats) -> float:
-        """Return the share of turns as ``told`` that scans show as well."""
+        """Return the share of the turns ``told`` that agree with those of scans."""
         allowed = _SHARE * np.abs(self.by_scans) + _NOISE + _BIAS * self.spent
         return float(np.mean(np.abs(told - self.by_scans) < allowed))
 
 
 def gyro_fault(samples: LidarSamples) -> str:
-    """Return what is wrong with the gyro; "" if nothing is, or nothing is clear."""
+    """Return what is wrong with the gyro; "" if nothing is, or it is not clear."""
     turns = _turns(samples)
     if len(turns.spent) < _LEAST or turns.agreeing(turns.by_odometry) < _MOST:
         return ""
@@ -55,7 +55,7 @@ def gyro_fault(samples: LidarSamples) -> str:
 
 
 def _turns(samples: LidarSamples) -> _Turns:
-    """Return the turns of which scans, odometry and gyro tell."""
+    """Return turns with their measurements by scans, odometry and gyro."""
     rows = []
     for move in shown_moves(samples):
         by_gyro = _turned(samples.turnings, move.begin, move.end)
@@ -65,7 +65,7 @@ def _turns(samples: LidarSamples) -> _Turns:
 
 
 def _turned(turnings: Floats, begin: float, end: float) -> float | None:
-    """Return how far a gyro turned between two times, rad; None if it tells too seldom."""
+    """Return how far the gyro turned between two times, rad; None with too few samples."""
     stamps, speeds = turnings.T
     first = int(np.searchsorted(stamps, begin, "right")) - 1
     last = int(np.searchsorted(stamps, end, "left"))

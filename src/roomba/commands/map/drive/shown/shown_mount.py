@@ -1,9 +1,9 @@
-"""How a lidar is mounted, as its scans show: how they move against what the odometry says.
+"""Finds out how a lidar is mounted by comparing its motion with the odometry.
 
-Scans are laid on each other without any odometry. A lidar that is taken to hang the other way round
-shows all turns in the opposite direction; one that looks another way shows the robot moving another
-way. Where it is on the robot counts as well (as in Censi et al., "Simultaneous calibration of
-odometry and sensor parameters for mobile robots", 2013), but is not told: it is less sure.
+The lidar's motion follows from matching its scans, without odometry. A lidar that hangs the other
+way round turns in the opposite direction; one that looks another way moves another way. Where it is
+on the robot has an effect as well (as in Censi et al., "Simultaneous calibration of odometry and
+sensor parameters for mobile robots", 2013), but is not reported: it is less certain.
 """
 
 from __future__ import annotations
@@ -18,27 +18,28 @@ from roomba.arrays import Floats
 from roomba.commands.map.drive.shown.lidar_samples import LidarSamples, Sample, laid_on
 
 _WAY, _TURN = 0.3, 0.3
-"""m, rad; two scans are compared between which the robot moved so far, or turned."""
+"""m, rad; two scans are compared when the robot moved at least so far, or turned so much."""
 _MOST_WAY, _MOST_TURN = 1.0, 0.8
-"""m, rad; no more than that, or they show other places."""
+"""m, rad; scans that are farther apart show other places."""
 _MORE_WAY, _MORE_TURN = 0.2, 0.15
-"""m, rad; by which the robot may have moved more than the odometry says."""
+"""m, rad; the most by which the robot may have moved farther than odometry says."""
 _PAIRS: Final = 60
-"""Pairs of scans that are compared at most."""
+"""The most pairs of scans that are compared."""
 _LEAST_PAIRS: Final = 5
 _LEAST_TURNED: Final = 0.1
-"""rad2; sum of squared turns between compared scans, from which anything is said."""
+"""rad2; sum of squared turns between compared scans that is needed to report anything."""
 _LEAST_MOVED: Final = 0.2
-"""m2; the same of ways."""
+"""m2; the same for the distances moved."""
 _AGREE: Final = 0.1
-"""Share of the squared turns, and of the ways, that may be left to agree."""
+"""The largest residual that counts as agreement, as a share of squared turns, or of squared
+ways."""
 _NOISE: Final = 0.03
-"""m; by which scans tell a move wrong, at least."""
+"""m; the least error of a move by scans."""
 _ASIDE: Final = 0.3
-"""m; so far a lidar is off the robot's middle as a rule. Of a robot that goes round in a circle
-alone, where it is and which way it looks are hardly to be told apart."""
+"""m; usual distance of a lidar from the robot's middle. If a robot only drives in a circle, that
+distance and the lidar's direction can hardly be told apart."""
 _CLEAR: Final = 4.0
-"""Standard errors by which a lidar that looks aside must fit better than one that looks ahead."""
+"""Standard errors by which a sideways direction must fit better than looking ahead."""
 _YAWS: Final = np.linspace(-math.pi, math.pi, 721)
 """rad; ways to look that are compared, half a degree apart."""
 
@@ -46,7 +47,7 @@ _YAWS: Final = np.linspace(-math.pi, math.pi, 721)
 class ShownMove(NamedTuple):
     """A move from the stamp ``begin`` to ``end``, s.
 
-    The odometry has it as ``told``, and scans alone as ``shown``, both [3]: ahead, left, turned.
+    ``told`` is the move by odometry, ``shown`` by scans alone, both [3]: ahead, left, turned.
     """
 
     begin: float
@@ -56,11 +57,11 @@ class ShownMove(NamedTuple):
 
 
 class ShownMount(NamedTuple):
-    """What scans show of a lidar against how it was taken to be mounted.
+    """How the lidar is mounted by its scans, relative to the mount that was assumed.
 
-    It ``is_turned_over``, upside down instead of upright or the other way round, and looks ``yaw``,
-    rad, farther to the left than it was taken to, or than it would if it were turned over about the
-    robot's long axis; 0 where that is not clear.
+    If it ``is_turned_over``, it hangs upside down instead of upright, or the other way round. It
+    looks ``yaw``, rad, farther to the left than was assumed, or, if turned over, than the assumed
+    mount turned over about the robot's long axis; 0 where that is not clear.
     """
 
     is_turned_over: bool
@@ -68,7 +69,7 @@ class ShownMount(NamedTuple):
 
 
 def shown_mount(samples: LidarSamples) -> ShownMount | None:
-    """Return what is clear; None if nothing is."""
+    """Return the mount as far as it is clear; None if nothing is."""
     found = shown_moves(samples)
     if len(found) < _LEAST_PAIRS:
         return None
@@ -110,10 +111,10 @@ def shown_moves(samples: LidarSamples) -> list[ShownMove]:
 
 
 def _yaw(by_odometry: Floats, by_scans: Floats) -> float:
-    """Return how far to the left the odometry sees what scans show as ahead, rad; 0: not clear.
+    """Return the angle to the left, rad, between scans' and odometry's ahead; 0: not clear.
 
-    What both say of a move differs by that turn, and by what the lidar, which is not where the
-    robot's middle is, moves on an arc when the robot turns: where it is follows by least squares.
+    A move by odometry and by scans differs by that angle, and by the arc of a lidar that is not in
+    the robot's middle when the robot turns. Where the lidar is follows by least squares.
     """
     x, y, turns = by_scans[:, 0], by_scans[:, 1], by_odometry[:, 2]
     told = np.concatenate((by_odometry[:, 0], by_odometry[:, 1]))

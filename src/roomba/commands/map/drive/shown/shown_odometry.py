@@ -1,9 +1,8 @@
-"""What is wrong with the odometry of a drive, as its scans show: units, axes, and times.
+"""Finds faults of a drive's odometry by comparing it with scans: units, axes, and times.
 
-Scans are laid on each other without any odometry, and the moves that they show are compared with
-those that the odometry tells. How the lidar is mounted does not count, nor where, up to 1 m from
-the robot's middle. Only what no wheels do is told: ways or turns of other lengths, or in other
-directions, most of the time.
+Scans are matched without odometry, and the moves that they show are compared with the odometry's.
+It does not matter how the lidar is mounted, nor where, up to 1 m from the robot's middle. Only what
+no wheels do is reported: most ways or turns have other lengths, or other directions.
 """
 
 from __future__ import annotations
@@ -19,42 +18,43 @@ from roomba.arrays import Floats
 from roomba.commands.map.drive.shown.lidar_samples import LidarSamples, laid_on
 
 _SELDOM: Final = 2.0
-"""s between two messages, as a rule, from which most scans are of times without odometry."""
+"""s; with a longer usual spacing of odometry, most scans are of times without odometry."""
 _RARER: Final = 2.0
-"""Times as much as between two scans; if these are as rare, odometry is told for each."""
+"""Times the spacing of scans; if scans are as rare as odometry, each scan has its odometry."""
 _STEP, _STEP_TURN = 0.3, 0.4
-"""m, rad; a robot moves no farther between two scans that are laid on each other."""
+"""m, rad; the farthest that a robot moves between two matched scans."""
 _WAY, _TURN = 0.1, 0.15
-"""m, rad; moves are compared that scans show to be so long, or turned so far."""
+"""m, rad; moves are compared that are by scans at least so long, or turn so far."""
 _STRAIGHT: Final = 0.05
 """rad; directions are compared of moves that turn less."""
 _ARM: Final = 1.0
-"""m; no lidar is farther from a robot's middle."""
+"""m; the farthest that a lidar is from the robot's middle."""
 _FITS: Final = 0.7
-"""Mean likelihood of points, from which scans surely lie on each other: 0.8 and more where they are
-dense, 0.1 to 0.5 where they were taken a metre apart, which is farther than they are looked for."""
+"""Mean likelihood above which two scans surely match: it is 0.8 and more where scans are dense, and
+0.1 to 0.5 where they were taken a metre apart, which is farther than matches are looked for."""
 _LONGEST: Final = 3.0
-"""s between two scans that are compared, at most: they show the same place."""
+"""s; scans that are farther apart may show another place."""
 _MATCHES: Final = 250
-"""Pairs of scans that are laid on each other at most."""
+"""The most pairs of scans that are matched."""
 _LEAST: Final = 8
-"""Moves from which anything is said."""
+"""Moves that are needed before anything is reported."""
 _USUAL: Final = 0.5
-"""Share of the scans that fit the one before, from which anything is said."""
+"""Share of the scans that must match the one before, or nothing is reported."""
 _SHARE, _WAY_NOISE, _TURN_NOISE = 0.5, 0.05, 0.1
-"""A share of a move, m and rad, by which the odometry may tell another one and agree."""
+"""Share of a move, m and rad, by which the odometry's move may differ and still agree."""
 _AGREES: Final = 0.3
-"""Share of the moves that agree, from which the odometry is of use."""
+"""Share of moves that must agree, or the odometry is of no use."""
 _INCOHERENT: Final = 0.01
-"""By so much directions are not as scans show them, as a rule: 0 of all that are, 1 of any ones."""
+"""Usual incoherence of good odometry: 0 if all directions agree with scans, 1 at random."""
 _CLEARER: Final = 3.0
-"""Times as much as mirrored ways are not, from which ways are taken to be mirrored."""
+"""Ways count as mirrored if their incoherence is so many times that of the mirrored ways."""
 
 
 class _Moves(NamedTuple):
     """Moves of the robot, each [n, 3], x, y, m, and turn, rad.
 
-    As odometry tells them, as it would with x and y swapped, and as scans show them of the lidar.
+    They are by odometry, by odometry with x and y swapped, and by scans, which show the lidar's
+    moves.
     """
 
     told: Floats
@@ -62,12 +62,12 @@ class _Moves(NamedTuple):
     shown: Floats
 
     def where(self, which: NDArray[np.bool_]) -> _Moves:
-        """Return some of them."""
+        """Return a selection of the moves."""
         return _Moves(*(moves[which] for moves in self))
 
 
 def odometry_fault(samples: LidarSamples) -> str:
-    """Return what is wrong with the odometry; "" if nothing is, or nothing is clear."""
+    """Return what is wrong with the odometry; "" if nothing is, or it is not clear."""
     period = samples.odometry_period
     if period > max(_SELDOM, _RARER * samples.period):
         return f"it comes once in {period:.1f} s"
@@ -82,9 +82,9 @@ def odometry_fault(samples: LidarSamples) -> str:
 
 
 def shown_headings(samples: LidarSamples) -> list[float]:
-    """Return the headings, rad, of the robot at the scans, as these show them without odometry.
+    """Return the robot's headings at the scans, rad, by matching scans without odometry.
 
-    The first one is 0. Where a scan does not fit the one before, the robot is taken not to turn.
+    The first heading is 0. A scan that does not match the one before counts as no turn.
     """
     headings = [0.0] if samples.scans else []
     for one, other in pairwise(samples.scans):
@@ -96,7 +96,7 @@ def shown_headings(samples: LidarSamples) -> list[float]:
 
 def _wrong_ways(moves: _Moves) -> str:
     told, shown = _lengths(moves.told), _lengths(moves.shown)
-    # In a turn a lidar that is not in the robot's middle goes another way.
+    # In a turn, a lidar off the robot's middle moves another way than the middle.
     if not _disagrees(told, shown, _WAY_NOISE + _ARM * np.abs(moves.shown[:, 2])):
         return ""
     return f"it tells ways of {np.median(told):.3g} m where scans show {np.median(shown):.2f} m"
@@ -119,7 +119,7 @@ def _mirrored_ways(moves: _Moves) -> str:
 
 
 def _moves(samples: LidarSamples) -> _Moves:
-    """Return moves that scans which surely lie on each other show; none if hardly any do."""
+    """Return moves by surely matching scans; none if most scans do not match."""
     rows: list[tuple[Floats, Floats, Floats]] = []
     scans = samples.scans[:_MATCHES]
     first, at, fitted = 0, np.zeros(3), 0
@@ -148,7 +148,7 @@ def _lengths(moves: Floats) -> Floats:
 
 
 def _swapped(move: Floats, heading: float) -> Floats:
-    """Return a move from a pose with a heading, rad, if x and y of the odometry were swapped."""
+    """Return a move, made at a heading, rad, as if x and y of the odometry were swapped."""
     turn = np.exp(1j * heading)
     way = complex(move[0], move[1]) * turn
     swapped = complex(way.imag, way.real) / turn
@@ -156,12 +156,12 @@ def _swapped(move: Floats, heading: float) -> Floats:
 
 
 def _disagrees(told: Floats, shown: Floats, noise: Floats | float) -> bool:
-    """Whether most of enough lengths are told otherwise than they are shown."""
+    """Whether most lengths by odometry differ from those by scans, with enough of them."""
     agrees = np.abs(told - shown) < _SHARE * shown + noise
     return len(agrees) >= _LEAST and float(agrees.mean()) < _AGREES
 
 
 def _incoherence(told: Floats, shown: Floats) -> float:
-    """Return how unlike directions of moves are, 0..1, whichever way the lidar looks or hangs."""
+    """Return how much directions of moves differ, 0..1, apart from how the lidar is mounted."""
     one, other = (np.exp(1j * np.arctan2(moves[:, 1], moves[:, 0])) for moves in (told, shown))
     return 1.0 - float(max(abs((one * other.conj()).mean()), abs((one * other).mean())))

@@ -1,9 +1,10 @@
 """How a lidar measures its beams one after the other, as its scans show while the robot turns.
 
-Some drivers turn scans round and leave ``time_increment`` as it was (Slamtec/rplidar_ros, issue
-55), some tell a wrong one, many none. A scan of a turn is bent unless it is put right by the sweep
-that it was measured with; one that was taken while the robot hardly turned is straight. So scans of
-turns are laid on such ones, put right by one sweep after the other: the right one makes them fit.
+Some drivers reverse scans but not their ``time_increment`` (Slamtec/rplidar_ros, issue 55), some
+give a wrong one, many none. A scan that is taken in a turn is bent, unless it is corrected by the
+sweep that it was measured with; one that is taken while the robot hardly turns is straight. So bent
+scans are corrected by one possible sweep after the other, and matched to straight ones: the right
+sweep makes them fit.
 """
 
 from __future__ import annotations
@@ -18,26 +19,26 @@ from roomba.commands.map.drive.shown.lidar_samples import LidarSamples, Sample, 
 from roomba.recordings.drives.sweeps import Sweep
 
 _TURNING: Final = 0.03
-"""rad; so far the robot turns at least in the time of a scan that is bent."""
+"""rad; the robot turns at least so far during a scan that counts as bent."""
 _STRAIGHT: Final = 0.25
-"""Share of that by which it turns at most during the scan that the bent one is laid on."""
+"""Share of that angle by which the robot turns at most during a straight scan."""
 _NEAR_WAY, _NEAR_TURN = 1.0, 1.0
-"""m, rad; farther apart scans show other places."""
+"""m, rad; scans that are farther apart show other places."""
 _PAIRS, _LEAST_PAIRS = 80, 10
-"""Pairs of scans that are looked at, at most and at least."""
+"""The most pairs of scans that are compared, and the least that are needed."""
 _LATE: Final = (0.0, 0.1, 0.2, 0.3, 0.4)
-"""s; delays of the stamps that are tried with each sweep, as drivers stamp scans late: the delay
-with the best fit counts."""
+"""s; delays of the stamps that are tried with each sweep, since drivers stamp scans late: the delay
+that fits best counts."""
 _WINDOW, _TURN = 0.2, 0.2
 """m, rad; by which odometry may be off between two scans."""
 _CLEAR: Final = 4.0
-"""Standard errors by which another sweep than the told one must be better."""
+"""Standard errors by which another sweep must fit better than the driver's."""
 _SAME: Final = 0.3
-"""Share by which two times of a whole turn differ to be two."""
+"""Share by which two times of a whole turn must differ to count as two."""
 
 
 def shown_sweep(samples: LidarSamples) -> Sweep | None:
-    """Return the sweep that is clearly better than the told one; None if none is."""
+    """Return the sweep that fits clearly better than the driver's; None if none does."""
     pairs = _pairs(samples)
     if len(pairs) < _LEAST_PAIRS:
         return None
@@ -53,7 +54,7 @@ def shown_sweep(samples: LidarSamples) -> Sweep | None:
 
 
 def _pairs(samples: LidarSamples) -> list[tuple[Sample, Sample]]:
-    """Return straight scans, each with a bent one of about the same place, of all of the drive."""
+    """Return pairs of a straight and a bent scan of about the same place, over the whole drive."""
     scans = samples.scans
     stamps = np.array([sample.stamp for sample in scans])
     turns = np.array([abs(samples.turning(sample)) for sample in scans])
@@ -71,7 +72,7 @@ def _pairs(samples: LidarSamples) -> list[tuple[Sample, Sample]]:
 
 
 def _sweeps(samples: LidarSamples) -> list[Sweep]:
-    """Return what may be instead of what the driver tells."""
+    """Return the sweeps that may be true instead of the driver's."""
     lidar = samples.scans[0].scan.lidar
     told = lidar.time_increment * math.tau / abs(lidar.step)
     sweeps = []
