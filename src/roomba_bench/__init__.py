@@ -1,4 +1,4 @@
-"""Measured claims, each beside its peers in the same run: ``./roomba bench``.
+"""Measures claims about speed and quality, each beside peers in the same run: ``./roomba bench``.
 
-Nothing is imported here, for peers run under a Python that has not what the robot has.
+Nothing is imported here: peers run under a Python that lacks the robot's packages.
 """

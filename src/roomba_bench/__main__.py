@@ -1,4 +1,4 @@
-"""``./roomba bench``: measure ours and peers in the same run, and tell it."""
+"""``./roomba bench``: measure this project and its peers in the same run, and print the result."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from roomba_bench.topics import TOPICS, left_out, measure
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Return 1 if something of ours could not be measured; aims need not be reached."""
+    """Return 1 if a figure of ours could not be measured, else 0, even if an aim was missed."""
     parser = _parser()
     options = parser.parse_args(arguments)
     unknown = [topic for topic in options.topics if topic not in TOPICS]
@@ -62,7 +62,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _check_written(options: argparse.Namespace, picture: Path) -> None:
-    """Refuse at once what could not be written after minutes; raises UsageError and OSError."""
+    """Refuse now what could not be written minutes later; raises UsageError and OSError."""
     picture.parent.mkdir(parents=True, exist_ok=True)
     written = [
         ("--plot", picture),
@@ -73,7 +73,7 @@ def _check_written(options: argparse.Namespace, picture: Path) -> None:
 
 
 def _usual_topics() -> list[str]:
-    """Return all topics but those that cannot be measured here; it tells which and why."""
+    """Return all topics that can be measured here; print the others with the reason."""
     for topic in TOPICS:
         if left_out(topic):
             print(f"bench: {topic} is left out: {left_out(topic)}", file=sys.stderr)
@@ -141,7 +141,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _measure(topic: str, bench: Bench) -> list[Record]:
-    """Return a topic's rows; one that breaks down is a row that says so, the others still come."""
+    """Return a topic's rows; if the topic fails, one row with the error: the other topics go on."""
     try:
         return measure(topic, bench)
     except Exception as error:
@@ -151,7 +151,7 @@ def _measure(topic: str, bench: Bench) -> list[Record]:
 
 
 def _tell(records: list[Record], preface: tuple[str, ...], *, to_errors: bool) -> None:
-    # A pipe has no width of its own; narrow columns would tear every name apart.
+    # A pipe has no width; in narrow columns every name would be broken.
     width = None if (sys.stderr if to_errors else sys.stdout).isatty() else 180
     console = Console(width=width, stderr=to_errors)
     console.print(rich_table(records))

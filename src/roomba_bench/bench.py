@@ -1,4 +1,4 @@
-"""What every topic is given: the pace, the peers' files, and a voice."""
+"""What each topic gets: the pace, the peers' files, and a function that prints progress."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Bench:
     """One run of the benchmarks; ``folder`` is for files that peers read, and is empty at first.
 
     ``maps`` is a folder of map_server maps, and ``logs`` one of recorded drives, to measure on as
-    well, if the user named one. ``pictures`` is where topics write theirs, and ``peers`` the Python
+    well, if the user named them. Topics write pictures into ``pictures``. ``peers`` is the Python
     under which peers run, None if none is known.
     """
 
@@ -34,7 +34,7 @@ class Bench:
 
     @property
     def is_quick(self) -> bool:
-        """Whether a rough figure will do."""
+        """Whether rough figures are enough."""
         return self.pace == QUICK
 
     def compete(self, contestants: Sequence[Contestant]) -> list[Outcome]:
@@ -48,7 +48,7 @@ class Bench:
         return Peer(self.peers, name, module, parameters, distribution)
 
     def unavailable(self, name: str) -> Unavailable:
-        """Return a peer that there is no script for."""
+        """Return a peer for which there is no script."""
         return Unavailable(self.peers, name)
 
     def save(self, name: str, array: NDArray[np.generic]) -> str:
@@ -58,5 +58,5 @@ class Bench:
         return str(path)
 
     def say(self, what: str) -> None:
-        """Tell how far it is."""
+        """Print how far the benchmark is."""
         print(f"bench: {what}", file=sys.stderr, flush=True)

@@ -1,4 +1,4 @@
-"""Whether a peer measured the same thing as we did: a faster answer to another question is none."""
+"""Checks that a peer measured the same as we did: speed at another question counts nothing."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from roomba_bench.rounds import Outcome
 def agreed(ours: Outcome, peer: Outcome, fact: str, tolerance: float) -> Outcome:
     """Return the peer's outcome, or an error if one of its facts departs from ours.
 
-    ``tolerance`` is relative. Nothing is said where either has no figure to compare.
+    ``tolerance`` is relative. Without a figure of either, the outcome is returned unchecked.
     """
     if fact not in ours.facts or fact not in peer.facts or peer.rate is None:
         return peer

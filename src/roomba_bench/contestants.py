@@ -1,4 +1,4 @@
-"""The contestants: ours in this process, and peers as processes that speak the peers' protocol."""
+"""The contestants: ours in this process, and peers in processes of their own."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ALONE = Path(__file__).parent / "peers" / "alone.py"
 PREPARE_DEADLINE = 120.0
 """s; the slowest peer builds a graph of some ten thousand cells, or compiles."""
 RUN_DEADLINE = 60.0
-"""s beyond the time that was asked for: a single unit of work may take longer than that."""
+"""s beyond the time asked for: one unit of work may take longer than that time."""
 END_DEADLINE = 2.0
 
 
@@ -47,19 +47,19 @@ class Local:
     """A contestant in this process: ours, or a plain reference of our own."""
 
     def __init__(self, name: str, make: Callable[[], Work], version: str = "") -> None:
-        """``make`` is called when it is this one's turn to get ready."""
+        """``make`` is called when it is this contestant's turn to get ready."""
         self.name = name
         self._make = make
         self._version = version
         self._work: Work | None = None
 
     def prepare(self) -> tuple[str, dict[str, float]]:
-        """Make it and do one batch, so that all is compiled."""
+        """Make the work and do one batch, so that all is compiled."""
         try:
             self._work = self._make()
             self._work.batch()
         except Exception as error:
-            # What is being measured may be unfinished: its row says so, the other rows still come.
+            # The measured code may be unfinished: its row says so, and the other rows follow.
             raise ContestantError(f"{type(error).__name__}: {error}") from error
         return self._version, self._work.facts
 
@@ -111,7 +111,7 @@ class Program:
         return float(self._ask({"run": seconds}, seconds + RUN_DEADLINE)["rate"])
 
     def end(self) -> None:
-        """End its process, the hard way if it does not listen."""
+        """End the process, by force if it does not obey."""
         if self._process is None:
             return
         assert self._process.stdin is not None
@@ -151,7 +151,7 @@ class Program:
 
 
 class Peer(Program):
-    """A peer's script under the peers' own Python; its ``module`` is told from ``peers`` on."""
+    """A peer's script under the peers' own Python; ``module`` is its path below ``peers``."""
 
     def __init__(
         self,
@@ -163,9 +163,9 @@ class Peer(Program):
     ) -> None:
         """``python`` is None where no Python of the peers is known.
 
-        ``distribution`` is its name for pip, where that is not ``name``.
+        ``distribution`` is the peer's name for pip, if it is not ``name``.
         """
-        # One core each, as far as a peer can be told so; and there need be no screen.
+        # One core each, as far as peers obey this; and no screen is needed.
         environment = {**os.environ, "OMP_NUM_THREADS": "1"}
         environment |= {"MUJOCO_GL": "egl", "PYOPENGL_PLATFORM": "egl"}
         command = (str(python), "-I", str(_ALONE), f"roomba_bench.peers.{module}")
@@ -174,7 +174,7 @@ class Peer(Program):
         self._distribution = distribution or name
 
     def prepare(self) -> tuple[str, dict[str, float]]:
-        """Start it if it is installed."""
+        """Start the peer if it is installed."""
         if self._python is None:
             has_it = f"one that has {self._distribution}"
             raise ContestantError(f"there is no Python for it; name {has_it}: --peers PYTHON")
@@ -185,7 +185,7 @@ class Peer(Program):
 
 
 class Unavailable:
-    """A peer that is named in the table with the reason why it is not measured."""
+    """A peer that is in the table only with the reason why it is not measured."""
 
     def __init__(self, python: Path | None, name: str) -> None:
         """Take the peers' Python, and its name for pip."""
@@ -206,6 +206,6 @@ class Unavailable:
 
 
 def not_installed(python: Path, distribution: str) -> str:
-    """Return why the set-up could not install a peer, or "" if it could, or was not asked to."""
+    """Return why the set-up did not install a peer; "" if it did, or was not asked to."""
     reason = python.parents[1] / "not-installed" / distribution
     return reason.read_text(encoding="utf-8").strip() if reason.is_file() else ""

@@ -98,7 +98,7 @@ def far_corners(fits: Mask) -> tuple[Cell, Cell]:
 def free_poses(floor: Floor, count: int, room: float = 0.25, seed: int = 1) -> NDArray[np.float64]:
     """Return poses (x, y, theta) on the floor, float64 [count, 3], ``room`` m from all walls.
 
-    They lie beside cell centres, for a ray along a line of the grid has more than one answer.
+    They lie well inside cells, since a ray along a line of the grid has more than one right range.
     """
     random = np.random.default_rng(seed)
     rows, columns = np.nonzero(room_for(floor, room))

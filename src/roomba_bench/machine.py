@@ -1,4 +1,4 @@
-"""The machine that was measured on."""
+"""The machine that the figures were measured on."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from roomba.cores import usable_cores
 
 @dataclass(frozen=True)
 class Machine:
-    """What figures depend on; ``load`` is the average of the last minute before the start."""
+    """What figures depend on; ``load`` is the load average of the minute before the start."""
 
     processor: str
     cores: int

@@ -1,4 +1,4 @@
-"""The simulator as the benchmarks use it: the one place to change when its interface does."""
+"""The simulator as used by the benchmarks: the one place to adapt to changes of its interface."""
 
 from __future__ import annotations
 
@@ -22,25 +22,27 @@ from roomba_bench.peers.protocol import CHECKED_POSES, Work
 from roomba_bench.peers.simulators.arena import SPEED, TURNING_SPEED
 
 ROBOT: Final = SimulatedRobotConfig().with_lidar(EXACT_LIDAR)
-"""The shipped one but for its lidar, in every table that names no other: peers have none that turns
-while it measures and misses what is dark, and figures stay comparable when the default changes."""
+"""The shipped robot with an exact lidar, for every table that names no other. Peers have no lidar
+that turns while it measures and misses dark things; and figures stay comparable when the default
+changes."""
 DT = 0.05
 """s; the steps of all simulators here."""
 _STEPS = 20
-"""In one call: the robots are told something new every second."""
+"""Steps in one call: the robots get a new command every second."""
 _TWISTS = 61
-"""Different orders that a robot is given, over and over."""
+"""Different commands that a robot gets, again and again."""
 _TURN_SHARE = 0.35
 _CALLS_PER_CHARGE = 1000
-"""Then all is as it was at first, battery and dirt too: a robot that stands still costs little."""
+"""Calls until all is reset, battery and dirt too: a robot without charge stands, and costs
+little."""
 _CHECKED_CALLS = 40
 _LEAST_WAY = 0.05
-"""m for each checked call; less is not driving about."""
+"""m of each checked call; robots that move less do not drive about."""
 
 
 @dataclass(frozen=True)
 class Drive:
-    """A fleet at work: ``robots`` with a home each, lidar at ``scan_rate`` Hz or another one.
+    """A fleet at work: ``robots`` in homes, with a lidar of ``scan_rate`` Hz or model ``lidar``.
 
     They drive straight on for a call, or turn on the spot for one, at random; so they bump. Their
     sensors are ideal, as those of all peers are, if not told otherwise.
@@ -123,12 +125,12 @@ def home_of(floor: Floor) -> Home:
 
 
 def bytes_per_robot(home: Home) -> float:
-    """Return what one more robot with its own dirt takes, bytes."""
+    """Return the memory of one more robot with its own dirt, bytes."""
     return Fleet([home] * 2, ROBOT).bytes_per_robot
 
 
 def _way(fleet: Fleet, work: Callable[[], float]) -> float:
-    """Return how far robots come in one call, m, mean; raises ValueError if that is not far."""
+    """Return the mean distance of a call, m; raises ValueError if robots hardly move."""
     way = 0.0
     for _ in range(_CHECKED_CALLS):
         before = fleet.poses[:, :2].copy()
@@ -140,7 +142,7 @@ def _way(fleet: Fleet, work: Callable[[], float]) -> float:
 
 
 def _orders(robots: int) -> list[NDArray[np.float64]]:
-    """Return what the robots are told, one array [robots, 2] (m/s, rad/s) per call."""
+    """Return the robots' commands, one array [robots, 2] (m/s, rad/s) per call."""
     random = np.random.default_rng(0)
     turns = random.random((_TWISTS, robots)) < _TURN_SHARE
     ways = random.choice([-1.0, 1.0], (_TWISTS, robots))

@@ -12,8 +12,8 @@ from typing import Final
 class Places:
     """The program whose commands are timed, the folder of pictures, the Python of the peers.
 
-    ``peers`` is None where there is none that is known without being named. ``root`` is the folder
-    that is left out of paths in messages.
+    ``peers`` is None if the user must name one. ``root`` is the folder that messages leave out of
+    paths.
     """
 
     root: Path
@@ -23,7 +23,7 @@ class Places:
 
     @classmethod
     def of(cls, root: Path) -> Places:
-        """Return those of a checkout, if there is one at ``root``."""
+        """Return the places of a checkout at ``root``, or else of an installed library."""
         program = root / "roomba"
         if not program.is_file():
             installed = Path(sys.executable).with_name("roomba")

@@ -17,11 +17,11 @@ _BAR_HEIGHT, _PANEL_HEIGHT = 0.28, 0.95
 """Inches: of a bar, and of the rest of a panel."""
 _WIDTH = 10.0
 _ROOM_FOR_NUMBERS = 4.0
-"""The axis goes on by this factor beyond the longest bar."""
+"""Factor by which the axis is longer than the longest bar."""
 
 
 def write_plot(path: Path, records: Sequence[Record], caption: str) -> None:
-    """Draw all figures that can be compared (or all, if none can) into a PNG file."""
+    """Draw all figures that have peers into a PNG file, or all figures if none has peers."""
     drawn = [record for record in records if _bars(record)[1:]]
     drawn = drawn or [record for record in records if _bars(record)]
     heights = [_PANEL_HEIGHT + _BAR_HEIGHT * len(_bars(record)) for record in drawn] or [1.0]
@@ -37,7 +37,7 @@ def write_plot(path: Path, records: Sequence[Record], caption: str) -> None:
 
 
 def _bars(record: Record) -> list[tuple[str, float]]:
-    """Return name and length of every bar, ours first; a logarithm wants more than zero."""
+    """Return name and length of each bar, ours first; a logarithmic axis needs positive values."""
     figures = [("ours", record.value), *((peer.name, peer.value) for peer in record.peers)]
     return [(name, value) for name, value in figures if value is not None and value > 0.0]
 

@@ -1,4 +1,4 @@
-"""What was measured: a figure of ours, the aim, and the same figure of each peer."""
+"""The rows of the result: a figure of ours, its aim, and the same figure of each peer."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class PeerFigure:
     error: str = ""
 
     def __post_init__(self) -> None:
-        """Check that nothing is left out silently."""
+        """Require a value or an error."""
         if self.value is None and not self.error:
             raise ValueError(f"peer {self.name}: expected a value, or an error that says why not")
 
@@ -40,8 +40,8 @@ class PeerFigure:
 class Record:
     """One row of the result; without ``value``, ``error`` says why there is none.
 
-    ``aim`` is in the unit of the figure; None where nothing was promised. ``lacks_peer`` says that
-    ours was measured, and only the peer was not, beside which the figure is.
+    ``aim`` is in the unit of the figure; None without an aim. ``lacks_peer`` is True if the figure
+    is relative to a peer that could not be measured, while ours could.
     """
 
     topic: str
@@ -56,7 +56,7 @@ class Record:
     lacks_peer: bool = False
 
     def __post_init__(self) -> None:
-        """Check that nothing is left out silently."""
+        """Require a value or an error."""
         if self.value is None and not self.error:
             raise ValueError(f"{self.case}: expected a value, or an error that says why not")
 
@@ -79,7 +79,7 @@ class Record:
         return better / worse if worse > 0.0 else None
 
     def to_json(self) -> dict[str, Any]:
-        """Return the record as plain values; the key ``error`` is there only if a value is not."""
+        """Return the record as plain values; ``error`` is a key only where there is no value."""
         row: dict[str, Any] = {
             "topic": self.topic,
             "case": self.case,

@@ -1,6 +1,6 @@
-"""The contest: ours and peers take turns, several rounds, and of each the best round counts.
+"""The contest: contestants take turns for several rounds, and the best round of each counts.
 
-A noisy machine makes things slower and never faster, and it is noisy for all in turn.
+Noise makes a machine slower and never faster, and by turns it affects all contestants.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ QUICK = Pace(2, 0.1)
 
 @dataclass
 class Outcome:
-    """What became of a contestant: its best ``rate``, or the ``error`` that kept it out."""
+    """A contestant's result: its best ``rate``, or the ``error`` that kept it out."""
 
     name: str
     version: str = ""

@@ -1,8 +1,8 @@
 """Shortest ways among polygons, by a visibility graph: exact, slow, and independent.
 
-Nothing of the robot's search is used: straight lines that keep out of what is closed join its
-corners (Lozano-Pérez & Wesley, "An algorithm for planning collision-free paths among polyhedral
-obstacles", CACM 1979), and shapely says which do.
+It uses nothing of the robot's search: straight lines that keep out of obstacles join their corners
+(Lozano-Pérez & Wesley, "An algorithm for planning collision-free paths among polyhedral obstacles",
+CACM 1979), and shapely says which do.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from roomba.geometry import Point
 from roomba.grid import GridFrame
 
 _CHORDS = 8
-"""Per quarter of a circle. Chords lie inside the true arc: lengths are never too long, and too
-short by less than 0.2 % of what leads around corners."""
+"""Chords of a quarter circle. They lie inside the true arc, so lengths are never too long; they are
+too short by less than 0.2 % of the way around corners."""
 _TOUCH = 1e-6
-"""cells; a line may touch what it passes."""
+"""cells; the tolerance by which a line may touch an obstacle."""
 
 _ROUNDING = 1e-12
 
@@ -34,7 +34,7 @@ class ShortestWays:
     """
 
     def __init__(self, solid: Mask, frame: GridFrame, radius: float) -> None:
-        """Build what the disc's middle keeps out of, in cells: there corners are exact."""
+        """Build the obstacles for the disc's middle, in cells, where corners are exact."""
         self._frame = frame
         closed = _area(solid).buffer(radius / frame.resolution, quad_segs=_CHORDS)
         self._closed = closed.buffer(-_TOUCH)
@@ -66,7 +66,8 @@ class ShortestWays:
             leg = points - points[here]
             far = np.hypot(leg[:, 0], leg[:, 1])
             useful = ~done & (best[here] + far < best) & (best[here] + far + left < best[last])
-            # A shortest way only ever passes a corner with all of the wall on one side.
+            # A shortest way passes a corner only so that the whole wall lies on one side of the
+            # way.
             useful &= _passes(leg, sides) & _passes(leg, sides[here][None])
             nearer = np.flatnonzero(useful)
             for there in nearer[self._sees(points[here], points[nearer])].tolist():
@@ -81,10 +82,10 @@ class ShortestWays:
 
 
 def _convex_corners(closed: shapely.Geometry) -> tuple[Floats, Floats]:
-    """Return where a way can bend, float64 [n, 2], and both sides of each corner, [n, 2, 2]."""
+    """Return corners at which a way can bend, float64 [n, 2], and both sides of each, [n, 2, 2]."""
     corners, sides = [], []
     for polygon in shapely.get_parts(closed):
-        turned = orient(polygon)  # what is closed lies to the left of all rings
+        turned = orient(polygon)  # obstacles lie to the left of all rings
         for ring in (turned.exterior, *turned.interiors):
             points = shapely.get_coordinates(ring)[:-1]
             before, after = (
@@ -98,7 +99,7 @@ def _convex_corners(closed: shapely.Geometry) -> tuple[Floats, Floats]:
 
 
 def _passes(leg: Floats, sides: Floats) -> Mask:
-    """Whether straight lines, [n, 2], leave both sides of a corner, [n or 1, 2, 2], on one side."""
+    """Whether lines, [n, 2], have both sides of a corner, [n or 1, 2, 2], on the same side."""
     passes: Mask = _cross(leg, sides[:, 0]) * _cross(leg, sides[:, 1]) >= -_ROUNDING
     return passes
 
@@ -108,6 +109,6 @@ def _cross(first: Floats, second: Floats) -> Floats:
 
 
 def _area(cells: Mask) -> shapely.Geometry:
-    """Return what true cells cover."""
+    """Return the polygon of the true cells."""
     rows, columns = np.nonzero(cells)
     return shapely.union_all(shapely.box(columns, rows, columns + 1.0, rows + 1.0)).simplify(0.0)

@@ -1,6 +1,6 @@
 """Makes one robot and does its first step: ``python -m roomba_bench.start`` is what a start costs.
 
-It loads nothing but the simulator.
+The module loads only the simulator.
 """
 
 from __future__ import annotations

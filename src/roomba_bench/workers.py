@@ -1,4 +1,4 @@
-"""Processes that measure beside each other, one a core."""
+"""Processes that measure at the same time, one a core."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Workers(ProcessPoolExecutor):
     def __init__(self) -> None:
         """Start nothing yet."""
         self._others = set(multiprocessing.active_children())
-        # A fork would take over the locks of threads that are not there any more.
+        # A fork would inherit locks of threads that it does not have.
         super().__init__(usable_cores(), mp_context=get_context("spawn"))
 
     def submit(
@@ -42,7 +42,7 @@ class Workers(ProcessPoolExecutor):
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> bool | None:
-        """Wait for what was ordered, unless the work with it broke down: then end it."""
+        """Wait for all submitted work; after an error in the block, end the processes."""
         if error is not None:
             for process in set(multiprocessing.active_children()) - self._others:
                 process.kill()

@@ -1,4 +1,4 @@
-"""What was promised for each map: all driven, closed loop, by true poses."""
+"""The aims for each map; all cleans are driven closed loop, and judged by true poses."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ COVERAGE: Final = 99.5
 """%, with ideal sensors."""
 NOISY_COVERAGE: Final = 99.0
 MORE_BY_NOISE: Final = 0.08
-"""How much longer the way may get by noise, by the least way."""
+"""The most by which noise may lengthen the way, as a factor of the least way."""
 CLEAN: Final = 1.0
 """s of one core for the whole clean of the apartment."""
 CHANGED_COVERAGE: Final = 98.0
-"""%, of what can truly be reached in a home that is not as its map shows it."""
+"""%, of the floor that can truly be reached in a home that differs from its map."""
 
 
 @dataclass(frozen=True)
 class Aims:
-    """For one map; None where nothing was promised: ratio, rad, and ms of planning."""
+    """The aims for one map, None without an aim: ratio, rad, and ms of planning."""
 
     ratio: float | None = None
     turning: float | None = None

@@ -1,4 +1,4 @@
-"""Random bounce, the oldest way of robot vacuums: straight on until it bumps, then another way."""
+"""Random bounce, as in the first robot vacuums: straight on until it bumps, then a random turn."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _TURNING: Final = 2.0
 """rad/s."""
 _BACK: Final = Twist(-0.1, 0.0)
 _BACKING: Final = 0.3
-"""s; so that the body comes free of what it touches."""
+"""s; long enough for the body to lose contact."""
 
 
 def bounce(robot: PeerRobot, seconds: float, seed: int) -> None:

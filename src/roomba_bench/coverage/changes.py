@@ -1,4 +1,4 @@
-"""Homes that are not as their map shows them: furniture moved, things put down, doors shut."""
+"""Homes that differ from their maps: furniture moved, things put down, doors shut."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ _FROM_STATION: Final = 1.2
 _PUSHED: Final = (0.15, 1.2)
 """m; how far furniture is pushed."""
 _CHAIR: Final = 0.4
-"""m; between the legs of a chair that is put down, each of a radius of _LEG."""
+"""m between the legs of a chair that is put down; each leg has a radius of _LEG."""
 _LEG: Final = 0.02
 _ROUND: Final = (0.06, 0.20)
 """m; radii of round things."""
 _APART: Final = 0.02
-"""m; at least, between things."""
+"""m; the least gap between things."""
 _BLOCK: Final = 0.12
 """m; radius of the things in a row across a doorway."""
 _BLOCKS_APART: Final = 0.30
@@ -55,7 +55,7 @@ _ATTEMPTS: Final = 300
 
 
 class Change(Enum):
-    """What is other than the map shows."""
+    """How a home differs from its map."""
 
     FURNITURE = "moved furniture"
     """Two or three pieces stand elsewhere, and four to six chairs and round things stand about."""
@@ -73,7 +73,7 @@ class Changed:
 
 
 def changed(home: Home, change: Change, seed: int) -> Changed:
-    """Return the home with a change that the seed decides."""
+    """Return the home with a change that depends on the seed."""
     random = np.random.default_rng([seed, list(Change).index(change)])
     if change is Change.DOORS:
         return _with_doors_shut(home, random)
@@ -95,7 +95,7 @@ def _with_furniture_moved(home: Home, random: np.random.Generator) -> tuple[Home
 
 
 def _pushed(home: Home, piece: Furniture, random: np.random.Generator) -> Home | None:
-    """Return the home with a piece somewhere near, or None if it fits nowhere."""
+    """Return the home with a piece of furniture moved a bit, or None if it fits nowhere."""
     height = BodyConfig().height
     others = [other for other in home.furniture if other is not piece]
     own = _grown(standing_cells(home.frame, [piece], height))
@@ -165,7 +165,7 @@ def _chair(home: Home, random: np.random.Generator) -> list[Disc]:
 
 
 def _has_room(home: Home, thing: Disc, others: Sequence[Disc]) -> bool:
-    """Whether a thing stands on free floor, and not next to the station."""
+    """Whether a thing would stand on free floor and away from the station."""
     x, y, radius = thing
     if not home.frame.contains(x, y):
         return False
@@ -201,7 +201,7 @@ def with_shut(home: Home, doors: Sequence[Door]) -> Home:
 
 
 def row_across(door: Door) -> list[Disc]:
-    """Return round things in a row across a doorway, too near to each other to pass between."""
+    """Return round things in a row across a doorway, too close together to pass between."""
     opening = door.opening
     x, y = 0.5 * (opening.x_min + opening.x_max), 0.5 * (opening.y_min + opening.y_max)
     across_x = opening.x_max - opening.x_min > opening.y_max - opening.y_min
@@ -228,7 +228,7 @@ def _is_inside(frame: GridFrame, piece: Furniture) -> bool:
 
 
 def _grown(mask: Mask) -> Mask:
-    """Return a mask with the eight neighbours of its cells: maps show furniture a bit blurred."""
+    """Return a mask grown by one cell to all sides, since maps blur furniture a bit."""
     padded = np.pad(mask, 1)
     rows, columns = mask.shape
     grown = np.zeros_like(mask)

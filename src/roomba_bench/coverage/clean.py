@@ -1,4 +1,4 @@
-"""One clean by our robot, closed loop and headless, counted by the evaluator of the benchmark."""
+"""One clean by our robot, closed loop and headless, judged by the benchmark's own evaluator."""
 
 from __future__ import annotations
 
@@ -37,16 +37,16 @@ from roomba_bench.ours_sim import ROBOT
 Sensors = Literal["ideal", "noisy"]
 
 _LOOKED_AT: Final = 20
-"""Ticks, a second; where something changed it is looked so often at what the robot believes."""
+"""Ticks, a second: in changed homes the robot's belief is checked at least so often."""
 LEAST_PATCH: Final = 0.004
-"""m2; what is smaller is not listed."""
+"""m2; smaller missed patches are not listed."""
 
 
 @dataclass(frozen=True)
 class Task:
     """A clean to make: ``folder`` is of map_server maps, or "" for a shipped home.
 
-    ``change`` is what is other than the map shows, by the seed.
+    ``change`` is the kind of difference from the map, made by the seed.
     """
 
     home: str
@@ -58,14 +58,14 @@ class Task:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Clean:
-    """What came of a clean: m, m2, rad, s; shares 0..1.
+    """The result of a clean: m, m2, rad, s; shares 0..1.
 
-    ``exact`` is the share by cells' middles.
-    ``setup``, ``wall`` and ``cpu`` are s of this machine; ``planning`` is what the robot's own
-    ``plans`` took of the wall time. ``told`` is missed floor in the robot's words with the reason,
-    ``missed`` what truly was. ``wrong`` is how long it took a pose for known that was far off.
-    ``what`` was other than on the map. ``poses`` has rows t, x, y, theta, true ones, from the start
-    on, or none if they were not to be kept.
+    ``exact`` is the share by the middles of cells. ``setup``, ``wall`` and ``cpu`` are s of this
+    machine; ``planning`` is the wall time of the robot's ``plans``. ``told`` is the missed floor
+    that the robot reports, with reasons, ``missed`` the truly missed floor. ``wrong`` is how long
+    the robot took a wrong pose for known. ``what`` says how the home differed from its map.
+    ``poses`` has rows t, x, y, theta, true ones, from the start on; it is empty if they were not to
+    be kept.
     """
 
     task: Task
@@ -92,17 +92,17 @@ class Clean:
 
     @property
     def ratio(self) -> float:
-        """Way, by the least way that could sweep the floor."""
+        """Way driven by the least way that could sweep the floor."""
         return self.path / (self.area / TOOL)
 
     @property
     def told_area(self) -> float:
-        """m2 that the robot says it missed."""
+        """Missed floor that the robot reports, m2."""
         return sum(patch.area for _, patch in self.told)
 
     @property
     def missed_area(self) -> float:
-        """m2 that it truly missed."""
+        """Truly missed floor, m2."""
         return (1.0 - self.share) * self.area
 
     @property
@@ -111,11 +111,11 @@ class Clean:
         return self.is_docked and self.outcome is CleanOutcome.COMPLETED
 
     def is_short(self, least: float) -> bool:
-        """Whether less than that share was swept, or it did not come home."""
+        """Whether the robot swept less than a share, or did not come home."""
         return self.share < least or not self.is_home_and_done
 
     def is_silent(self, least: float) -> bool:
-        """Whether it fell short and did not say so: it speaks of success, and of less missed."""
+        """Whether the robot hid that it fell short, by claimed success or too little missed."""
         if not self.is_docked:
             return self.outcome is CleanOutcome.COMPLETED
         hidden = self.missed_area - self.told_area
@@ -123,7 +123,7 @@ class Clean:
 
 
 class _Observed(HeadlessMission):
-    """A robot whose belief is compared with the truth now and then while it cleans."""
+    """A robot whose believed pose is compared with the true one now and then."""
 
     wrong = 0.0
 

@@ -1,4 +1,4 @@
-"""What floor could be swept and what was, counted on 1 cm cells and without the library's counting.
+"""The floor that could be swept and that was, on 1 cm cells, by counting of its own.
 
 The robot's middle may be on the middles of cells that are REACH or more from the middles of all
 solid cells; half the tool's width from there on is floor that can be swept. The library counts by
@@ -6,12 +6,12 @@ squares, not by their middles: it keeps 0.165 m from the square of a solid cell,
 clearance. Along a wall that is the same, and at a corner this evaluator asks for 2 mm more. Poses
 are true ones, joined by straight lines.
 
-:func:`drawn` sweeps from the cells that the lines go through, half of one off at most. So the
-recorded figures of other planners were made, and by it aims are judged. :func:`first_swept` is
-exact: a cell is swept when its middle comes within half the tool's width of a line. Ways keep to
-multiples of a cell from walls and from each other, so that middles of cells lie just at the rim of
-what is swept: a fraction of a millimetre decides there about a whole row of cells, and what it says
-is missed is more than there is.
+:func:`drawn` sweeps from the cells that the lines go through, so it is off by half a cell at most.
+The recorded figures of other planners were made by it, and aims are judged by it.
+:func:`first_swept` is exact: a cell is swept when its middle comes within half the tool's width of
+a line. Ways keep to multiples of a cell from walls and from each other, so that the middles of
+cells lie just at the rim of the swept floor. There a fraction of a millimetre decides about a whole
+row of cells, so it reports more missed floor than there is.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ TOOL: Final = 0.20
 CELL: Final = 0.01
 """m; about how large cells are."""
 SPARE: Final = 0.03
-"""m; more room that a way needs on the side of what the map does not show: no robot squeezes
-through where it can only guess."""
+"""m of extra room that a way needs beside things that the map does not show: no robot squeezes
+through gaps that it can only guess."""
 _BESIDE: Final = 1.5
-"""Times SPARE: so near to a way is floor right beside it, corners included."""
+"""Times SPARE: floor so near to a way lies right beside it, corners included."""
 _TOUCH: Final = 1e-3
-"""cells; distances of cells come as float32."""
+"""cells; tolerance of distances, which are float32."""
 
 Disc = tuple[float, float, float]
 """x, y and radius of a round thing, m."""
@@ -57,18 +57,18 @@ class Reachable:
 
     @property
     def area(self) -> float:
-        """Of the floor, m2."""
+        """The floor's area, m2."""
         return float(np.count_nonzero(self.floor)) * self.frame.resolution**2
 
     @property
     def least_way(self) -> float:
-        """m; of a tool that would sweep each spot just once."""
+        """The least way, m: that of a tool that sweeps each spot just once."""
         return self.area / TOOL
 
 
 @dataclass(frozen=True)
 class Patch:
-    """Floor that hangs together: its area, m2, and the middle of its bounds, m."""
+    """A connected piece of floor: its area, m2, and the middle of its bounds, m."""
 
     area: float
     x: float
@@ -84,10 +84,9 @@ def reachable(
 ) -> Reachable:
     """Return what can be reached from the place nearest to ``start``, m, where the robot fits.
 
-    ``solid`` is bool over ``frame``; all outside is solid. Round ``things`` and those of the solid
-    cells that are ``unknown``, for the map does not show them, leave a way only where there is
-    SPARE more room; the floor right beside them counts all the same. Raises ValueError if the robot
-    fits nowhere.
+    ``solid`` is bool over ``frame``; all outside is solid. ``unknown`` are solid cells that the map
+    does not show. Round ``things`` and unknown cells block a way unless there is SPARE more room;
+    the floor right beside them counts all the same. Raises ValueError if the robot fits nowhere.
     """
     parts = max(1, round(frame.resolution / CELL))
     fine = GridFrame(
@@ -116,7 +115,7 @@ def reachable(
 
 
 def middles_of(frame: GridFrame) -> tuple[Floats, Floats]:
-    """Return x of the middles of columns and y of those of rows, m."""
+    """Return x of the columns' middles and y of the rows' middles, m."""
     x = frame.origin_x + (np.arange(frame.columns) + 0.5) * frame.resolution
     y = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution
     return x, y
@@ -203,26 +202,26 @@ def turning_at_corners(points: Floats) -> float:
 
 
 def _away_from(mask: Mask) -> NDArray[np.float32]:
-    """Return for each cell how far the nearest cell of a mask is, cells, middle to middle."""
+    """Return each cell's distance from the nearest cell of a mask, cells, middle to middle."""
     free = (~mask).astype(np.uint8)
     away: NDArray[np.float32] = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
     return away
 
 
 def _enlarged(mask: Mask, parts: int) -> Mask:
-    """Return a mask over cells that are so many times finer."""
+    """Return a mask with each cell divided into ``parts`` by ``parts`` finer cells."""
     return np.repeat(np.repeat(mask, parts, axis=0), parts, axis=1)
 
 
 def _keeps(mask: Mask, distance: float, frame: GridFrame) -> Mask:
-    """Return the cells that are as far away from the mask's, m, middle to middle."""
+    """Return the cells at least a distance, m, from those of a mask, middle to middle."""
     return np.asarray(_away_from(mask) >= distance / frame.resolution - _TOUCH)
 
 
 def _keeps_from_things(things: Sequence[Disc], distance: float, frame: GridFrame) -> Mask:
-    """Return the cells that are so far away from round things, m.
+    """Return the cells at least a distance, m, from round things.
 
-    A thing has a rim, and no cells with middles: hence half a cell less.
+    Solid cells are measured from their middles, but things from their rims: hence half a cell less.
     """
     keeps = np.ones(frame.shape, np.bool_)
     x, y = middles_of(frame)
@@ -234,7 +233,7 @@ def _keeps_from_things(things: Sequence[Disc], distance: float, frame: GridFrame
 
 @njit(cache=True)
 def _sweep(first: NDArray[np.int32], columns: Floats, rows: Floats, radius: float) -> None:
-    """Write into cells never swept before the number of the point at the end of a line."""
+    """Write the number of a line's end point into cells of the line that have none yet."""
     height, width = first.shape
     for point in range(len(columns)):
         x, y = columns[point], rows[point]

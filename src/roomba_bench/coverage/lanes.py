@@ -19,16 +19,16 @@ Cell = tuple[int, int]
 Lane = tuple[Cell, Cell]
 
 _RADIUS: Final = 0.165
-"""m; what our robot keeps from squares of solid cells, too."""
+"""m; the distance that our robot keeps from squares of solid cells, too."""
 
 
 class Order(Enum):
-    """In which order lanes are driven."""
+    """The order in which lanes are driven."""
 
     IN_ORDER = "in order"
     """Line by line over the whole map, to and fro, through walls too."""
     NEAREST = "nearest lane next"
-    """Always on to the lane whose one end is the nearest, as the robot drives."""
+    """Always the lane next whose nearer end is the nearest by the robot's way."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,9 +61,9 @@ def boustrophedon(
 
 
 def lanes_on(fits: Mask, frame: GridFrame) -> Lanes:
-    """Return lanes along the rows, a tool's width apart at most; the first and last row have some.
+    """Return lanes along the rows, at most a tool's width apart, first and last row included.
 
-    Cells of ``fits``, bool [rows, columns], hang together.
+    The cells of ``fits``, bool [rows, columns], are connected.
     """
     used = np.flatnonzero(fits.any(axis=1))
     apart = max(1, int(TOOL / frame.resolution + 1e-6))
@@ -96,7 +96,7 @@ def way_over(lanes: Lanes, here: Cell, order: Order) -> list[Cell]:
 
 
 def _to_and_fro(lanes: Lanes) -> list[Lane]:
-    """Return all lanes line by line, each line the other way than the last one."""
+    """Return all lanes line by line; each line runs opposite to the line before."""
     ordered: list[Lane] = []
     for number, line in enumerate(lanes.lines):
         ordered += line if number % 2 == 0 else [lane[::-1] for lane in reversed(line)]
@@ -104,7 +104,7 @@ def _to_and_fro(lanes: Lanes) -> list[Lane]:
 
 
 def _nearest_lane(search: GridSearch, fits: Mask, here: Cell, left: list[Lane]) -> Lane:
-    """Return the nearest lane, from its nearer end on; a bee line is never longer than a way."""
+    """Return the nearest lane, from its nearer end; the search stops by straight distances."""
     best, least = left[0], np.inf
     both = [way for lane in left for way in (lane, lane[::-1])]
     for lane in sorted(both, key=lambda ends: _away(here, ends[0])):

@@ -21,19 +21,19 @@ TICK: Final = 0.05
 _STEPS: Final = 2
 """Steps of a tick, as our robot has."""
 _CHARGED_EACH: Final = 600.0
-"""s."""
+"""s between two times at which the battery is filled."""
 _AIMED: Final = 0.02
-"""rad; nearer to its direction than this it drives on."""
+"""rad; the robot drives on when its direction is off by less."""
 _TURNING: Final = 2.5
 _GAIN: Final = 6.0
 _ASTRAY: Final = 0.5
-"""rad; farther off its direction than this it stops to turn."""
+"""rad; the robot stops to turn when its direction is off by more."""
 _ARRIVED: Final = 0.004
 """m."""
 _BRAKING: Final = 0.8
 """m/s2."""
 _PATIENCE: Final = 4.0
-"""s without coming nearer; then it goes on to the next point."""
+"""s without coming nearer after which the robot goes on to the next point."""
 
 _TOUCHES: Final = (
     "bumper_left",
@@ -46,7 +46,7 @@ _TOUCHES: Final = (
 
 
 class PeerRobot:
-    """Drives as it is told, tick by tick, and writes down where it truly was."""
+    """A robot that drives as told, tick by tick, and records its true pose."""
 
     def __init__(self, home: Home, start: Pose, seed: int = 0) -> None:
         """Put it at a place where it fits, off the station."""
@@ -73,7 +73,7 @@ class PeerRobot:
 
     @property
     def hits(self) -> int:
-        """So often it bumped."""
+        """How often the robot bumped."""
         return int(self._simulator.numbers["hits"])
 
     @property
@@ -95,7 +95,7 @@ class PeerRobot:
             self.tick(twist)
 
     def follow(self, points: Floats) -> int:
-        """Turn to each point and drive straight to it; return how many could not be got to."""
+        """Turn to each point and drive straight to it; return how many points were not reached."""
         return sum(not self._go_to(float(x), float(y)) for x, y in points[:, :2])
 
     def _go_to(self, x: float, y: float) -> bool:
@@ -116,7 +116,7 @@ class PeerRobot:
                 continue
             ahead = left * math.cos(bearing)
             speed = max(0.03, min(self.speed, math.sqrt(2.0 * _BRAKING * max(ahead, 0.0))))
-            # In the last tick it goes no farther than to the point.
+            # In the last tick the robot goes no farther than the point.
             speed = min(speed, max(ahead, 0.0) / TICK + 0.01)
             steering = wrap_angle(bearing) if left > 0.05 else 0.0
             self.tick(Twist(speed, max(-1.0, min(1.0, _GAIN * steering))))

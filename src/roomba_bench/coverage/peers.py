@@ -1,4 +1,4 @@
-"""Other ways over the same floor: what our planner plans, and peers that drive it."""
+"""Other ways over the same floor: our plan as planned, and peers that drive theirs."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Planned:
 
 @dataclass(frozen=True, eq=False)
 class Driven:
-    """What a peer achieved: %, way by least way, rad, min; ``poses`` has rows t, x, y, theta."""
+    """A peer's result: %, way by least way, rad, min; ``poses`` has rows t, x, y, theta."""
 
     name: str
     coverage: float
@@ -69,13 +69,13 @@ def context_of(home: Home) -> PlanningContext:
 
 
 def planned(home: Home, context: PlanningContext, floor: Reachable, rounds: int) -> Planned:
-    """Plan the whole floor as a clean does at its start; of the CPU time the best round counts."""
+    """Plan the whole floor as at a clean's start; the best CPU time of several rounds counts."""
     start = (context.staging.x, context.staging.y)
     width, todo = context.coverage.floor.tool_width, context.coverable()
     sharp = ROBOT.tracking.sharp_corner
 
     def plan() -> CoveragePlan:
-        # A planner keeps what it knows of the ground, so each time a new one.
+        # A planner caches what it knows of the floor, so each round gets a new one.
         planner = CoveragePlanner(context.known, context.reach, width, sharp, CONFIG)
         return planner.plan(start, start, todo)
 
@@ -115,7 +115,7 @@ def drive_bounce(home: Home, start: Pose, floor: Reachable, seconds: float, seed
 
 
 def shares_at(floor: Reachable, poses: Floats, minutes: tuple[int, ...]) -> list[float]:
-    """Return the share that is swept after so many minutes, or at the end if that is before."""
+    """Return the swept share after so many minutes each, or at the end if that is earlier."""
     shares = share_over_time(floor, poses[:, 1:3])
     at = np.searchsorted(poses[:, 0] - poses[0, 0], 60.0 * np.array(minutes), "right") - 1
     return [float(share) for share in shares[at]]

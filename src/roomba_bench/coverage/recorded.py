@@ -1,8 +1,8 @@
 """Coverage planners that come from no package index: what they planned, as recorded once.
 
-Evaluated by the same evaluator on the same maps, for a body that keeps 0.17 m and a tool of 0.20 m.
-All are planned ways, taken as driven without any error; none was driven. How long they planned
-depends on the machine, so that is in the README alone.
+The same evaluator judged them on the same maps, for a body that keeps 0.17 m and a tool of 0.20 m.
+None was driven: each plan counts as driven without error. Planning times depend on the machine, so
+they are in the README alone.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Final
 
 @dataclass(frozen=True)
 class Recorded:
-    """A planner's way over one map: %, path length by (area by width), and rad if it was noted."""
+    """A planner's way over one map: %, path length by (area by width), and rad if recorded."""
 
     name: str
     coverage: float
@@ -81,10 +81,10 @@ _PLANNERS: Final = (
 )
 
 FAILED: Final = MappingProxyType({"lab_ipa": ("energy functional (ipa, C++)",)})
-"""Planners that gave no way over a map."""
+"""Planners that found no way over a map, and why."""
 NOTE: Final = "as recorded, planned only"
 
 
 def recorded(home: str) -> list[Recorded]:
-    """Return what is recorded for a map; nothing for most."""
+    """Return the recorded plans for a map; empty for most."""
     return [planner[home] for planner in _PLANNERS if home in planner]

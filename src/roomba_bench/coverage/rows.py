@@ -1,4 +1,4 @@
-"""What becomes of cleans in the table."""
+"""The table's rows about cleans."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from roomba_bench.record import Better, PeerFigure, Record
 TOPIC = "coverage"
 _RATIO = "way by (area by 0.20 m)"
 _OF_ALL = ("coverage", "exact", "hits")
-"""Figures of peers that say something of those, too, that drive at random."""
+"""Figures that make sense for peers that drive at random, too."""
 _HIGHER, _LOWER = Better.HIGHER, Better.LOWER
 
 
 @dataclass(frozen=True)
 class Case:
-    """What is measured: its title in the table, its name, and what was promised."""
+    """A case: its title in the table, its home, and its aims."""
 
     title: str
     home: str
@@ -57,7 +57,7 @@ def ideal_rows(
     def row(
         figure: str, value: float, unit: str, better: Better, aim: float | None, of: str, told: str
     ) -> Record:
-        # Where it bounces about is no way over the floor that could be short or straight.
+        # A random way cannot be judged by its length or its turns.
         apt = [one for one in driven if of in _OF_ALL or not one.is_random]
         peers = tuple(PeerFigure(one.name, "", float(getattr(one, of))) for one in apt)
         peers += tuple(left_out)

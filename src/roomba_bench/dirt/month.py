@@ -24,7 +24,7 @@ from roomba.world.layers.layer import load_home
 from roomba_bench.ours_sim import ROBOT
 
 Plan = Callable[[int, "Household"], tuple[str, ...]]
-"""Which rooms are cleaned on a day, from 0, of a household; all of them is all floor."""
+"""Returns the rooms to clean on a day, counted from 0; all rooms mean all floor."""
 
 _BEGIN: Final = dt.datetime(2026, 1, 1, 9, 0, tzinfo=dt.timezone.utc)
 _HOURS: Final = 24.0
@@ -32,7 +32,7 @@ _HOURS: Final = 24.0
 
 @dataclass(frozen=True)
 class Day:
-    """What a day came to: way, m, s of cleaning, how often rooms were cleaned.
+    """The result of a day: way, m, time of cleaning, s, and the rooms that were cleaned.
 
     ``before`` and ``after`` are g/m2 of dirt in each room, before and after the day's clean.
     """
@@ -63,7 +63,7 @@ class Life:
     def dirtiest(self, first: int) -> float:
         """Return the dirt of the dirtiest room before a day's clean, g/m2.
 
-        That is the mean over the days from a ``first`` one on.
+        It is averaged over the days from the ``first`` on.
         """
         counted = self.days[first:]
         return sum(max(day.before.values()) for day in counted) / len(counted)
@@ -81,7 +81,7 @@ class Life:
 
 
 class Household:
-    """A robot that lives in a shipped home; a day passes at a time."""
+    """A robot that lives in a shipped home, simulated day by day."""
 
     def __init__(self, home: str, seed: int) -> None:
         """Put the robot on its station, and the home's dirt down."""
@@ -116,7 +116,7 @@ class Household:
         return {name: float(density[self._floors[name]].mean()) for name in self.names}
 
     def pass_day(self, number: int, plan: Plan) -> Day:
-        """Let a day pass: what is to be cleaned is, and then dirt falls until the next one."""
+        """Simulate a day: clean what the plan says, and then let dirt fall until the next day."""
         before, rooms = self.dirt(), plan(number, self)
         way = seconds = 0.0
         if rooms:
@@ -148,7 +148,7 @@ class Household:
 
 
 def moment_of(number: int) -> dt.datetime:
-    """Return when the plan's time of a day is."""
+    """Return the time of a day's plan."""
     return _BEGIN + dt.timedelta(days=number)
 
 

@@ -1,1 +1,1 @@
-"""What exact scans are compared with."""
+"""References for exact scans."""

@@ -1,7 +1,7 @@
 """The least that a scan by edge projection has to compute: the floor that no code gets under.
 
-Along one edge 1/r is A·cos(θ) + B·sin(θ). Here each beam is turned with the robot, evaluated once,
-on an edge that is known beforehand, and inverted; nothing is looked for and nothing is decided.
+Along one edge 1/r is A·cos(θ) + B·sin(θ). Here each beam is turned with the robot, evaluated once
+on an edge that is known beforehand, and inverted. There is no search and no branch.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from roomba.arrays import Floats32
 from roomba_bench.peers.protocol import Work
 
 _PIECES = 16
-"""Edges that a robot sees at once, about, in a furnished room."""
+"""Edges that a robot sees at once in a furnished room, about."""
 
 
 def arithmetic(poses: NDArray[np.float64], beams: int) -> Work:

@@ -1,7 +1,7 @@
 """The plain way to simulate a lidar, compiled: each beam goes from cell to cell until one is solid.
 
-Amanatides & Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics 1987. The
-reference that says what exact edge projection gains, and whether it is exact.
+Amanatides & Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics 1987. It is the
+reference for the speed and for the exactness of edge projection.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class RayMarching:
     def __init__(self, floor: Floor, beams: int, reach: float, radius: float) -> None:
         """Lengths in m."""
         self._frame = floor.frame
-        # With a wall all around no beam leaves the grid, so that no cell need be checked for that.
+        # With a wall around the grid no beam leaves it, so that no cell is checked for that.
         self._solid = np.pad(floor.solid, _PAD, constant_values=True)
         self._reach = reach
         self._beams = beams

@@ -1,7 +1,4 @@
-"""Driving about a home for a while, and what each way of knowing the place says meanwhile.
-
-The robot steers by its lidar and its wheels' odometry: it never reads the truth.
-"""
+"""Drives about a home for a while, and compares the ways to know the pose with the truth."""
 
 from __future__ import annotations
 
@@ -25,25 +22,25 @@ from roomba_bench.localization.robot import (
 )
 
 STATES = tuple(Knowledge)
-"""What the numbers of ``Drive.states`` mean."""
+"""The states by number, for ``Drive.states``."""
 THINGS = 8
-"""Round things that stand about in a home that has changed."""
+"""Round things that stand about in a changed home."""
 _SPEED = 0.45
 _BACK = Twist(-0.15, 0.0)
 _BACKING = 0.6
 _TURNING = 2.0
 """m/s, s, rad/s."""
 _MARGIN = 0.35
-"""m; from its middle to what is ahead, where it chooses anew."""
+"""m from the robot's middle to a thing ahead, at which it chooses a new direction."""
 _FARTHEST = 4.0
 """m; more room than this makes a direction no better."""
 _NEAREST = 0.2
 _DIRECTIONS = 36
 _HALF_WIDTH = 12
-"""Beams to either side that must be clear for a direction to be."""
+"""Beams to each side that must be clear around a direction."""
 _AIMED = 0.1
 _PATIENCE = 60.0
-"""s; a turn that takes so long is not possible here."""
+"""s; a turn that takes longer is given up as impossible."""
 
 Errors = NDArray[np.float32]
 """[n, 2]: m and rad, none negative."""
@@ -68,9 +65,10 @@ class Task:
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """How far off each source was at each tick, [ticks, 2].
+    """The errors of each source at each tick, [ticks, 2].
 
-    ``states`` are numbers into :data:`STATES`, int8 [ticks]; ``distance`` is what was driven, m.
+    ``states`` are numbers into :data:`STATES`, int8 [ticks]; ``distance`` is the distance driven,
+    m.
     """
 
     task: Task
@@ -88,7 +86,7 @@ class _Mode(Enum):
 
 
 class Wander:
-    """Turn to a random direction with room, go there, back off from what is touched; again."""
+    """Drives at random: turn to a direction with room, go there, back off from contacts; repeat."""
 
     def __init__(self, random: np.random.Generator) -> None:
         """Begin by backing out of the station."""
@@ -113,7 +111,7 @@ class Wander:
         return Twist(_SPEED, 2.0 * left)
 
     def _choose(self, heading: float, ranges: NDArray[np.float32]) -> None:
-        """Choose a direction, the likelier the more room it has, and how far to go there."""
+        """Choose a direction, more likely one with more room, and the distance to go."""
         seen = np.clip(np.where(np.isfinite(ranges), ranges, _FARTHEST), _NEAREST, _FARTHEST)
         middles = np.arange(_DIRECTIONS) * len(ranges) // _DIRECTIONS
         beams = middles[:, None] + np.arange(-_HALF_WIDTH, _HALF_WIDTH + 1)

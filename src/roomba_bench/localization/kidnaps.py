@@ -1,4 +1,4 @@
-"""Carrying the robot away: how long until it knows where it is again, and whether it errs."""
+"""Carries the robot away: how long until it knows its pose again, and whether it errs."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from roomba_bench.localization.robot import (
 )
 
 TIME = 30.0
-"""s; a try that takes longer has failed."""
+"""s; a longer try counts as failed."""
 THINGS = 12
-"""Round things that stand about where the floor is said to be changed."""
+"""Round things that stand about on a changed floor."""
 _RIGHT, _RIGHT_TURN = 0.10, 0.1
-"""m, rad; so near it must know its pose."""
+"""m, rad; the largest error of a pose that counts as right."""
 _HELD = 20
 """Ticks in the air."""
 _AFTER = 2.0
-"""s; so long it is still watched when it has found itself."""
+"""s for which the robot is still watched after it has found itself."""
 _SETTLING = 6
 """Ticks between two tries."""
 
@@ -42,9 +42,9 @@ class Manner(Enum):
     LIFTED = "lifted and put elsewhere"
     """Its wheels drop, so it knows that it was carried."""
     SILENT = "carried away unnoticed"
-    """No sensor tells; what it sees does not fit any more."""
+    """No sensor notices; only the scans no longer fit."""
     AMONG_THINGS = f"lifted and put among {THINGS} unknown things"
-    """As the first, and round things of 0.1 to 0.3 m stand about that the map does not know."""
+    """As the first, among round things of 0.1 to 0.3 m that the map does not show."""
 
 
 @dataclass(frozen=True)
@@ -60,10 +60,10 @@ class Task:
 
 @dataclass(frozen=True)
 class Try:
-    """What came of one: s until it knew its pose, and until it knew that it does not; or infinite.
+    """The result of one try: s until the pose was known, and until it was unknown; or infinite.
 
-    ``is_wrong`` tells whether it ever said a pose is known that is not; of a robot that was carried
-    away unnoticed only what it says after it noticed counts.
+    ``is_wrong`` tells whether the robot ever called a wrong pose known. If it was carried away
+    unnoticed, only the time after it noticed counts.
     """
 
     found: float

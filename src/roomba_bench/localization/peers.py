@@ -1,4 +1,4 @@
-"""The scan matchers of other people, on the scans of one drive of ours."""
+"""Other people's scan matchers, on the scans of one of our drives."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ MATCHERS = (
 _SPACING = 0.02
 """m; between points on the map's surfaces."""
 _MATCHES = 600
-"""Scans that are matched over and over: a minute's."""
+"""Scans that are matched again and again: those of a minute."""
 _SPREAD = (0.002**2, 0.002**2, 0.002**2)
-"""m2 ahead and left, rad2; by which a tenth of a second makes a pose unsure, about."""
+"""m2 ahead and left, rad2; about the variance that a tenth of a second adds to a pose."""
 
 
 @dataclass(frozen=True)
 class ScannedDrive:
-    """The scans of a drive in a file, and the home, as of a drive's task."""
+    """The file with a drive's scans, and the home, as in a drive's task."""
 
     home: str
     folder: str
@@ -73,7 +73,7 @@ class Followed:
 
 
 def follow(bench: Bench, drives: Sequence[ScannedDrive], at_once: int) -> list[Followed]:
-    """Let the peers follow drives, so many at once: nothing is timed here."""
+    """Let the peers follow drives, so many at a time: their time is not measured here."""
     peers = [peer for drive in drives for peer in _peers(bench, drive)]
     with ThreadPoolExecutor(at_once) as pool:
         answers = list(pool.map(_follow, peers))
@@ -140,7 +140,7 @@ def _peers(bench: Bench, drive: ScannedDrive) -> list[tuple[Peer, Path]]:
 
 
 def _follow(peer_and_file: tuple[Peer, Path]) -> tuple[Floats, str] | str:
-    """Return a peer's poses and version, or why there are none."""
+    """Return a peer's poses and version, or the reason why there are none."""
     peer, file = peer_and_file
     try:
         version, _ = peer.prepare()
@@ -169,7 +169,7 @@ def _followed(drive: ScannedDrive, answers: Sequence[tuple[Floats, str] | str]) 
 
 
 def _matching(drive: ScannedDrive) -> Work:
-    """Return the work of following a drive by our tracker, scan by scan, over and over."""
+    """Return the work of following a drive with our tracker, scan by scan, again and again."""
     home, config = home_named(drive.home, drive.folder), ROBOT
     lidar = config.lidar
     model = LidarModel.all_around(lidar.beams, lidar.min_range, lidar.max_range)
@@ -203,7 +203,7 @@ def _tracker(field: SurfaceField, config: RobotConfig, pose: Pose) -> Tracker:
 
 
 def _move(tracker: Tracker, step: Pose) -> None:
-    """Let a tracker go on by a step, given in the robot's frame."""
+    """Move a tracker by a step in the robot's frame."""
     pose, covariance = tracker.pose.as_array(), tracker.covariance
     carry(pose, covariance, step.x, step.y, step.theta, *_SPREAD)
     tracker.pose, tracker.covariance = Pose(*pose.tolist()), covariance

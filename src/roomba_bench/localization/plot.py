@@ -1,4 +1,4 @@
-"""Pictures of the errors: along one drive, and how they are spread over all of them."""
+"""Pictures of errors: along one drive, and their distribution over all drives."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _COLOURS = {"ours": "#2a6fbb", "wheels alone": "#9aa1a9", "wheels and gyro": "#5
 _PEERS = ("#d9822b", "#7a3e9d", "#3a9d5d")
 _AIM = "#c0392b"
 _BIN = 5.0
-"""s; of each only the worst is drawn."""
+"""s of a bin, of which only the worst error is drawn."""
 _LEAST = 0.01
-"""mm; a logarithm wants more than zero."""
+"""mm; the least value that is drawn on a logarithmic scale."""
 _AIMS = ((20.0, 60.0), (0.5, 0.99))
-"""mm, and shares of the time that shall be less off."""
+"""mm, and the shares of the time in which the error shall be less."""
 _LEFT = 0.02
 """mm; where the distributions begin to be drawn."""
 
@@ -56,7 +56,7 @@ def plot_drive(path: Path, title: str, followed: Followed) -> None:
 
 
 def plot_spread(path: Path, homes: Mapping[str, Errors], followed: Sequence[Followed]) -> None:
-    """Draw which share of the time the position is less than so much off.
+    """Draw the distribution of position errors: by share of the time, how large they are at most.
 
     To the left all sources on the same drives together; to the right ours in each home.
     """

@@ -1,4 +1,4 @@
-"""A robot in a home that knows where it is by its sensors alone, and the truth beside it."""
+"""A robot that localizes itself in a home by its sensors alone, beside its true pose."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ from roomba_bench.ours_sim import ROBOT
 STEP, STEPS = 0.025, 2
 """s of a step, and steps of a tick."""
 WRONG = 0.15
-"""m or rad; a pose that is farther off is wrong, and should not be called known."""
+"""m or rad; a pose with a larger error is wrong, and should not be called known."""
 _ROOM = 0.06
-"""m; from the body to the middle of a solid cell, where the robot is put in the middle of one."""
+"""m between the body and the middle of a solid cell, where the robot is put down."""
 _APART = 0.6
 """m; between the middles of the robot and of a thing that is put down."""
 _ATTEMPTS = 1000
 
 
 class LocalizedRobot:
-    """A simulated robot with its shipped noise, and a localizer that is told what it senses."""
+    """A simulated robot with its shipped noise, and a localizer that gets its readings."""
 
     def __init__(self, home: Home, seed: int) -> None:
         """Stand at the station, and know it."""
@@ -70,16 +70,16 @@ class LocalizedRobot:
 
     @property
     def touches(self) -> bool:
-        """Whether it feels a thing, or no floor."""
+        """Whether the robot feels a thing, or a missing floor."""
         return self.seen.bumper.pressed or self.seen.cliff.any
 
     @property
     def is_known(self) -> bool:
-        """Whether the pose is said to be one to rely on."""
+        """Whether the localizer calls its pose known."""
         return self.localizer.estimate.knowledge is Knowledge.KNOWN
 
     def is_off(self, metres: float, radians: float) -> bool:
-        """Whether the estimate is farther off the truth than this."""
+        """Whether the estimate's error is larger than this."""
         believed, true = self.localizer.estimate.pose, self.seen.pose
         away = math.hypot(believed.x - true.x, believed.y - true.y)
         return away > metres or abs(wrap_angle(believed.theta - true.theta)) > radians
@@ -114,7 +114,7 @@ def home_named(name: str, folder: str = "") -> Home:
 
 
 def with_closed_door(home: Home, random: np.random.Generator) -> Home:
-    """Return the home with one of its doors shut, which its map shows open; itself if none is."""
+    """Return the home with one door shut that its map shows open; unchanged without open doors."""
     doors = [door for door in home.doors if door.is_open]
     if not doors:
         return home

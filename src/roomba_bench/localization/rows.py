@@ -1,4 +1,4 @@
-"""What becomes of drives and kidnappings in the table: errors, shares of time, and tries."""
+"""The table's rows about drives and kidnappings: errors, shares of time, and tries."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def broken_row(case: str, error: Exception) -> Record:
 
 
 def _time_row(case: str, figure: str, seconds: NDArray[np.float64], percent: float) -> Record:
-    # The nearest one above, for there is nothing between a time and none at all.
+    # The next larger value: no mean can be taken of a time and infinity.
     value = float(np.percentile(seconds, percent, method="higher"))
     if math.isfinite(value):
         return Record(TOPIC, case, figure, value, "s", Better.LOWER)

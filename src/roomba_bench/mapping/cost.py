@@ -1,4 +1,4 @@
-"""What mapping costs: of a core while the robot drives, and how fast a whole exploration goes."""
+"""The cost of mapping: the share of a core while driving, and the speed of a whole exploration."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from roomba_bench.ours_sim import ROBOT
 
 @dataclass(frozen=True, eq=False)
 class Heard:
-    """What the sensors said at a tick: ``ranges`` is None where there was no new scan."""
+    """The readings of a tick: ``ranges`` is None where there was no new scan."""
 
     stamp: float
     odometry: Pose
@@ -29,7 +29,7 @@ class Heard:
 
 @dataclass(frozen=True, eq=False)
 class Recorded:
-    """A whole exploration, to be heard again."""
+    """The readings of a whole exploration, to be mapped again."""
 
     heard: list[Heard]
     lidar: LidarModel
@@ -37,7 +37,7 @@ class Recorded:
 
 
 class _Listener(HeadlessMission):
-    """Writes down what the mapper is told, all scans, not every other one."""
+    """Records what the mapper hears, with all scans instead of every other one."""
 
     def begin(self) -> None:
         self.heard: list[Heard] = []
@@ -56,7 +56,7 @@ class _Listener(HeadlessMission):
 
 
 def speed(home: str, seed: int, folder: str = "") -> float:
-    """Return how many s of robot time pass in a second of exploring, of one core.
+    """Return how many s of robot time an exploration simulates in a second of one core.
 
     ``folder`` is of map_server maps, or "" for a shipped home.
     """
@@ -67,7 +67,7 @@ def speed(home: str, seed: int, folder: str = "") -> float:
 
 
 def recorded(home: str, seed: int) -> Recorded:
-    """Explore a home, and keep what was heard."""
+    """Explore a home, and return its readings."""
     robot = _Listener(home_named(home), ROBOT, seed=seed, known=MappingConfig(), longest_burst=0)
     robot.begin()
     robot.explore()

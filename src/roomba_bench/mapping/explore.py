@@ -78,7 +78,7 @@ def explore(task: Task) -> Explored:
 
 
 def clean(task: Task, known: OccupancyMap | None) -> Cleaned:
-    """Clean a home by a map of it, its own true one by default, counted by true poses."""
+    """Clean a home by a map of it, by default its true one; true poses are counted."""
     home = home_named(task.home, task.folder)
     robot = HeadlessMission(home, ROBOT, seed=task.seed, known=known)
     staging = robot.context.staging
@@ -88,7 +88,7 @@ def clean(task: Task, known: OccupancyMap | None) -> Cleaned:
 
 
 def clean_unknown(task: Task) -> Cleaned:
-    """Clean a home that the robot has never seen, counted alike."""
+    """Clean a home that the robot has never seen; true poses are counted."""
     home = home_named(task.home, task.folder)
     robot = HeadlessMission(home, ROBOT, seed=task.seed, known=MappingConfig())
     staging = staging_pose(home.station, DockingConfig().staging_distance)

@@ -37,7 +37,7 @@ _DOORWAY, _DEPTH = 0.9, 0.3
 _APART: Final = (1.5, 6.0)
 """m; between two doorways, at random."""
 _SPEED, _AHEAD = 0.4, 0.5
-"""m/s, m; it steers to the point of the middle that is so far ahead."""
+"""m/s; and m by which the point of the middle lies ahead to which the robot steers."""
 _TIMING: Final = TimingConfig()
 _CORNERS: Final = np.array([[0.0, 0.0], [LONG, 0.0], [LONG, SHORT], [0.0, SHORT], [0.0, 0.0]])
 _BEGIN: Final = 5.0
@@ -46,7 +46,7 @@ _BEGIN: Final = 5.0
 
 @dataclass(frozen=True, eq=False)
 class Looped:
-    """How far off the true place the end is, m: on the finished map, before, and reckoned."""
+    """The error of the final place, m: on the finished map, before finishing, and reckoned."""
 
     way: float
     end: float
@@ -58,7 +58,7 @@ class Looped:
 
 
 def ring(seed: int) -> Home:
-    """Return the building; the seed places its doorways."""
+    """Return the building; its doorways are placed by the seed."""
     random = np.random.default_rng(seed)
     margin = _HALF_WIDTH + _AROUND
     rows, columns = round((SHORT + 2.0 * margin) / _CELL), round((LONG + 2.0 * margin) / _CELL)
@@ -130,7 +130,7 @@ def loop(seed: int) -> Looped:
 
 
 def _steered(true: Pose) -> Twist:
-    """Return how to go on along the corridor's middle."""
+    """Return the twist that follows the corridor's middle."""
     at_x, at_y = middle(along_of(true) + _AHEAD)
     turn = wrap_angle(math.atan2(at_y - true.y, at_x - true.x) - true.theta)
     return Twist(_SPEED * max(0.2, math.cos(turn)), max(-1.5, min(1.5, 3.0 * turn)))

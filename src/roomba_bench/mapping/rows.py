@@ -1,4 +1,4 @@
-"""What becomes of explorations, loops and cleans in the table."""
+"""The table's rows about explorations, loops and cleans."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ EXPLORED_FIRST: Final = "explored first"
 WALLS_AIM, FLOOR_AIM = 97.0, 97.0
 """%."""
 TIME_AIM: Final = {"flat": 360.0}
-"""s of robot time, of homes where it was promised."""
+"""s of robot time, for homes with such an aim."""
 LOOP_AIM: Final = 50.0
 """mm."""
 CORE_AIM: Final = 20.0
@@ -105,7 +105,7 @@ def newcomer_rows(
 ) -> list[Record]:
     """Return the rows of cleans that began before there was a map.
 
-    Beside them is what exploring first, and cleaning by that map, takes.
+    The other figure of each is for exploring first, and then cleaning by that map.
     """
     case = f"{home}, cleaned while it is mapped, {_seeds(len(done))}"
     first = (PeerFigure(EXPLORED_FIRST, value=_minutes(explored) + _minutes(later)),)
@@ -128,7 +128,7 @@ def _home_row(case: str, done: Sequence[Cleaned], peer: str, beside: Sequence[Cl
 
 
 def _minutes(done: Sequence[Explored] | Sequence[Cleaned]) -> float:
-    """Return the mean of what they took, min."""
+    """Return the mean duration, min."""
     return float(np.mean([each.seconds for each in done])) / 60.0
 
 
@@ -139,7 +139,7 @@ def broken_row(case: str, error: Exception) -> Record:
 
 
 def seeds(home: str, folder: str, count: int) -> str:
-    """Return the name of a case."""
+    """Return a case's name in the table."""
     return f"{'map ' if folder else ''}{home}, {_seeds(count)}"
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from websockets.asyncio.client import connect
 
 _SETTLE: Final = 4.0
-"""s until all are connected and have the layers; what comes before is not counted."""
+"""s until all are connected and have the layers; earlier updates are not counted."""
 
 
 class Viewers:
@@ -29,7 +29,7 @@ class Viewers:
         self._counts = False
 
     async def look(self, seconds: float) -> dict[str, Any]:
-        """Look on for so long; return what was seen."""
+        """Watch for so many s; return what was received."""
         looking = [asyncio.create_task(self._view()) for _ in range(self._count)]
         await asyncio.sleep(_SETTLE)
         self._counts = True
@@ -55,7 +55,7 @@ class Viewers:
                     self._note(message)
 
     def _note(self, message: str | bytes) -> None:
-        """Note the age of a state; it says when it was looked at."""
+        """Note the age of a state, by the time of the look that it contains."""
         at = message.find('"looked":') if isinstance(message, str) else -1
         if at >= 0 and isinstance(message, str):
             end = min(found for mark in ",}" if (found := message.find(mark, at)) > 0)

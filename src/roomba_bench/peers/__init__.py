@@ -1,6 +1,6 @@
 """The others: one script per peer, run as a process of its own under ``.venv-bench``.
 
-Each folder holds the peers of one subject, and what these share beside them; what starts a peer and
-speaks with it stands here. Peers may import numpy, their own library, and what is in this package;
+Each folder holds the peers of one subject, and the code that these share. The code that starts a
+peer and speaks with it is here. Peers may import numpy, their own library, and this package, but
 never the robot.
 """

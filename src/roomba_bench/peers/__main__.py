@@ -7,7 +7,7 @@ import sys
 
 from roomba_bench.peers.protocol import serve
 
-# What libraries print, when they are imported too, must not stand among the answers.
+# Libraries may print when they are imported; that must not mix with the answers.
 answers = os.fdopen(os.dup(1), "w")
 os.dup2(2, 1)
 serve(sys.argv[1], sys.stdin, answers)

@@ -1,7 +1,7 @@
 """``python3 -I alone.py MODULE``: be that peer, where nothing of the robot can be imported.
 
-Where the library is installed, numpy and all else that the robot needs lie beside this package, and
-peers have their own. So the package is made known by itself, without the folder that it lies in.
+Where the library is installed, the robot's own numpy and other packages lie beside this package,
+but peers must use theirs. So this package alone is made importable, without its folder.
 """
 
 from __future__ import annotations

@@ -1,9 +1,4 @@
-"""How a peer's process speaks: a line of JSON in, a line of JSON out, on its standard streams.
-
-``{"prepare": {...}}`` is answered by ``{"version": "1.2", "facts": {...}}``, and
-``{"run": seconds}`` by ``{"rate": units per second}``; or either by ``{"error": "why not"}``.
-Only the standard library is used here.
-"""
+"""The protocol of a peer's process: a line of JSON in, a line of JSON out, on standard streams."""
 
 from __future__ import annotations
 
@@ -20,21 +15,18 @@ from typing import Any, TextIO, TypeAlias
 Parameters: TypeAlias = Mapping[str, Any]
 
 CHECKED_POSES = 40
-"""The first poses of a case of scans: of these all tell the mean range, and no peer waits long."""
+"""Poses of a case of scans whose mean range each peer reports; few, so that no peer takes long."""
 _LONGEST = 200
 """Characters of an error."""
 
 
 class LeftOutError(Exception):
-    """A peer is not for this case; the text says why, and is told as it is."""
+    """A peer leaves this case out; its text gives the reason, and is shown unchanged."""
 
 
 @dataclass(frozen=True)
 class Work:
-    """What is measured: ``batch`` does some and returns how many units (scans, plans) it did.
-
-    ``facts`` are figures that do not depend on time, such as a path's length.
-    """
+    """The measured work: ``batch`` does some and returns how many units (scans, plans) it did."""
 
     batch: Callable[[], float]
     facts: dict[str, float] = field(default_factory=dict)
@@ -74,7 +66,7 @@ def serve(module: str, requests: Iterable[str], answers: TextIO) -> None:
             if "prepare" in request:
                 peer = importlib.import_module(module)
                 work = peer.prepare(request["prepare"])
-                work.batch()  # what is compiled or allocated at first use is no part of the rate
+                work.batch()  # code that is compiled or allocated at first use must not count
                 answer = {"version": _version(peer.DISTRIBUTION), "facts": work.facts}
             elif work is None:
                 answer = {"error": "expected 'prepare' before 'run'"}
@@ -83,7 +75,7 @@ def serve(module: str, requests: Iterable[str], answers: TextIO) -> None:
         except LeftOutError as error:
             answer = {"error": str(error)}
         except Exception as error:
-            # No exception of a peer's library may end the other peers.
+            # An exception of one peer's library must not end the other peers.
             traceback.print_exc()
             answer = {"error": f"{type(error).__name__}: {error}".splitlines()[0][:_LONGEST]}
         answers.write(json.dumps(answer) + "\n")

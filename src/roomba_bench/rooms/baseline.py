@@ -1,4 +1,4 @@
-"""The plain way to part a floor: what is far from all walls are rooms, grown back to the walls."""
+"""The simple way to find rooms: floor far from all walls, grown back to the walls."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from roomba.raster.regions import numbered_regions
 def distance_split(occupancy: OccupancyMap) -> NDArray[np.int32]:
     """Return rooms, int32 [rows, columns], 0 for none: connected floor out of reach of doors.
 
-    In a door one is at most half of its width from the walls. As ours, it is given the floor
-    without small furniture, and the same sizes.
+    In a door, the distance from the walls is at most half the door's width. The baseline gets the
+    same floor without small furniture and the same sizes as our segmentation.
     """
     config, resolution = RoomsConfig(), occupancy.frame.resolution
     solid = occupancy.solid

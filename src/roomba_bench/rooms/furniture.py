@@ -1,4 +1,4 @@
-"""Floors with more furniture than they have, put anywhere at random, but not into doorways."""
+"""Floors with additional furniture at random places, but not in doorways."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _AREA = 8.0
 _DEPTHS, _LENGTHS = (0.3, 1.0), (0.4, 2.0)
 """m; from chairs and shelves to tables and beds."""
 _DOORSTEP = 0.8
-"""m; so near to another room people put nothing."""
+"""m; nearer to another room no furniture is put."""
 _TRIES = 4
-"""For each piece that is wanted; some do not fit."""
+"""Attempts for each piece of furniture; some do not fit."""
 
 
 def furnished(known: KnownRooms, seed: int) -> KnownRooms:

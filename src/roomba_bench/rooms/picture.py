@@ -20,7 +20,7 @@ _PANEL = 640
 _CAPTION = 18
 _WALL, _UNKNOWN, _NO_ROOM, _PAPER = (0, 0, 0), (110, 110, 110), (235, 235, 235), (255, 255, 255)
 _GOLDEN = 0.618034
-"""Of a turn between the hues of one room and the next: neighbours differ."""
+"""Of a turn between the hues of successive rooms, so that neighbours differ."""
 
 
 def write_picture(path: Path, known: KnownRooms, found: Mapping[str, RoomLabels]) -> None:
@@ -50,7 +50,7 @@ def write_picture(path: Path, known: KnownRooms, found: Mapping[str, RoomLabels]
 
 
 def _like_rooms(known: KnownRooms, labels: RoomLabels) -> RoomLabels:
-    """Return the labels by the numbers of the rooms that they have most in common with."""
+    """Return the labels renumbered by the true rooms that they overlap most."""
     common = overlaps(known, labels)
     number = np.zeros(common.shape[1], np.int64)
     taken: set[int] = set()

@@ -29,11 +29,11 @@ RoomLabels = NDArray[np.signedinteger[Any]]
 
 _SUFFIX = "_rooms.png"
 _WHITE = 250.0
-"""Grey value; what is darker was drawn to part rooms."""
+"""Grey value; darker lines divide rooms."""
 _SMALLEST = 1.0
 """m²; smaller white areas are specks of the scan."""
 _SAME = 0.8
-"""A room was told apart if it and its segment have this share of their union in common."""
+"""Share of their union that a room and its segment must have in common to count as told apart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,9 +74,9 @@ def known_homes() -> Iterable[KnownRooms]:
 def known_maps(folder: Path) -> Iterable[KnownRooms]:
     """Return the maps of a folder beside which there is ``<map>_rooms.png``, sorted by name.
 
-    The picture has the map's size. Rooms are white areas that people parted by dark lines; where
-    nothing is white each grey value is a room of its own, as a robot vacuum's app has them, and
-    black is none.
+    The picture has the map's size. Rooms are white areas that people divided by dark lines. In a
+    picture without white, each grey value is a room, as in a robot vacuum's app, and black is no
+    room.
     """
     for path in sorted(folder.glob(f"*{_SUFFIX}")):
         name = path.name.removesuffix(_SUFFIX)
@@ -90,7 +90,7 @@ def known_maps(folder: Path) -> Iterable[KnownRooms]:
 
 
 def _numbered(grey: NDArray[Any]) -> RoomLabels:
-    """Return the rooms of a picture in which each has a grey value of its own; 0 is none."""
+    """Return the rooms of a picture with a grey value for each room; 0 is no room."""
     values, numbers = np.unique(grey, return_inverse=True)
     labels: RoomLabels = (numbers.reshape(grey.shape) + int(values[0] > 0)).astype(np.int32)
     return labels
@@ -108,7 +108,7 @@ def rooms_of(home: Home) -> RoomLabels:
 
 
 def without_specks(white: NDArray[np.bool_], resolution: float) -> RoomLabels:
-    """Return the connected areas of a mask that are large enough for a room."""
+    """Return the connected areas of a mask that are as large as a room."""
     regions = numbered_regions(white)
     sizes = np.bincount(regions.ravel()) * resolution**2
     is_room = sizes >= _SMALLEST
@@ -120,7 +120,7 @@ def without_specks(white: NDArray[np.bool_], resolution: float) -> RoomLabels:
 def overlaps(known: KnownRooms, labels: RoomLabels) -> NDArray[np.int64]:
     """Return the cells that rooms (rows) and segments (columns) have in common; 0 is no segment.
 
-    Only cells count that are free in the map and lie in a true room. The first row is of no room.
+    Only cells count that are free in the map and lie in a true room, so the first row is 0.
     """
     counted = (known.labels > 0) & ~known.map.solid
     shape = (known.count + 1, int(labels.max(initial=0)) + 1)

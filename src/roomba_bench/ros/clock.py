@@ -1,7 +1,4 @@
-"""Robot seconds per second of a running graph, while its robot walks to and fro.
-
-Speaks the peers' protocol; parameter: ``points``, pairs (x, y) to walk to in turn, m.
-"""
+"""The speed of a running graph, robot s per s, while its robot walks to and fro."""
 
 from __future__ import annotations
 

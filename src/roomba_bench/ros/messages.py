@@ -1,4 +1,4 @@
-"""The messages that go back and forth; each carries a number, so that its answer is known."""
+"""The messages of round trips; each carries a number, by which its answer is recognized."""
 
 from __future__ import annotations
 
@@ -40,4 +40,4 @@ KINDS = {
     "scan": Kind(LaserScan, _scan, lambda m: round(m.range_max)),
     "twist": Kind(Twist, _twist, lambda m: round((m.linear.x - _SLOWEST) * 1e4)),
 }
-"""By name. A twist is slower than the robot's limits, so that a node passes it on as it is."""
+"""By name. A twist is below the robot's limits, so that a node passes it on unchanged."""

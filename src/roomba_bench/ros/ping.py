@@ -2,7 +2,7 @@
 
 Speaks the peers' protocol; parameters: ``kind`` of :mod:`roomba_bench.ros.messages`, ``ping`` and
 ``pong``, the topics, and, if trips are not to follow at once on each other, ``apart``, s. The rate
-is that of trips alone: what lies between them does not count.
+is that of the trips alone: pauses between them do not count.
 """
 
 from __future__ import annotations
@@ -64,13 +64,13 @@ def prepare(parameters: Parameters) -> Work:
 
     def trips() -> float:
         nonlocal first
-        # Other numbers than last time: a late answer of then is none of now.
+        # New numbers each time: a late answer to an earlier round does not count.
         first = _TRIPS - first
         began, under_way = time.perf_counter(), 0.0
         for number in range(_TRIPS):
             under_way += timed_trip(first + number)
             time.sleep(apart)
-        # As many trips as the whole time would have had room for.
+        # The number of trips that the whole time would have had room for.
         return _TRIPS * (time.perf_counter() - began) / under_way
 
     return Work(trips)

@@ -1,4 +1,4 @@
-"""What running processes take: memory, as Linux counts it, and time of the processor."""
+"""The cost of running processes: memory as Linux counts it, and processor time."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def family_of(pid: int) -> list[int]:
 
 
 def memory(pids: Iterable[int]) -> float:
-    """Return the proportional set size of processes together, MB: what they share counts once."""
+    """Return the proportional set size of processes together, MB: shared memory counts once."""
     size = 0
     for pid in pids:
         # One that has just ended takes nothing.
@@ -39,10 +39,10 @@ def memory(pids: Iterable[int]) -> float:
 
 
 def load(pids: Iterable[int], seconds: float) -> float:
-    """Return % of a core that processes take, in so many seconds from now on."""
+    """Return the load of processes, % of a core, over so many seconds from now."""
     before, began = {pid: _used(pid) for pid in pids}, time.monotonic()
     time.sleep(seconds)
-    # One that ended meanwhile took no less.
+    # A process that ended meanwhile counts as 0, not as a negative time.
     used = sum(max(_used(pid) - each, 0.0) for pid, each in before.items())
     return 100.0 * used / (time.monotonic() - began)
 

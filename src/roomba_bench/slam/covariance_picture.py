@@ -1,4 +1,4 @@
-"""Whether covariances are honest: how many errors lie in the regions that should hold so many."""
+"""Checks covariances: whether the share of errors in a confidence region is the nominal one."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SIMULATED: Final = ("flat", "apartment")
 
 
 def simulated_squares(seconds: float) -> dict[str, Floats]:
-    """Return squared errors by the covariances, [n], of drives in simulated homes, s long each."""
+    """Return squared Mahalanobis errors, [n], of simulated drives of so many ``seconds``."""
     squares = {}
     for name in _SIMULATED:
         robot, rows = LocalizedRobot(home_named(name), 1), []

@@ -1,7 +1,7 @@
 """A recorded drive followed on a map: on one that was made of it, or on one of another day.
 
-Errors are those against the trajectory that the map was made with, and of the covariance that is
-told with each pose: how many of the errors lie in the region that should hold so many.
+Poses are compared with the trajectory that the map was made with, and covariances with these
+errors: what share of the errors lies in the confidence region.
 """
 
 from __future__ import annotations
@@ -28,24 +28,24 @@ from roomba.recordings.readings import LidarScan
 from roomba_bench.slam.relations import poses_at
 
 FAR: Final = 0.5
-"""m; a pose that is farther off is of another place."""
+"""m; a pose with a larger error counts as of another place."""
 HELD: Final = 0.95
-"""Share of errors that the region of a covariance is drawn for."""
+"""The nominal share of errors in a covariance's confidence region."""
 _COARSE: Final = 2
-"""Times as large are the cells of the coarse map."""
+"""How many times larger the cells of the coarse map are."""
 _NEAR_WALL: Final = 0.2
-"""m; a beam that ends so near to a wall has met it."""
+"""m; a beam that ends so near to a wall counts as one that hit it."""
 _LAST: Final = 50
-"""Scans at the end of a drive that say whether the place is right, where no truth is known."""
+"""The last scans of a drive, by which its place is judged if no truth is known."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Followed:
-    """A drive that was followed, from when its place was first known.
+    """A drive that was localized on a map; errors count from when its place was first known.
 
-    ``cells`` says of which map, and whether a start ``is_told``. ``off`` are errors of the place,
-    m, [n]; ``squares`` the same by the covariance that was told then, squared deviations, [n],
-    where the place was known; ``found_after`` is the way until then, m, None if it never was.
+    ``cells`` are the map's cells in words, and ``is_told`` whether a start was given. ``off`` are
+    the errors of the place, m, [n]; ``squares`` the squared errors by the covariances, [n], where
+    the place was known; ``found_after`` is the way until then, m, None if it was never known.
     """
 
     cells: str
@@ -72,7 +72,7 @@ class Followed:
 
     @property
     def held(self) -> float:
-        """The share of errors in the region that should hold 95 % of them, 0..1."""
+        """The share of errors in the 95 % confidence region, 0..1."""
         return float(np.mean(self.squares < square_of(HELD)))
 
 
@@ -86,12 +86,12 @@ class Fitting:
 
 
 def square_of(share: float) -> float:
-    """Return the squared deviations of two numbers of which so large a share is below: chi2."""
+    """Return the chi-squared quantile of a share, with two degrees of freedom."""
     return float(-2.0 * np.log1p(-share))
 
 
 def followed_on_own_map(log: Path, drive: MappedDrive) -> Iterator[Followed]:
-    """Yield a drive on the map made of it and on one of coarse cells, with a start and without."""
+    """Yield a drive localized on its own map and on a coarse one, with a start and without."""
     trajectory = drive.trajectory
     begin = Pose(*trajectory[0, 1:].tolist())
     for occupancy in (drive.occupancy, coarsened(drive.occupancy, _COARSE)):
@@ -116,7 +116,7 @@ def fitting_on(log: Path, map_file: Path) -> Fitting:
 
 
 def map_beside(log: Path, name: str) -> Path | None:
-    """Return the map of another day beside a log: ``wean_map.yaml`` is one of ``wean_...``."""
+    """Return the other day's map beside a log: ``wean_map.yaml`` belongs to ``wean_...``."""
     for path in sorted(log.parent.glob("*_map.yaml")):
         if name.startswith(path.stem.removesuffix("map")):
             return path
@@ -124,7 +124,7 @@ def map_beside(log: Path, name: str) -> Path | None:
 
 
 def coarsened(occupancy: OccupancyMap, times: int) -> OccupancyMap:
-    """Return a map of cells that are so many times as large: occupied if one of theirs is."""
+    """Return a map with cells ``times`` as large: occupied if one of the small cells is."""
     frame = occupancy.frame
     rows, columns = -(-frame.rows // times), -(-frame.columns // times)
     values = np.full((rows * times, columns * times), UNKNOWN, np.int8)
@@ -164,7 +164,7 @@ def _judged(cells: str, is_told: bool, rows: list[Row], trajectory: Floats) -> F
 
 
 def _at_walls(log: Path, occupancy: OccupancyMap, known: list[Row]) -> float:
-    """Return the share of beams of the last scans that end at walls, where it took itself to be."""
+    """Return the share of the last scans' beams that end at walls, by the localized poses."""
     frame, stamps = occupancy.frame, np.array([row.scan_stamp for row in known])
     is_open = (occupancy.values != OCCUPIED).astype(np.uint8)
     away = frame.resolution * cv2.distanceTransform(is_open, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)

@@ -1,4 +1,4 @@
-"""What others reach on published drives, as published or as recorded once on the same files.
+"""Other programs' results on published drives, as published or recorded once on these files.
 
 Kümmerle: R. Kümmerle et al., On measuring the accuracy of SLAM algorithms, Autonomous Robots 27
 (2009), tables 1 and 2. Cartographer: W. Hess, D. Kohler, H. Rapp, D. Andor, Real-time loop closure
@@ -103,5 +103,5 @@ def peers_of(log: str) -> tuple[Reached, ...]:
 
 
 def aims_of(log: str) -> Aims:
-    """Return what is aimed at on a drive; nothing on those that are not known."""
+    """Return the aims for a drive; none for unknown drives."""
     return next((aims for word, aims in _AIMS.items() if word in log.lower()), Aims())

@@ -20,7 +20,7 @@ from roomba.arrays import Floats
 from roomba.recordings.packed import Unpacked
 
 _COLUMNS: Final = 8
-"""t1, t2 (s), x, y, z (m), roll, pitch, yaw (rad)."""
+"""The columns t1, t2 (s), x, y, z (m), roll, pitch, yaw (rad)."""
 _PLANAR: Final = [2, 3, 7]
 _FARTHEST: Final = 1.0
 """s; a relation counts if the trajectory has a pose so near to each of its times."""

@@ -1,4 +1,4 @@
-"""What becomes of mapped drives in the table."""
+"""The table's rows about mapped drives."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def _fitting_rows(name: str, fitting: Fitting) -> Iterator[Record]:
 def _beside(
     by_odometry: float, peers: tuple[Reached, ...], of: Callable[[Reached], float | None]
 ) -> tuple[PeerFigure, ...]:
-    """Return the figures of odometry, and of those others that published this one."""
+    """Return the figure of odometry, and those of other programs that published it."""
     others = (PeerFigure(peer.name, value=of(peer)) for peer in peers if of(peer) is not None)
     return (PeerFigure(ODOMETRY, value=by_odometry), *others)
 

@@ -32,7 +32,7 @@ _THICK = 0.1
 """m; of the floor and of the ceiling, which are boxes to the peers."""
 _GREY = (0.7, 0.7, 0.7)
 _SAME_DEPTH = 0.05
-"""Relative: the peers' home lacks skirtings, door frames and the parts of a wall above doors."""
+"""Relative; the peers' home lacks skirtings, door frames, and walls above doors."""
 
 
 def measure(bench: Bench) -> list[Record]:

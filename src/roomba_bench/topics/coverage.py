@@ -42,11 +42,11 @@ from roomba_bench.record import PeerFigure, Record
 from roomba_bench.workers import Workers
 
 _SHIPPED = ("empty", "lshape", "apartment", "flat", "studio", "family")
-"""Not the hall: a plane of 200 m is no floor to clean."""
+"""Shipped homes, without the hall: a plane of 200 m is no floor to clean."""
 _CHANGED = ("flat", "apartment", "family")
 _DRAWN = "apartment"
 _BOUNCED = (15, 30, 60, 120)
-"""min; the last one is how long they bounce."""
+"""min; robots bounce for the last of these times."""
 _BOUNCED_AS_RECORDED = (0.24, 0.39, 0.59, 0.81)
 _BLIND = "it follows its lanes and does not go around what moves"
 
@@ -104,7 +104,7 @@ def places_of(bench: Bench, extent: Extent) -> list[_Place]:
     if bench.maps is not None:
         folder = str(bench.maps.resolve())
         names = [path.stem for path in sorted(bench.maps.glob("*.yaml"))]
-        # The reference maps are homes as well.
+        # The folder may have the reference maps, which are shipped homes as well.
         others = [name for name in names if name not in extent.homes]
         places += [_Place(Case(f"map {name}", name, aims_of(name)), folder) for name in others]
     return places
@@ -159,7 +159,7 @@ def _over_time(
 
 
 def _rest(bench: Bench, pool: Executor, places: list[_Place], extent: Extent) -> list[Record]:
-    """Return all rows, after everything that need not be timed is done."""
+    """Return all rows, once all that need not be timed is done."""
     noisy = [
         (place, [_order(pool, place, seed) for seed in range(extent.seeds)]) for place in places
     ]
@@ -190,7 +190,7 @@ def _order(pool: Executor, place: _Place, seed: int) -> Future[Clean]:
 
 
 def _results(futures: list[Future[Clean]], title: str) -> tuple[list[Clean], list[Record]]:
-    """Return the cleans, and a row for each that broke."""
+    """Return the cleans, and a row for each one that failed."""
     done: list[Clean] = []
     broken: list[Record] = []
     for seed, future in enumerate(futures):

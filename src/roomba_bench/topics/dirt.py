@@ -19,11 +19,11 @@ _HOMES: Final = ("flat", "family")
 _SEEDS: Final = (1, 2, 3)
 _DAYS, _QUICK_DAYS = 30, 10
 _LEARNING: Final = 7
-"""Days that do not count for how clean it is."""
+"""Days at the start that do not count for cleanliness."""
 _LESS: Final = 30.0
-"""% of the way that is to be saved."""
+"""% of the way that must be saved."""
 _SAME: Final = 1.1
-"""Times as dirty as by the fixed plan that is as clean: rooms may become so much dirtier."""
+"""How many times dirtier rooms may get than by the fixed plan that is as clean."""
 _OURS: Final = "due"
 _FIXED: Final = "all rooms daily"
 
@@ -47,7 +47,7 @@ def measure(bench: Bench) -> list[Record]:
 
 
 def rows_of(case: str, lives: Mapping[str, Sequence[Life]]) -> list[Record]:
-    """Return the rows of a home, whose lives are by plans, one a seed; "due" is ours."""
+    """Return the rows of a home; ``lives`` has by plan a life for each seed, and "due" is ours."""
 
     def row(
         figure: str, unit: str, of: Callable[[Life], float], same: float | None = None

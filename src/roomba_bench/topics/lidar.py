@@ -27,9 +27,9 @@ _AIM = 300_000.0
 _ARITHMETIC = "arithmetic alone"
 _SHARE_OF_ARITHMETIC = 0.25
 _OFF = 0.01
-"""m; a beam that grazes a corner may hit what lies behind it."""
+"""m; a beam that grazes a corner may hit a surface behind it."""
 _SAME_RANGE = 0.02
-"""Relative; of the mean range."""
+"""Relative error of the mean range."""
 _BUILDINGS = (200, 400, 800, 1600)
 PEERS: tuple[tuple[str, str, dict[str, object]], ...] = (
     ("mujoco", "simulators.mujoco", {}),
@@ -143,7 +143,7 @@ def _exactness_rows(floor: Floor) -> list[Record]:
     try:
         ours = ours_sim.scans(floor, poses)
     except Exception as error:
-        # The simulator may be unfinished: the row says so.
+        # The simulator may be unfinished: then the row says so.
         return [Record(_TOPIC, case, "error", None, "m", Better.LOWER, error=str(error))]
     both = np.isfinite(ours)
     errors = np.abs(ours - marching(floor).scan(poses))[both]

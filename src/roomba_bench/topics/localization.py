@@ -25,16 +25,17 @@ _SHIPPED = ("flat", "studio", "family", "apartment", "empty", "lshape", "hall")
 _CHANGED = ("flat", "apartment")
 _KIDNAPPED = ("flat", "apartment", "family", "empty")
 _DRAWN = "flat"
-"""The home whose drive is drawn, and whose scans are matched against the clock."""
+"""The home whose drive is drawn, and on whose scans the time of a match is measured."""
 _BOUNDLESS = "hall"
-"""Where the lidar mostly sees nothing: not among the homes whose errors are put together."""
+"""A home where the lidar mostly sees nothing; it is left out of the errors over all homes."""
 
 
 @dataclass(frozen=True)
 class Extent:
-    """How much is done: drives of each home, s of each, s that peers follow one of them, tries.
+    """How much is measured: drives per home, s of each, s that peers follow one, tries.
 
-    ``together`` tries are made one after the other; the others start anew, perhaps elsewhere.
+    ``together`` tries are made one after the other; the next ones start anew, perhaps in another
+    process.
     """
 
     drives: int = 10
@@ -102,7 +103,7 @@ def _of_maps(bench: Bench, extent: Extent) -> list[Homes]:
 
 
 def _begin(bench: Bench, pool: Executor, homes: Homes, extent: Extent) -> _Begun:
-    """Order all drives, the longest tasks, and then all kidnappings."""
+    """Submit all drives, the longest tasks, and then all kidnappings."""
     begun = _Begun({}, {}, {})
     minutes = f"{extent.drives} x {extent.seconds / 60.0:g} min"
     for name in homes.names:

@@ -26,7 +26,7 @@ from roomba_bench.record import Record
 from roomba_bench.workers import Workers
 
 _SHIPPED = ("flat", "studio", "family", "apartment", "empty", "lshape")
-"""Not the hall: in a plane of 200 m the lidar sees nothing most of the time."""
+"""Shipped homes, without the hall: in a plane of 200 m the lidar mostly sees nothing."""
 _TIMED = "flat"
 _CLEANED = "flat"
 _Done = TypeVar("_Done")
@@ -100,7 +100,7 @@ def _places(bench: Bench, extent: Extent) -> list[tuple[str, str]]:
     places = [(home, "") for home in extent.homes]
     if bench.maps is not None:
         names = [path.stem for path in sorted(bench.maps.glob("*.yaml"))]
-        # The reference maps are homes as well.
+        # The folder may have the reference maps, which are shipped homes as well.
         others = [name for name in names if name not in extent.homes]
         places += [(name, str(bench.maps.resolve())) for name in others]
     return places
@@ -123,7 +123,7 @@ def _clean_rows(bench: Bench, pool: Executor, done: Sequence[Explored]) -> list[
 
 
 def results(futures: Sequence[Future[_Done]], case: str) -> tuple[list[_Done], list[Record]]:
-    """Return what is done, and a row for each that broke."""
+    """Return the results, and a row for each one that failed."""
     done: list[_Done] = []
     broken: list[Record] = []
     for seed, future in enumerate(futures):

@@ -69,7 +69,7 @@ def _headless() -> Iterator[tuple[int, int]]:
 
 
 def _launched(graph: Graph) -> tuple[int, int]:
-    """Launch the robot with its page, let it clean; return the page's process and port."""
+    """Launch the robot with its page and begin a clean; return the page's process id and port."""
     port = free_port()
     graph.launch("page:=true", f"page_port:={port}")
     graph.wait_for_topic("/clean/status")
@@ -107,7 +107,7 @@ def _rows(case: str, pid: int, port: int, seconds: float) -> list[Record]:
 
 
 def _watched(pid: int, port: int, count: int, seconds: float) -> tuple[float, dict[str, float]]:
-    """Let so many look on for so long; return % of a core, and what they saw."""
+    """Let so many viewers watch for so many s; return % of a core, and what they received."""
     if count == 0:
         return load([pid], seconds), {}
     viewers = subprocess.Popen(

@@ -28,7 +28,7 @@ _BODY_ROOM = 0.20
 _MOST_EXCESS = 1.0
 """%."""
 _OPTIMAL = 1e-6
-"""Relative; two optimal lengths differ by the order in which their steps were added."""
+"""Relative; two optimal lengths may differ by the order of summation."""
 
 
 def measure(bench: Bench) -> list[Record]:
@@ -86,7 +86,7 @@ def _grid_rows(bench: Bench, case: str, fits: Mask, aim: float) -> list[Record]:
 
 
 def _rules(outcome: Outcome) -> str:
-    """Return what a peer does other than ours."""
+    """Return how a peer's rules differ from ours."""
     if outcome.name == "scikit-fmm":
         return " (any-angle field, no path)"
     if outcome.name == "scipy":

@@ -19,11 +19,11 @@ _REAL_TIME_AIM = 50.0
 _MOST_ADDED = 20.0
 """% that a node may add to the bare round trip."""
 _SIZES = {"64 B": ("message of 64 B", 64), "scan": ("scan of 360 beams", 1516)}
-"""What stands in the table, and the bytes on the wire, by the kind of message."""
+"""By kind of message: its name in the table, and its bytes on the wire."""
 _APART = 0.06
-"""s between two commands: more than a tick, as what comes more often waits for the next one."""
+"""s between two commands: more than a tick, as a more frequent command waits for the next tick."""
 _FASTEST = 100
-"""As fast as the simulation may be asked to run: what is measured is how far behind it falls."""
+"""The speed asked of the simulation; how far its real speed falls behind is measured."""
 _START, _MOST_LOAD, _MOST_MEMORY = 5.0, 25.0, 600.0
 """s, % of a core, and MB that the whole graph may take."""
 _SETTLED = 10.0
@@ -104,7 +104,7 @@ def _ping(graph: Graph, name: str, kind: str, ping: str, pong: str, apart: float
 
 
 def _real_time_row(bench: Bench) -> Record:
-    """Return how many robot seconds pass in one of ours while the robot walks."""
+    """Return how many robot s pass in a s of wall time while the robot walks."""
     with Graph(_folder(bench, "graph")) as graph:
         try:
             graph.launch("home:=apartment", f"speed:={_FASTEST}")

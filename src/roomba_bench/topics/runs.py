@@ -1,4 +1,4 @@
-"""What a whole command takes, from Enter on: time, and computing time of all its processes."""
+"""The time that a whole command takes, from Enter on, and the computing time of its processes."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def spent_by(call: Sequence[str], environment: Mapping[str, str]) -> Spent:
 
 
 def rows_of(command: str, home: str, best: Sequence[Spent], before: str | None) -> list[Record]:
-    """Return the rows of a command: ours is the first of ``best``, the other one that before."""
+    """Return the rows of a command; ``best`` has ours, and then that of ``before``, if any."""
     case = f"{spelled(command)} --home {home}, all compiled"
     aim = _AIMS.get((command, home))
     peers = [] if before is None else [(f"before ({Path(before).name})", best[1])]

@@ -30,8 +30,9 @@ _OVER_MUJOCO = 30.0
 _OVER_IRSIM = 500.0
 _TWO_CORES = 1.8
 _TOGETHER = 20
-"""Robots of ours in one call, on one core, beside the peers: Python's call would cost more than a
-single robot's steps. What a single one makes is in the fleets' rows."""
+"""Robots of ours in one call, on one core, to compare with peers: the overhead of a call from
+Python would exceed a single robot's steps. The figure of a single robot is in the rows about
+fleets."""
 _WARM_AIM, _COLD_AIM = 1.0, 6.0
 """s, of a process from its start to its first step."""
 _FLEETS = (1, 10, 100, 1000)
@@ -147,7 +148,7 @@ def _memory_row(home: Home) -> Record:
     try:
         value = ours_sim.bytes_per_robot(home)
     except Exception as error:
-        # The simulator may be unfinished: the row says so.
+        # The simulator may be unfinished: then the row says so.
         return Record(_TOPIC, *figure, None, "bytes", Better.LOWER, error=_text(error))
     return Record(_TOPIC, *figure, value, "bytes", Better.LOWER)
 

@@ -1,4 +1,4 @@
-"""What the drawing peers share: a home of boxes, where the camera stands, and how they are checked.
+"""Code that the drawing peers share: a home of boxes, the cameras' poses, and the checks.
 
 Boxes are float64 [n, 10]: middle x, y, turn about the vertical, half length, half width, bottom,
 top (m, rad), red, green, blue (0..1); views float64 [n, 4]: x, y, height and heading of a level

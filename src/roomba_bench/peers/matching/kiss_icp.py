@@ -1,7 +1,7 @@
 """kiss-icp: each scan is registered to a map of its own, which it makes on the way.
 
-It was made for large scans outdoors. What is given to it is what served it best: voxels of 5 cm,
-and the wheels' and gyro's step in place of a speed that stays the same.
+It was made for large scans outdoors. It gets the settings that served it best: voxels of 5 cm, and
+the step by wheels and gyro as its prediction, in place of constant speed.
 """
 
 from __future__ import annotations

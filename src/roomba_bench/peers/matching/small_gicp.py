@@ -1,7 +1,7 @@
 """small_gicp: each scan is registered to points on the map's surfaces, from where the wheels say.
 
-What is given to it is what served it best: points every 2 cm, at three heights, so that it finds
-the walls' normals; the distance to these planes; and the prediction of wheels and gyro together.
+It gets the settings that served it best: points every 2 cm, at three heights, so that it finds the
+walls' normals; the distance to these planes; and the prediction by wheels and gyro.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ DISTRIBUTION = "small_gicp"
 _HEIGHTS = (-0.02, 0.0, 0.02)
 _NEIGHBOURS = 10
 _FARTHEST = 0.3
-"""m; from a beam's end to the surface that it belongs to."""
+"""m; the farthest surface that a beam's end may belong to."""
 _ROUNDS = 20
 _SETTLED, _SETTLED_TURN = 5e-5, 2e-4
 """m, rad."""

@@ -1,4 +1,4 @@
-"""What the planning peers share: the case, and how their paths are measured."""
+"""Code that the planning peers share: the case, and the measuring of their paths."""
 
 from __future__ import annotations
 

@@ -1,8 +1,4 @@
-"""What the simulating peers share: the floor, the driving rule, and what is counted as a unit.
-
-All drive by the rule of the oldest robot vacuums: straight on at 0.3 m/s; after a bump turn on the
-spot for a random time.
-"""
+"""Code that the simulating peers share: the floor, the driving rule, and the counted units."""
 
 from __future__ import annotations
 
@@ -28,7 +24,7 @@ SHORTEST_TURN, LONGEST_TURN = 0.4, 3.0
 """s."""
 _CHECKED_STEPS = 200
 _LEAST_WAY = 0.3
-"""m; a robot that has not travelled so far after the checked steps (10 s) is stuck."""
+"""m; a robot that has moved less after the checked steps (10 s) is stuck."""
 
 
 @dataclass(eq=False)
@@ -118,7 +114,7 @@ class Bounce:
             self._turning = self._random.uniform(SHORTEST_TURN, LONGEST_TURN)
             self._wants_turn = True
             return 0.0, TURNING_SPEED
-        # The first step after a turn leaves the wall: it must not count as bumped before that.
+        # After a turn the robot leaves the wall in the first step: until then no touch is a bump.
         self._wants_turn = False
         return SPEED, 0.0
 

@@ -1,4 +1,4 @@
-"""Solid cells as few rectangles, for engines that know no grids."""
+"""Covers solid cells with few rectangles, for engines that know no grids."""
 
 from __future__ import annotations
 

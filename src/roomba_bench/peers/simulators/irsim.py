@@ -20,7 +20,7 @@ from roomba_bench.peers.simulators.arena import Arena, work_of
 DISTRIBUTION = "ir-sim"
 
 _TOUCH = 0.03
-"""m; a wall so near in front of the body is a bump: a real collision would stop ir-sim's robot."""
+"""m; a wall so near ahead counts as a bump, as a real collision would stop ir-sim's robot."""
 
 
 class IrsimEngine:

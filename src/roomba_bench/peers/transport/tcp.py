@@ -1,4 +1,4 @@
-"""Raw TCP on loopback: the least that a round trip between two processes of Python can take."""
+"""Raw TCP on loopback: the fastest round trip that two Python processes can have."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def prepare(parameters: Parameters) -> Work:
     message = bytes(size)
     with socket.create_server(("127.0.0.1", 0)) as listener:
         listener.settimeout(_DEADLINE)
-        # It ends with this process, whose end of the connection then closes.
+        # The echo ends with this process, which then closes its end of the connection.
         subprocess.Popen([sys.executable, "-c", _ECHO, str(listener.getsockname()[1])])
         link, _ = listener.accept()
     link.settimeout(_DEADLINE)
