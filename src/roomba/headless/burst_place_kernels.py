@@ -113,10 +113,10 @@ def localize(
         at_once(ranges, beams, place.path, stamp, place.still, place.work)
         count = correct_late(
             belief, place.numbers, sight.field, sight.place, beams, place.still, place.path,
-            stamp, reckoned,
+            stamp, now, reckoned,
         )  # fmt: skip
     else:
-        count = correct(belief, place.numbers, sight.field, sight.place, beams, ranges, stamp)
+        count = correct(belief, place.numbers, sight.field, sight.place, beams, ranges, now)
         for axis in range(3):
             reckoned[axis] = belief[0].reckoned[axis]
     calibrate(belief)

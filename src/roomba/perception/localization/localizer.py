@@ -107,7 +107,7 @@ class Localizer:
         self._is_blind = len(view) == 0
         if self._is_blind or self._is_lifted or reckoned is None or self._map is None:
             return
-        self._row["seen"] = stamp
+        self._row["seen"] = self._now
         tells_places_apart = len(view) >= self._config.least_beams
         if self._search is None:
             self._follow(view, taken, reckoned, tells_places_apart)

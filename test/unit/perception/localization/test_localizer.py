@@ -299,6 +299,29 @@ def test_a_scan_that_comes_late_does_not_drag_the_pose_back(late: float) -> None
         assert robot.error < 0.01
 
 
+@pytest.mark.parametrize("late", [0.75, 1.25])
+def test_a_lidar_is_silent_when_no_scan_comes_and_not_when_each_is_late(late: float) -> None:
+    """Two scans a second over a slow line, as a Neato sends them."""
+    robot = started()
+    on_line: list[tuple[float, NDArray[np.float32]]] = []
+    told: list[tuple[Knowledge, str]] = []
+    robot.see_as = lambda ranges: on_line.append((robot.world.time, ranges))
+    for _ in steps(6.0):
+        robot.step(Twist(0.05, 0.2))
+        if on_line and on_line[0][0] <= robot.world.time - late:
+            stamp, ranges = on_line.pop(0)
+            on_line = [each for each in on_line if each[0] > stamp + 0.45]
+            robot.localizer.see(stamp, ranges, LIDAR)
+            told.append((robot.estimate.knowledge, robot.estimate.reason))
+        elif told:
+            told.append((robot.estimate.knowledge, robot.estimate.reason))
+    assert len(told) > 60
+    assert set(told) == {(Knowledge.KNOWN, "")}
+    robot.see_as = lambda ranges: None
+    robot.stay(CONFIG.localization.scan_timeout + 0.1)
+    assert "the lidar sends no scans" in robot.estimate.reason
+
+
 def test_a_scan_from_long_ago_is_left_out() -> None:
     robot = started()
     before = robot.estimate

@@ -49,7 +49,7 @@ BELIEF: Final = np.dtype(
         ("bias", "f8"),  # of the gyro, as learned, rad/s
         ("samples", "i8"),  # it was learned from, since the wheels stand
         ("still_since", "f8"),  # inf: the wheels turn
-        ("seen", "f8"),  # stamp of the newest scan in which anything was seen
+        ("seen", "f8"),  # s, when the newest scan came in which anything was seen
         ("beams", "i8"),  # that met something in the newest scan
         ("is_judged", "?"),  # whether a fit is known
         ("is_doubtful", "?"),  # whether scans fit so badly that it may be somewhere else

@@ -59,9 +59,11 @@ def correct(
     place: Place,
     lidar: LidarBeams,
     ranges: NDArray[np.float32],
-    stamp: float,
+    now: float,
 ) -> int:
-    """Correct the pose by a scan, float32 [beams], m, taken here and now; return how many ended.
+    """Correct the pose by a scan, float32 [beams], m, taken here; return how many beams ended.
+
+    ``now`` is when it came, s.
 
     ``lidar.ends`` has these beams then. Whether the pose is still to be trusted tells
     :func:`is_calm`.
@@ -72,7 +74,7 @@ def correct(
     )
     belief.beams = count
     if count > 0:
-        belief.seen = stamp
+        belief.seen = now
         match_ends(beliefs, numbers, field, place, lidar.ends, count, lidar.lanes)
         if count >= numbers[0].least_beams:
             judge_ends(beliefs, numbers, field, place, lidar.ends, count, lidar.mount, lidar.lanes)
@@ -89,9 +91,10 @@ def correct_late(
     ranges: NDArray[np.float32],
     path: ReckonedPath,
     stamp: float,
+    now: float,
     reckoned: Floats,
 ) -> int:
-    """Correct the pose as :func:`correct` does, by a scan that was taken a little ago.
+    """Correct the pose as :func:`correct` does, by a scan that was taken at ``stamp``, s.
 
     ``reckoned`` [3] is filled with where ``path`` had the robot then; a scan from before all of
     ``path`` tells nothing.
@@ -102,7 +105,7 @@ def correct_late(
         return 0
     back = seen_from(belief.reckoned, reckoned)
     pose[0], pose[1], pose[2] = beyond(pose[0], pose[1], pose[2], back[0], back[1], back[2])
-    count = correct(beliefs, numbers, field, place, lidar, ranges, stamp)
+    count = correct(beliefs, numbers, field, place, lidar, ranges, now)
     on = seen_from(reckoned, belief.reckoned)
     pose[0], pose[1], pose[2] = beyond(pose[0], pose[1], pose[2], on[0], on[1], on[2])
     return count
