@@ -16,18 +16,18 @@ from roomba.control.curve_kernels import BENDING, SAMPLE, SECTION, Course, round
 Rows = NDArray[np.void]
 
 SHORTEST_LEG: Final = 1e-4
-"""m; points nearer to the one before are left out."""
+"""m; a point nearer than this to the point before it is left out."""
 _STEP: Final = 0.004
-"""m; at most, between samples of the curve."""
+"""m; the largest distance between neighbouring samples of a section with soft corners."""
 _ROUNDING: Final = 1e-6
-"""Steps; by no more is a length off that was made of legs in any direction."""
+"""In steps; rounding makes a sum of legs wrong by less than this."""
 
 
 def course_of(points: Floats, config: TrackingConfig, body: BodyConfig) -> Course:
     """Return the course along ``points``, float64 [n, 2], m.
 
-    Corners sharper than ``config.sharp_corner`` part it into sections. The curve of a section is at
-    most ``config.off_corner`` from the path.
+    Corners sharper than ``config.sharp_corner`` divide the course into sections. The curve of a
+    section is at most ``config.off_corner`` from the path.
     """
     legs = np.hypot(*np.diff(points, axis=0).T)
     points = np.ascontiguousarray(points[np.concatenate(([True], legs > SHORTEST_LEG))])
@@ -55,7 +55,7 @@ def _sections(stations: Floats, stops: NDArray[np.intp], config: TrackingConfig)
     sections["begin"], sections["end"] = stations[begins], stations[ends]
     sections["leg"], sections["end_leg"] = begins, ends
     lengths = sections["end"] - sections["begin"]
-    # A straight one is told by its ends.
+    # A straight section needs no samples but its two ends.
     steps = np.where(ends - begins == 1, 1.0, np.ceil(lengths / _STEP - _ROUNDING))
     sections["around"] = np.ceil(config.longest_blend * steps / lengths)
     sections["last"] = np.cumsum(steps + 1.0) - 1.0

@@ -1,9 +1,9 @@
 """Compiled rounding of a path's soft corners: a curve, and how it bends.
 
-A curve's points are means of the path's points around them, weighted by a triangle. An even bend of
-the path stays an even bend, and a corner becomes one whose curvature rises and falls evenly, as a
-drive can follow it: the curve along which a turning speed changes evenly is a clothoid. How fast it
-can be driven: :mod:`.curve_speed_kernels`.
+Each point of the curve is the mean of the path's points around it, with triangular weights. A bend
+of even curvature stays even, and a corner becomes a bend whose curvature rises and falls evenly. A
+drive can follow that: along such a curve (a clothoid) the turning speed changes evenly. How fast
+the curve can be driven: :mod:`.curve_speed_kernels`.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ SAMPLE: Final = np.dtype(
         ("y", "f8"),  # m
         ("heading", "f8"),  # rad; without jumps within a section
         ("curvature", "f8"),  # 1/m; positive to the left
-        ("tightening", "f8"),  # 1/m2; by which the curvature grows in a metre, to either side
-        ("speed", "f8"),  # m/s; the fastest there
+        ("tightening", "f8"),  # 1/m2; how much the size of the curvature grows per metre
+        ("speed", "f8"),  # m/s; the fastest that is allowed there
     ]
 )
 """A place on the curve."""
@@ -34,24 +34,24 @@ SECTION: Final = np.dtype(
     [
         ("begin", "f8"),  # m; along the path
         ("end", "f8"),  # m; the same
-        ("first", "i8"),  # of its samples
-        ("last", "i8"),
-        ("around", "i8"),  # samples before it and behind it that its means reach
-        ("leg", "i8"),  # its first one
+        ("first", "i8"),  # index of its first sample
+        ("last", "i8"),  # and of its last one
+        ("around", "i8"),  # samples before and behind the section that its means reach
+        ("leg", "i8"),  # index of its first leg
         ("end_leg", "i8"),  # one past its last leg
     ]
 )
-"""What is driven in one go: between two corners at which the robot turns on the spot."""
+"""A part of the course that is driven in one go, between two turns on the spot."""
 
 BENDING: Final = np.dtype(
     [
-        ("off_corner", "f8"),  # m; the curve is not farther off the path
+        ("off_corner", "f8"),  # m; the curve is at most so far off the path
         ("longest_blend", "f8"),  # m; no mean is taken over more than this to each side
         ("turning", "f8"),  # rad/s
         ("turning_acceleration", "f8"),  # rad/s2
         ("turning_braking", "f8"),  # rad/s2
         ("half_track", "f8"),  # m; from the middle to a wheel
-        ("slowest", "f8"),  # m/s; no bend is driven more slowly
+        ("slowest", "f8"),  # m/s; no bend limits the speed to less
         ("fastest", "f8"),  # m/s; of a wheel
         ("acceleration", "f8"),  # m/s2
         ("braking", "f8"),  # m/s2
@@ -60,18 +60,19 @@ BENDING: Final = np.dtype(
 """Limits of a curve, one row."""
 
 _HALVINGS: Final = 10
-"""Of the interval in which a mean's width is looked for."""
+"""How often the interval is halved in which a mean's width is searched for."""
 _WIDENING: Final = 0.5
-"""By so much of the way from one corner to the next the mean may widen."""
+"""Share of the way between two corners by which the mean's reach may grow along that way."""
 _STRAIGHT: Final = 1e-6
-"""1/m; less is no bend to either side, but how places are rounded."""
+"""1/m; a smaller curvature is rounding error, and bends to neither side."""
 
 
 class Course(NamedTuple):
     """A path as kernels know it; see :mod:`.course`.
 
-    ``points`` is [n, 2], m, and ``stations`` [n] the way to each, m. ``sections``, rows of SECTION,
-    are driven one after the other; ``samples``, rows of SAMPLE, are evenly spaced in each.
+    ``points`` is [n, 2], m, and ``stations`` [n] the length of the path up to each, m.
+    ``sections``, rows of SECTION, are driven one after the other; ``samples``, rows of SAMPLE, are
+    evenly spaced in each.
     """
 
     points: Floats
@@ -85,8 +86,9 @@ def round_off(course: Course, turns: Floats, halves: Floats, raw: Floats, limits
     """Fill in the samples of a course.
 
     ``turns`` [n] is how much the path turns at each of its points, rad, to either side. ``halves``
-    [n] is room for how far to each side of a corner the mean is taken, m, and ``raw`` for the
-    samples of the longest section and what is straight around it. ``limits`` is one row of BENDING.
+    [n] and ``raw`` [samples, 2] are work arrays: how far to each side of a corner the mean is
+    taken, m, and the path's points at the samples of one section and around it, m. ``limits`` is
+    one row of BENDING.
     """
     for section in course.sections:
         step = (section.end - section.begin) / (section.last - section.first)
@@ -102,7 +104,7 @@ def round_off(course: Course, turns: Floats, halves: Floats, raw: Floats, limits
 def _widen(stations: Floats, turns: Floats, section: Row, halves: Floats, limits: Row) -> None:
     """Set how far to each side of the section's corners the mean is taken, m.
 
-    As far as it leaves the path by what it may, and changing slowly from corner to corner.
+    It is as far as the limits let the curve leave the path, and changes slowly between corners.
     """
     first, last = section.leg + 1, section.end_leg - 1
     for at in range(first, last + 1):
@@ -128,7 +130,7 @@ def _off_corner(
 ) -> float:
     """Return how far from a corner the mean over ``half`` m to each side is at most, m.
 
-    A corner of a rad, d m away, contributes a (half - d)^3 / (6 half^2).
+    A corner that turns by a rad, d m away, contributes a (half - d)^3 / (6 half^2).
     """
     off = float(turns[at] * half / 6.0)
     for way in (-1, 1):
@@ -144,9 +146,9 @@ def _off_corner(
 
 @inner_part
 def _lay_out(course: Course, section: Row, raw: Floats, step: float) -> None:
-    """Write down the path's points at the samples, m, and around the section.
+    """Fill ``raw`` with the path's points at the section's samples and around the section, m.
 
-    Before and behind it the path is thought to go straight on.
+    Before and behind the section the path is extended straight on.
     """
     before = section.around
     points, stations, leg = course.points, course.stations, section.leg
@@ -186,7 +188,7 @@ def _half_width(
 ) -> float:
     """Return over how many m to each side of a station the mean is taken.
 
-    ``corner`` is the point before it. It is 0 where there is no corner in reach.
+    ``corner`` is the index of the point before the station. Return 0 if no corner is in reach.
     """
     has_before, has_after = corner > section.leg, corner + 1 < section.end_leg
     since, until = station - stations[corner], stations[corner + 1] - station
@@ -209,7 +211,7 @@ def _bend(samples: Any, section: Row, step: float) -> None:
             heading = before + wrapped(heading - before)
         samples[at].heading = heading
     if last > first + 1:
-        # Those of the ends are still those half a step farther in.
+        # So far the headings at the ends are those half a step inside: extrapolate them.
         samples[first].heading = 2.0 * samples[first].heading - samples[first + 1].heading
         samples[last].heading = 2.0 * samples[last].heading - samples[last - 1].heading
     for at in range(first, last + 1):
@@ -222,8 +224,8 @@ def _bend(samples: Any, section: Row, step: float) -> None:
 def _tighten(samples: Any, section: Row, step: float) -> None:
     """Fill in by how much the bends of a section tighten; less than 0 where they open.
 
-    Where one changes sides it counts as tightening: the turning speed grows there, to the other
-    one.
+    A bend that changes sides counts as tightening: the turning speed grows there, to the other
+    side.
     """
     first, last = section.first, section.last
     for at in range(first, last + 1):

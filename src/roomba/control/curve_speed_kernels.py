@@ -1,7 +1,7 @@
-"""Compiled limits of speed along a curve: what its bends allow, and from where they are reached.
+"""Compiled limits of speed along a curve: what its bends, the brakes and the motors allow.
 
-The turning speed is the speed times the curvature. It is limited itself, and so is how fast it may
-change: by the speed, and by how much the bend tightens or opens.
+The turning speed is the speed times the curvature. Both the turning speed and its change are
+limited. It changes with the speed, and as the bend tightens or opens.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ Row = Any
 """One row of an array, in a kernel."""
 
 _NO_TURN: Final = 1e-9
-"""1/m or 1/m2; a curvature, or its change, that is none."""
+"""1/m or 1/m2; the smallest curvature, or change of it, that a limit is divided by."""
 
 
 @inner_part
 def limit_speeds(samples: Any, section: Row, step: float, limits: Row) -> None:
-    """Fill in the speeds: of each bend by itself, then from where it can brake and speed up.
+    """Fill in the speeds: what each bend allows by itself, then what braking and speeding up allow.
 
     ``samples`` are rows of SAMPLE, of which the section's lie ``step`` m apart, ``limits`` a row of
     BENDING.
@@ -41,10 +41,10 @@ def limit_speeds(samples: Any, section: Row, step: float, limits: Row) -> None:
 
 @inner_part
 def _bend_speed(sample: Row, limits: Row) -> float:
-    """Return the fastest speed at a sample by itself, m/s.
+    """Return the fastest speed that the bend at a sample allows by itself, m/s.
 
-    Where the curvature changes by c in a metre, the turning speed does by v^2 c in a second. The
-    outer wheel is the fastest one.
+    Where the curvature changes by c per metre, the turning speed changes by v^2 c per second. The
+    outer wheel is the faster one, so that its top speed counts.
     """
     bend, tightening = abs(sample.curvature), sample.tightening
     most = limits.turning_acceleration if tightening > 0.0 else limits.turning_braking
@@ -56,9 +56,9 @@ def _bend_speed(sample: Row, limits: Row) -> float:
 
 @inner_part
 def _bend_acceleration(sample: Row, limits: Row) -> float:
-    """Return by how much the speed may grow at a sample, m/s2.
+    """Return the acceleration that the bend at a sample allows, m/s2.
 
-    There the turning speed grows with the speed, and with what the bend tightens.
+    A growing speed and a tightening bend both raise the turning speed, and share its limit.
     """
     left = limits.turning_acceleration - sample.speed * sample.speed * sample.tightening
     bend = max(abs(sample.curvature), _NO_TURN)

@@ -29,7 +29,7 @@ class DriveGate:
         return self._is_held
 
     def hold(self, is_held: bool) -> None:
-        """Hold the drive from now on, or release it; a command from before counts no more."""
+        """Hold the drive from now on, or release it; either way the earlier command is dropped."""
         self._is_held = is_held
         self._command = STANDSTILL
 

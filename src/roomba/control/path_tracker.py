@@ -30,7 +30,7 @@ class PathTracker:
         """Begin at the first point; ``period`` is the time between two ticks, s."""
         self.course = course_of(points, config, body)
         rows = np.zeros(1, TRACK)
-        # The same row twice: numbers are read from the plain one in a tenth of the time.
+        # Two views of one row: reading a number from the plain one takes a tenth of the time.
         self.state, self._row = rows.view(np.recarray), rows[0]
         state = self.state[0]
         state.turning, state.to_turn = 1.0, math.inf
@@ -55,46 +55,46 @@ class PathTracker:
 
     @property
     def is_done(self) -> bool:
-        """Whether it is at the end of the path."""
+        """Whether the robot is at the end of the path."""
         return bool(self._row["done"] > 0.0)
 
     @property
     def leg(self) -> int:
-        """The leg that it is on, from 0."""
+        """The leg of the path that the robot is on, from 0."""
         return int(self._row["leg"])
 
     @property
     def to_turn(self) -> float:
-        """What is left of a turn on the spot, rad, by the last tick; infinite where it drives."""
+        """What was left of a turn on the spot at the last tick, rad; infinite while driving."""
         return float(self._row["to_turn"])
 
     @property
     def length(self) -> float:
-        """Of the whole path, m."""
+        """Length of the whole path, m."""
         return float(self.course.stations[-1])
 
     @property
     def along(self) -> float:
-        """How far along the path it is, m."""
+        """How far along the path the robot is, m."""
         return along_of(self.state[0], self.course)
 
     @property
     def left(self) -> float:
-        """How much of the path is before it, m."""
+        """How much of the path is still ahead, m."""
         return self.length - self.along
 
     @property
     def rest(self) -> NDArray[np.float64]:
-        """What of the path is before it, float64 [n, 2], m, from where it is on."""
+        """The path still ahead, float64 [n, 2], m; its first point is where the robot is on it."""
         along, points, stations = self.along, self.course.points, self.course.stations
         here = [np.interp(along, stations, points[:, axis]) for axis in (0, 1)]
         return np.vstack((here, points[stations > along]))
 
     @property
     def aside(self) -> float:
-        """How far left of its curve it is, m."""
+        """How far left of the curve the robot is, m."""
         return float(self._row["aside"])
 
     def off_path(self, pose: Pose) -> float:
-        """Return how far a pose is from the leg that it should be on, m."""
+        """Return how far a pose is from the leg that the robot should be on, m."""
         return off_path(self.state[0], self.course, pose.x, pose.y)

@@ -35,7 +35,7 @@ class PositionLoop:
 
     @property
     def arrived(self) -> bool:
-        """Whether it stands at its setpoint."""
+        """Whether the robot stands at its setpoint."""
         return self._arrived_at is not None
 
     def _is_there(self, target: tuple[float, float], distance: float) -> bool:

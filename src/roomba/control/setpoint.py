@@ -1,8 +1,8 @@
 """The setpoint: where the robot should be, and whether its sender is still connected.
 
-A single setpoint, repeated or not, is driven to the end, or until the robot comes no nearer: one in
-a wall would hold the drive for ever. A stream of them, a moving setpoint, is only valid while it
-flows: when its sender vanishes, or is silent, the robot stops.
+The robot drives to a single setpoint, repeated or not, until it arrives or comes no nearer: a
+setpoint in a wall would otherwise hold the drive for ever. A stream of setpoints (a moving
+setpoint) is only valid while it flows: when its sender vanishes, or is silent, the robot stops.
 """
 
 from __future__ import annotations
@@ -17,9 +17,10 @@ class Setpoint:
     """The newest setpoint, m in the map frame; times in s of the robot's clock."""
 
     def __init__(self, stream_timeout: float, given_up_after: float, nearer: float) -> None:
-        """A stream is setpoints that differ and follow in less than ``stream_timeout`` s.
+        """Take as a stream setpoints that differ and follow each other within ``stream_timeout`` s.
 
-        A single one is given up when the robot comes no ``nearer``, m, for ``given_up_after`` s.
+        A single setpoint is given up when the robot does not come nearer to it by ``nearer`` m in
+        ``given_up_after`` s.
         """
         self._stream_timeout = stream_timeout
         self._given_up_after, self._nearer = given_up_after, nearer
@@ -46,16 +47,19 @@ class Setpoint:
         self._senders = senders
 
     def fulfilled(self, now: float) -> None:
-        """The robot is there: forget the setpoint, unless more are still streaming in."""
+        """Forget the setpoint, where the robot is by now, unless more are still streaming in."""
         if not self.is_wished(now):
             self._target = None
 
     def is_wished(self, now: float) -> bool:
-        """Whether the newest setpoint is as recent as a stream's; it may be forgotten already."""
+        """Whether a setpoint came within the stream's timeout, even if it is forgotten already."""
         return is_recent(now, self._received, self._stream_timeout)
 
     def drop_if_out_of_reach(self, now: float, distance: float) -> bool:
-        """Tell at a tick how far it is to the setpoint, m; return whether that was dropped now."""
+        """Drop a single setpoint, ``distance`` m away, that the robot comes no nearer to.
+
+        Call this at each tick. Return whether the setpoint was dropped now.
+        """
         self._came_nearer += self._jumps.at(now)
         if distance <= self._nearest - self._nearer:
             self._nearest, self._came_nearer = distance, now

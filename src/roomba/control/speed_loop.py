@@ -24,9 +24,9 @@ class Hold(Enum):
     """There is no command yet, or the newest one is too old."""
     SPEED_ZERO = "the speed wanted is 0"
     BUMPER = "the bumper is pressed"
-    """It backs off a little, so that it can turn away; then it only does not push."""
+    """The robot backs off a little, so that it can turn away; after that it only may not push."""
     CLIFF = "there is no floor ahead"
-    """The robot backs away until there is, ``cliff_backing_time`` at most; no command counts."""
+    """The robot backs away, for ``cliff_backing_time`` at most, in place of what is commanded."""
     WHEEL_DROP = "a wheel hangs in the air"
     EMERGENCY = "emergency stop"
     """The robot stands until the stop is released; no command counts."""
@@ -64,9 +64,9 @@ class SpeedLoop:
     """
 
     def __init__(self, body: BodyConfig, max_speed: float) -> None:
-        """Keep to ``max_speed``, m/s; a command of the body's ``command_timeout`` counts no more.
+        """Keep to ``max_speed``, m/s; a command older than the body's ``command_timeout`` is stale.
 
-        The body's own top speed is the drive's business.
+        This loop does not look at the body's own top speed: that is left to the drive.
         """
         self._body, self._max_speed = body, max_speed
         self._cruise_speed = math.inf
@@ -79,7 +79,7 @@ class SpeedLoop:
 
     @property
     def speed_limit(self) -> float:
-        """The fastest that it lets through, m/s."""
+        """The fastest speed that the loop lets through, m/s."""
         return min(self._max_speed, self._cruise_speed)
 
     def set_max_speed(self, max_speed: float) -> None:
@@ -99,7 +99,7 @@ class SpeedLoop:
         self._commands[source] = _Command(twist, now)
 
     def forget_commands(self) -> None:
-        """Let no command from before count: nothing is wanted of the drive."""
+        """Drop all commands: from now on nothing is wanted of the drive."""
         self._commands.clear()
 
     def set_hazards(self, hazards: Hazards) -> None:

@@ -1,7 +1,7 @@
 """Compiled path tracking: from the robot's place along its path to the twist that keeps it there.
 
-A path is followed section by section. At the sharp corners between them it turns on the spot; in
-each it follows the curve that rounds off the path.
+The robot follows a path section by section. At the sharp corners between sections it turns on the
+spot; in a section it follows the curve that rounds off the path.
 """
 
 from __future__ import annotations
@@ -17,28 +17,28 @@ from roomba.control.curve_kernels import Course
 
 TRACK: Final = np.dtype(
     [
-        ("section", "i8"),  # that it is on
-        ("leg", "i8"),  # of the path, as far as it came
-        ("turning", "f8"),  # 1 while it turns on the spot towards its section
+        ("section", "i8"),  # index of the section that the robot is on
+        ("leg", "i8"),  # index of the leg of the path that the robot is on
+        ("turning", "f8"),  # 1 while the robot turns on the spot towards its section
         ("to_turn", "f8"),  # rad; what is left of that turn, infinite where it drives
         ("done", "f8"),  # 1 at the end of the path
-        ("along", "f8"),  # how far along the path it is, m
-        ("aside", "f8"),  # left of its curve, m
-        ("speed", "f8"),  # m/s; that the drive has, as far as it is known here
+        ("along", "f8"),  # how far along the path the robot is, m
+        ("aside", "f8"),  # how far left of its curve, m
+        ("speed", "f8"),  # m/s; that the drive should have by the commands so far
         # what does not change
         ("acceleration", "f8"),  # m/s2
         ("braking", "f8"),  # m/s2
-        ("reach", "f8"),  # m; being a little aside it comes back over about this way when slow
-        ("reach_time", "f8"),  # s; and over what it drives in this time in addition
+        ("reach", "f8"),  # m; at low speed the robot comes back to its curve over about this way
+        ("reach_time", "f8"),  # s; faster, over what it drives in this time in addition
         ("gain", "f8"),  # 1/s; of the heading
         ("turning_speed", "f8"),  # rad/s
         ("turning_braking", "f8"),  # rad/s2
-        ("aimed", "f8"),  # rad; so well it aims before it drives
-        ("there", "f8"),  # m; so near to a corner it is there
+        ("aimed", "f8"),  # rad; a turn on the spot ends at an error of the heading below this
+        ("there", "f8"),  # m; a section ends so near to its end
         ("period", "f8"),  # s; between two ticks
-        ("askew", "f8"),  # rad; with a larger error of the heading it turns on the spot first
+        ("askew", "f8"),  # rad; at a larger error of the heading the robot turns on the spot
         ("turning_delay", "f8"),  # s; until the drive has the turning speed that it is told
-        ("late", "f8"),  # ticks; by so much the drive is expected to brake late
+        ("late", "f8"),  # ticks by which the drive is expected to brake late
         ("slowest", "f8"),  # m/s and rad/s; slower than this drives do not turn reliably
     ]
 )
@@ -46,11 +46,11 @@ TRACK: Final = np.dtype(
 Row = Any
 
 _ROUNDS: Final = 2
-"""Of looking for the curve's nearest place: each starts from where the one before ended."""
+"""Rounds of the search for the curve's nearest place; each starts where the one before ended."""
 _NO_TURN: Final = 1e-9
-"""rad/s; less is none."""
+"""rad/s; the smallest turning speed that the limit is divided by."""
 _STRIDE: Final = 0.1
-"""m; by so much it moves on a curve at most in each."""
+"""m; how far along a curve that search moves at most in each round."""
 
 
 @entry
@@ -159,23 +159,23 @@ def turn_speed(state: Row, error: float) -> float:
 def drive(
     state: Row, course: Course, section: Row, error: float, left: float, limit: float
 ) -> tuple[float, float]:
-    """Return the twist along the curve: as fast as what is ahead allows, back to the line."""
+    """Return the twist along the curve, and back onto it, as fast as the curve ahead allows."""
     if abs(error) > state.askew:
-        # Pushed aside: it aims first.
+        # The robot was pushed aside: it aims first.
         state.turning = 1.0
         return turn_on_the_spot(state, error)
     late = state.late * state.period * state.speed
     speed = min(limit, speed_at(course, section, state.along + late))
     speed = min(speed, arriving_speed(state, left))
     answer(state, speed)
-    # Drives answer late: what it has to turn by then.
+    # The drive answers late: take the curvature where the robot will be by then.
     low, share = between(section, state.along + state.turning_delay * state.speed)
     before, after = course.samples[low].curvature, course.samples[low + 1].curvature
     curvature = before + share * (after - before)
     reach = state.reach + state.reach_time * speed + abs(state.aside)
     back = -math.atan(state.aside / reach)
     turn = state.speed * curvature + state.gain * wrapped(error + back)
-    # Where it cannot turn so fast it is slower, and keeps to its curve.
+    # Where the robot cannot turn so fast, it slows down and keeps to its curve.
     share = min(1.0, state.turning_speed / max(abs(turn), _NO_TURN))
     return share * speed, share * turn
 
@@ -190,7 +190,7 @@ def speed_at(course: Course, section: Row, station: float) -> float:
 
 @inner_part
 def arriving_speed(state: Row, left: float) -> float:
-    """Return the speed, m/s, with which it stands after the ``left`` m of its section."""
+    """Return the speed, m/s, from which the robot stops at its section's end, ``left`` m ahead."""
     nearly = left / (2.2 * state.period)
     stopping = stopping_speed(left, state.braking, state.late * state.period)
     return float(max(min(stopping, nearly), state.slowest))
@@ -206,9 +206,9 @@ def answer(state: Row, speed: float) -> None:
 
 @inner_part
 def stopping_speed(way: float, braking: float, delay: float) -> float:
-    """Return the speed from which it stops within ``way``: m/s and m, or rad/s and rad.
+    """Return the speed from which the drive stops within ``way``: m/s and m, or rad/s and rad.
 
-    The drive goes on for ``delay``, s, and brakes then: v delay + v^2 / (2 braking) = way.
+    The drive goes on for ``delay``, s, and then brakes: v delay + v^2 / (2 braking) = way.
     """
     speed: float = braking * (math.sqrt(delay * delay + 2.0 * max(way, 0.0) / braking) - delay)
     return speed

@@ -1,1 +1,1 @@
-"""Calibration of the robot by itself: how far wheels, gyro and lidar are off what is told."""
+"""Calibration of the robot by itself: how far wheels, gyro and lidar are off the configuration."""

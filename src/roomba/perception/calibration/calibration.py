@@ -1,4 +1,4 @@
-"""What is known of the robot's errors, as a value: to be told, kept and taken up again."""
+"""The robot's errors as measured so far, as a value: to be shown, saved and restored."""
 
 from __future__ import annotations
 
@@ -13,18 +13,19 @@ from roomba.arrays import Floats
 from roomba.perception.calibration.state import AHEAD, DRIFT, ERRORS, GYRO, LEFT, TURN, TURNED, WAY
 
 _TOLD: Final = 2.0
-"""Deviations from which on an error is told as one."""
+"""Standard deviations; an error is shown to people from this many of its own on."""
 _MOST: Final = 0.5
 _ROUNDING: Final = 1e-9
-"""The largest error that is one of a robot; and of a variance, what is none."""
+"""The limit of errors that a robot can have, and how far rounding puts a variance below 0."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Calibration:
-    """``errors`` is float64 [ERRORS], as of :mod:`roomba.perception.calibration.state`.
+    """The measured ``errors``, float64 [ERRORS]: :mod:`roomba.perception.calibration.state`.
 
-    ``covariance`` is theirs, ``applied`` what of them the robot goes by. They were measured over so
-    many ``windows``; ``base`` is what is told of the wheels' distance, m, 0 if nothing.
+    ``covariance`` [ERRORS, ERRORS] is theirs; ``applied`` [ERRORS] are those that the robot is
+    corrected by. ``windows`` is over how many windows they were measured, and ``base`` the
+    configured distance of the wheels, m, 0 if not known.
     """
 
     errors: Floats
@@ -35,7 +36,7 @@ class Calibration:
 
     @staticmethod
     def of(beliefs: NDArray[np.void]) -> Calibration:
-        """Return what a BELIEF [1] knows now."""
+        """Return the calibration of a BELIEF [1]."""
         row = beliefs[0]["calibration"]
         return Calibration(
             row["errors"].copy(),
@@ -46,7 +47,7 @@ class Calibration:
         )
 
     def take_up(self, beliefs: NDArray[np.void]) -> None:
-        """Let a BELIEF [1] go on with this, in place of what it knows."""
+        """Replace the calibration of a BELIEF [1] by this one."""
         row = beliefs[0]["calibration"]
         row["errors"], row["covariance"], row["applied"] = (
             self.errors,
@@ -55,7 +56,7 @@ class Calibration:
         )
         row["base"] = row["base"] or self.base
         row["windows"], row["is_applied"] = self.windows, bool(self.applied[: GYRO + 1].any())
-        # What was under way was measured by other corrections, and perhaps in another frame.
+        # The window under way was measured with other corrections, and perhaps in another frame.
         row["is_open"] = False
 
     @property
@@ -66,7 +67,7 @@ class Calibration:
 
     @property
     def is_sensible(self) -> bool:
-        """Whether these can be numbers of a robot: finite, and none is off by half."""
+        """Whether these can be numbers of a robot: finite, and no error as large as 0.5."""
         arrays = (self.errors, self.covariance, self.applied)
         shapes = ((ERRORS,), (ERRORS, ERRORS), (ERRORS,))
         if any(each.shape != shape for each, shape in zip(arrays, shapes, strict=True)):
@@ -82,7 +83,8 @@ class Calibration:
     def told(self) -> list[tuple[str, float, float, str]]:
         """Return name, value, deviation and unit of each error, for people.
 
-        Of wheels whose distance is known: both radii and the distance; else what the odometry does.
+        If the distance of the wheels is known, these are the errors of both radii and of the
+        distance; else those of the odometry.
         """
         errors, deviations = self.errors, self.deviations
         rows = self._wheels() if self.base > 0.0 else self._odometry()
@@ -104,9 +106,9 @@ class Calibration:
     def _wheels(self) -> list[tuple[str, Any, Any, str]]:
         """Return the errors of the left and the right wheel's radius, and of their distance.
 
-        With radii (1 + l), (1 + r) and distance b (1 + e), in those that are told, odometry's way
-        is off by (l + r) / 2, its turn by (1 + (l + r) / 2) / (1 + e) - 1, and it drifts by
-        (r - l) / (b (1 + e)).
+        Let the radii be (1 + l) and (1 + r) times the configured ones, and the distance b (1 + e).
+        Then odometry's way is off by (l + r) / 2, its turn by (1 + (l + r) / 2) / (1 + e) - 1, and
+        it drifts by (r - l) / (b (1 + e)).
         """
         way, turn, drift = self.errors[:GYRO].tolist()
         base = (1.0 + way) / (1.0 + turn)

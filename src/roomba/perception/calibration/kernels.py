@@ -1,9 +1,9 @@
-"""Compiled: the robot's errors, measured by how scans saw it move, and taken out of its steps.
+"""Compiled calibration: it measures the robot's errors by scans, and corrects odometry by them.
 
-Between two scans that tell the place well, wheels and gyro say how the robot moved, and scans how
-the lidar did. Both agree for the right errors: a Kalman filter finds them (the equations are those
-of Censi et al. 2013, see :mod:`roomba.perception.calibration.state`). What fits badly, by slip or a
-push, counts less.
+Between two scans that determine the pose well, wheels and gyro measure how the robot moved, and the
+scans how the lidar moved. For the right errors the two agree: a Kalman filter finds these errors
+(the equations are those of Censi et al. 2013, see :mod:`roomba.perception.calibration.state`). A
+measurement that fits badly, because of slip or a push, counts less.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ from roomba.perception.calibration.state import (
 from roomba.perception.matching.pose_kernels import beyond
 
 _LONGEST: Final = 60.0
-"""s; what takes longer is no drive: the robot stood meanwhile."""
+"""s; a window that takes longer is dropped: the robot stood meanwhile."""
 _FITS: Final = 4.0
 """Squared residual, in variances, up to which a number counts in full; a larger one counts less."""
 _FITS_NOT: Final = 100.0
-"""The same from which on it counts nothing."""
+"""Squared residual, in variances, above which a number does not count at all."""
 _CALM: Final = 0.3
-"""rad/s; while the robot turns faster no window begins or ends: a scan and the wheels that are told
-some ms apart would be off by that, always the same way."""
+"""rad/s; while the robot turns faster no window begins or ends. Scans and wheels are reported some
+ms apart, and the robot turns in that time: always the same way, so that it does not average out."""
 _FINER: Final = 0.25
-"""Share of what is left alone, and of what must be sure, for an error that is corrected already."""
+"""Factor on both thresholds of :func:`_is_due` for an error that is corrected already."""
 
 
 @entry
@@ -61,7 +61,7 @@ def corrected(row: Row, ahead: float, aside: float, turn: float) -> tuple[float,
 
 @entry
 def note_step(row: Row, ahead: float, aside: float, turn: float) -> None:
-    """Add a step of odometry, as it tells it, to the window: m and rad."""
+    """Add a step of odometry, m and rad, that is not corrected yet, to the window."""
     row.newest_turn = turn
     if not row.is_open:
         return
@@ -88,7 +88,7 @@ def note_step(row: Row, ahead: float, aside: float, turn: float) -> None:
 
 @entry
 def note_gyro(row: Row, turn: float, elapsed: float) -> None:
-    """Add what the gyro tells of a step, rad, less its bias, nan without it; it took so long, s."""
+    """Add the gyro's turn in a step of ``elapsed`` s, rad, less the bias; nan without a gyro."""
     if math.isnan(turn):
         row.has_gyro = False
     else:
@@ -104,7 +104,7 @@ def note_gyro(row: Row, turn: float, elapsed: float) -> None:
 def note_place(
     row: Row, pose: tuple[float, float, float], variance: float, turn_variance: float
 ) -> None:
-    """Take where scans have the robot now, x, y, theta, unsure by variances, m2 and rad2."""
+    """Take the robot's pose by scans, x, y, theta, and its variances, m2 and rad2."""
     if row.turning > _CALM:
         return
     applied = row.applied
@@ -129,7 +129,7 @@ def _rolled(ahead: float, aside: float, turn: float) -> float:
 
 @entry
 def drop_window(row: Row) -> None:
-    """Begin a window anew: the place is not known, or told in another frame from now on."""
+    """Drop the window under way: the pose is not known, or is in another frame from now on."""
     row.is_open = False
 
 
@@ -137,7 +137,7 @@ def drop_window(row: Row) -> None:
 def _measure(
     row: Row, lidar: tuple[float, float, float], variance: float, turn_variance: float
 ) -> None:
-    """Correct the errors by the window that ends with the lidar there."""
+    """Correct the errors by the window that ends with the lidar at a pose."""
     begin, work = row.begin, row.work
     slopes, off, unsure, step = work[:4], work[4], work[5], work[6]
     _expect(row, slopes, off)
@@ -162,9 +162,9 @@ def _measure(
 
 @inner_part
 def _expect(row: Row, slopes: Floats, told: Floats) -> None:
-    """Fill ``told`` [4] with how the lidar should have moved: ahead, left, turned, by gyro turned.
+    """Fill ``told`` [4] with how the lidar should have moved: ahead, left, turn, turn by the gyro.
 
-    ``slopes`` [4, ERRORS] is how that depends on the errors.
+    ``slopes`` [4, ERRORS] gets the derivatives of that by the errors.
     """
     errors, moved = row.errors, row.moved
     ahead, left = errors[AHEAD], errors[LEFT]
@@ -191,14 +191,14 @@ def _expect(row: Row, slopes: Floats, told: Floats) -> None:
 
 @inner_part
 def _doubt(row: Row, unsure: Floats, variance: float, turn_variance: float) -> None:
-    """Fill ``unsure`` [4] with the variances of how the lidar moved, against what is expected."""
+    """Fill ``unsure`` [4] with the variances of the lidar's measured motion less the expected."""
     way, turned = row.way, row.turned
     of_turn = row.turn_variance * turned
     by_wheels = row.wheel_variance * way + of_turn
     of_place = row.begin_variance[0] + variance + row.begin_variance[1] * way * way
     of_place += by_wheels * way * way / 3.0
     of_heading = row.begin_variance[1] + turn_variance
-    # Where the robot turned, part of its way ahead is one to the side.
+    # As the robot turned, part of the error of its way ahead is one to the side by now.
     bend = math.sin(0.5 * row.moved[2]) ** 2
     along, across = row.way_variance * way, row.side_variance * way
     unsure[0] = of_place + (1.0 - bend) * along + bend * across
@@ -210,9 +210,9 @@ def _doubt(row: Row, unsure: Floats, variance: float, turn_variance: float) -> N
 
 @inner_part
 def _follow_bias(row: Row, off: Floats, unsure: Floats) -> None:
-    """Correct the gyro's bias by what the gyro was off; leave in ``off`` what that is not.
+    """Correct the gyro's bias by the gyro's residual; leave in ``off`` what is not due to it.
 
-    It wanders while the robot drives, and by this it is known without a stand.
+    The bias wanders while the robot drives. This follows it, though the robot does not stop.
     """
     of_bias = row.gyro_bias_variance * row.time * row.time
     expected = unsure[3] + row.covariance[GYRO, GYRO] * row.gyro * row.gyro
@@ -228,7 +228,7 @@ def _follow_bias(row: Row, off: Floats, unsure: Floats) -> None:
 
 @inner_part
 def _forget(row: Row) -> None:
-    """Be a little less sure for each metre, but not less than at first: robots wear."""
+    """Raise the variances of the errors a little for each metre, up to the prior: robots wear."""
     share = row.way / row.forgetting_way
     for error in range(ERRORS):
         prior, variance = row.prior[error], row.covariance[error, error]
@@ -239,7 +239,7 @@ def _forget(row: Row) -> None:
 def _correct(
     row: Row, slope: Floats, off: float, unsure: float, step: Floats, reach: Floats
 ) -> None:
-    """Correct the errors by a number that is ``off``; fill ``step`` with what that changed."""
+    """Correct the errors by the residual ``off`` of a number; fill ``step`` with the correction."""
     covariance = row.covariance
     of_errors = 0.0
     for error in range(ERRORS):
@@ -265,7 +265,7 @@ def _correct(
 
 @inner_part
 def _apply(row: Row) -> None:
-    """Let dead reckoning go by what is sure by now, and tell whether the lidar may do so."""
+    """Correct dead reckoning by the errors that are sure by now; note whether the lidar is due."""
     row.is_lidar_due = False
     for error in range(ERRORS):
         if not _is_due(row, error):
@@ -279,10 +279,10 @@ def _apply(row: Row) -> None:
 
 @inner_part
 def _is_due(row: Row, error: int) -> bool:
-    """Whether an error is sure to be another one than is gone by, and by more than matters."""
+    """Whether an error surely differs from the one that is applied, and by enough to matter."""
     applied = row.applied[error]
     off = abs(row.errors[error] - applied)
-    # What is corrected already is corrected better by each little that is known better.
+    # An error that is corrected already is refined in smaller steps.
     share = _FINER if applied != 0.0 else 1.0
     unsure = row.sure * math.sqrt(row.covariance[error, error])
     is_due: bool = off > share * row.least[error] and off > share * unsure
@@ -291,7 +291,7 @@ def _is_due(row: Row, error: int) -> bool:
 
 @entry
 def apply_lidar(row: Row) -> None:
-    """Go by what is sure of the lidar by now."""
+    """Apply the errors of the lidar's mount that are sure by now."""
     for error in (AHEAD, LEFT, TURNED):
         if _is_due(row, error):
             row.applied[error] = row.errors[error]

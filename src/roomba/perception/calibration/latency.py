@@ -1,7 +1,7 @@
-"""How late scans are against odometry, learned from how both tell the robot's turns.
+"""The latency of scans against odometry, learned from the turns that both measure.
 
-Many drivers stamp a scan when it has come and not when it was taken. Of some latencies that one is
-believed by which dead reckoning tells best how far matched scans turned.
+Many drivers stamp a scan when it has come and not when it was taken. Several latencies are
+compared: the one with which dead reckoning best predicts how far matched scans turned is believed.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ Rows = NDArray[np.void]
 
 _STEP: Final = 0.05
 _COUNT: Final = 9
-"""s; latencies from 0 on that are compared, so far apart and so many."""
+"""The latencies that are compared, from 0 on: their distance, s, and their number."""
 _SELDOM: Final = 0.25
-"""s; odometry that is told less often than that says nothing of so short times."""
+"""s; odometry that comes less often than this is too coarse to tell such latencies apart."""
 _KEPT: Final = 0.99
 """Share of what was learned that counts after another scan: about the last hundred do."""
 _LEAST_TURNED: Final = 0.1
 """rad2; sum of squared turns from which anything is said."""
 _BETTER: Final = 0.7
-"""Another latency is believed if its squared errors are so much smaller than those of the present
-one: with each change the robot seems to move a little."""
+"""Another latency is believed if its squared errors are below this share of the present one's: with
+each change the robot seems to move a little."""
 
 
 LATENCY: Final = np.dtype(
     [
-        ("seconds", "f8"),  # to go by
-        ("errors", "f8", (_COUNT,)),  # rad2; sum of squares for each of them
+        ("seconds", "f8"),  # the latency to go by
+        ("errors", "f8", (_COUNT,)),  # rad2; sum of squared errors of each latency
         ("turned", "f8"),  # rad2; sum of squared turns
         ("before", "f8", (_COUNT,)),  # rad; reckoned headings at the scan before; nan: not known
         ("now", "f8", (_COUNT,)),
@@ -48,7 +48,7 @@ LATENCY: Final = np.dtype(
 
 
 def no_latency() -> Rows:
-    """Return that of scans that come in time, LATENCY [1]."""
+    """Return a latency of 0, LATENCY [1], with nothing learned yet."""
     latency = np.zeros(1, LATENCY)
     latency["before"] = np.nan
     return latency
@@ -56,7 +56,7 @@ def no_latency() -> Rows:
 
 @entry
 def learn_latency(latencies: Rows, turn: float, stamp: float, path: ReckonedPath) -> None:
-    """Take by how much a scan was turned against the one before it, rad, nan if not known.
+    """Learn from the ``turn`` of a scan against the scan before it, rad, nan if not known.
 
     ``stamp``, s, is the scan's; ``path`` tells where dead reckoning had the robot.
     """
@@ -76,7 +76,7 @@ def learn_latency(latencies: Rows, turn: float, stamp: float, path: ReckonedPath
 
 @inner_part
 def _add_errors(latency: Row, turn: float) -> None:
-    """Compare a turn to what was reckoned for each latency, and say which one to go by."""
+    """Compare a turn with the one reckoned for each latency, and choose the latency to go by."""
     best = 0
     for index in range(_COUNT):
         off = wrapped(latency.now[index] - latency.before[index]) - turn

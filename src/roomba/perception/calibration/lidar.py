@@ -1,4 +1,4 @@
-"""The lidar as it is mounted, by what the robot measured of that."""
+"""The lidar's mount as configured, corrected by what the robot measured."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from roomba.perception.matching.scan_view import LidarModel
 
 
 class CorrectedLidar:
-    """Returns the same lidar for as long as ``correction`` is the same.
+    """Lidars whose mounts are moved by ``correction``, robot's frame.
 
-    By that its mount is moved, robot's frame; without one the lidar is what is told of it.
+    :meth:`of` returns the same object for as long as the lidar and ``correction`` are the same.
     """
 
     def __init__(self) -> None:
@@ -22,7 +22,7 @@ class CorrectedLidar:
         self._newest: tuple[LidarModel, Pose, LidarModel] | None = None
 
     def of(self, told: LidarModel) -> LidarModel:
-        """Return where a lidar really is."""
+        """Return a lidar with its mount corrected: the configured one if there is no correction."""
         correction = self.correction
         if correction == Pose():
             return told
@@ -32,5 +32,5 @@ class CorrectedLidar:
 
 
 def lidar_correction(beliefs: NDArray[np.void]) -> Pose:
-    """Return by what the lidar's mount is moved, robot's frame, of a BELIEF [1]."""
+    """Return the correction of the lidar's mount, robot's frame, that a BELIEF [1] applies."""
     return Pose(*beliefs[0]["calibration"]["applied"][AHEAD : TURNED + 1].tolist())

@@ -1,4 +1,4 @@
-"""Compiled: which places are told by scans well enough to measure the robot's errors by."""
+"""Compiled: which poses scans determine well enough to measure the robot's errors by them."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from roomba.perception.calibration.state import Row
 
 _SURE: Final = 0.012
 _SURE_TURN: Final = 0.01
-"""m, rad; deviations above which a scan does not tell all of the pose: along a bare corridor dead
-reckoning would be measured by itself."""
+"""m, rad; standard deviations above which a scan does not determine the whole pose: along a bare
+corridor the pose is dead reckoning's own, which would be compared with itself."""
 
 
 @inner_part
 def note_pose(
     row: Row, pose: tuple[float, float, float], covariance: Floats, of_map: Floats
 ) -> None:
-    """Take the robot's pose, x, y, theta, that a scan confirmed, if it tells all of it.
+    """Take the robot's pose, x, y, theta, after a scan, if the scan determines all of it.
 
     ``covariance`` [3, 3] is by dead reckoning and scan; ``of_map`` [3, 3] is by the map's errors.
     """

@@ -1,8 +1,8 @@
-"""What is measured of the robot's errors: a part of the belief's row, that kernels read and write.
+"""The measured errors of the robot: a part of the belief's row that kernels read and write.
 
 Seven errors, in this order (after Censi, Franchi, Marchionni and Oriolo, "Simultaneous calibration
-of odometry and sensor parameters for mobile robots", 2013, with the wheels' radii and their
-distance told as what odometry makes of them):
+of odometry and sensor parameters for mobile robots", 2013, but with the wheels' radii and distance
+expressed as the errors of odometry that they cause):
 
 ==========  =====================================================================================
 ``WAY``     share by which a way is longer than odometry tells
@@ -11,7 +11,7 @@ distance told as what odometry makes of them):
 ``GYRO``    share by which a turn is larger than the gyro tells
 ``AHEAD``   m by which the lidar sits farther ahead than is told
 ``LEFT``    m by which it sits farther left
-``TURNED``  rad by which it, and where it is told to be, is turned to the left about the robot
+``TURNED``  rad by which its mount, place and heading, is turned to the left about the robot
 ==========  =====================================================================================
 """
 
@@ -37,20 +37,20 @@ CALIBRATION: Final = np.dtype(
     [
         ("errors", "f8", (ERRORS,)),  # as measured
         ("covariance", "f8", (ERRORS, ERRORS)),
-        ("applied", "f8", (ERRORS,)),  # of these, what dead reckoning and the lidar go by
-        ("is_applied", "?"),  # whether any of the wheels' or the gyro's is
-        ("is_lidar_due", "?"),  # whether the lidar is known better than it is gone by
+        ("applied", "f8", (ERRORS,)),  # those that dead reckoning and the lidar are corrected by
+        ("is_applied", "?"),  # whether any of the wheels' or the gyro's errors is
+        ("is_lidar_due", "?"),  # whether errors of the lidar are to be applied anew
         ("base", "f8"),  # m; between the wheels, 0: not known
         ("windows", "i8"),  # measured so far
-        ("outliers", "i8"),  # numbers in these that fitted badly, of four each
+        ("outliers", "i8"),  # numbers that fitted badly, of four in a window (three without gyro)
         ("gyro_bias", "f8"),  # rad/s; of the gyro, besides what it showed while the robot stood
         ("gyro_bias_variance", "f8"),  # rad2/s2
         # the window under way
         ("is_open", "?"),
-        ("begin", "f8", (3,)),  # where the lidar stood, and looked, if it sat in the middle
+        ("begin", "f8", (3,)),  # pose of the lidar, less its configured mount
         ("begin_variance", "f8", (2,)),  # of that: m2, rad2
-        ("moved", "f8", (3,)),  # since then by the wheels, less their errors
-        ("slopes", "f8", (3, OF_WHEELS)),  # of that, by each of their errors
+        ("moved", "f8", (3,)),  # motion since then by the wheels, less their errors
+        ("slopes", "f8", (3, OF_WHEELS)),  # derivatives of that by the wheels' errors
         ("gyro", "f8"),  # rad; turned by the gyro as it tells
         ("has_gyro", "?"),
         ("way", "f8"),  # m
@@ -79,7 +79,7 @@ CALIBRATION: Final = np.dtype(
 
 
 def forget_wheels(row: Row, localization: LocalizationConfig) -> None:
-    """Let nothing be known of the wheels, which are others now; lidar and gyro are as they were."""
+    """Forget the errors of the wheels, as odometry has another source now; keep lidar and gyro."""
     wheels = slice(OF_WHEELS)
     row["errors"][wheels] = row["applied"][wheels] = 0.0
     row["covariance"][wheels] = row["covariance"][:, wheels] = 0.0
@@ -90,7 +90,7 @@ def forget_wheels(row: Row, localization: LocalizationConfig) -> None:
 
 
 def begin_calibration(row: Row, localization: LocalizationConfig, gyro: GyroConfig) -> None:
-    """Let nothing be measured yet."""
+    """Begin with priors and noise from the configuration, and with nothing measured."""
     config = localization.calibration
     turn, least_turn = math.radians(config.turn), math.radians(config.least_turn)
     prior = [config.scale] * 2 + [config.drift, config.scale] + [config.shift] * 2 + [turn]

@@ -39,10 +39,11 @@ def carry_over(
 ) -> CarriedOver:
     """Return ``new`` rooms with the names of the ``old`` ones that they overlap most, and zones.
 
-    Rooms are the same that have at least a share ``least`` of the smaller one's floor in common.
-    ``old_in_new`` is where the old map's frame lies in the new one, in which rooms and zones are.
-    Names go one to one, so that rooms share as much floor with their namesakes as can be; a room
-    that is new keeps "Room n", or gets one that is not taken. Zones are places: they stay.
+    Two rooms are the same if they share at least ``least`` of the smaller one's floor.
+    ``old_in_new`` is where the old map's frame lies in the new one; the result is in the new frame.
+    Each old name goes to one new room, so that rooms share as much floor with their namesakes as
+    can be. A room without an old name keeps "Room n", or gets one that is not taken. Zones stay at
+    their places.
     """
     there = moved(zones, old_in_new)
     if old is None:
@@ -54,10 +55,10 @@ def carry_over(
 
 
 def divided_as(old: Rooms, new: Rooms) -> Rooms | None:
-    """Return the floor of ``new`` rooms as it was divided before, where that fits still.
+    """Return the floor of ``new`` rooms divided as the ``old`` ones divided it, if that still fits.
 
-    None on another grid, with a room that is gone or in pieces now, and with floor of
-    :data:`SMALLEST_PIECE` or more that was in no room.
+    It does not fit, and None is returned, on another grid, if a room is gone or in pieces now, or
+    if :data:`SMALLEST_PIECE` or more of the floor was in no room.
     """
     if old.frame != new.frame:
         return None
@@ -91,7 +92,7 @@ def moved(zones: Zones, old_in_new: Pose) -> Zones:
 
 
 def _overlaps(new: Rooms, old: Rooms, least: float, old_in_new: Pose) -> Overlaps:
-    """Return the floor that rooms share, as far as they share enough to be the same."""
+    """Return how much floor each two rooms share; 0 where too little to be the same room."""
     there = carried(old.labels, old.frame, new.frame, old_in_new)
     shape = len(new.names) + 1, len(old.names) + 1
     pairs = new.labels.astype(np.int64) * shape[1] + there
@@ -106,8 +107,8 @@ def _overlaps(new: Rooms, old: Rooms, least: float, old_in_new: Pose) -> Overlap
 def _best_partners(shared: Overlaps) -> list[int | None]:
     """Return for each new room its old one: the pairing, one to one, that shares most floor.
 
-    It grows by one pair at a time, along the way of changes that gains most, until none does
-    (successive augmenting paths: Ahuja, Magnanti and Orlin, "Network Flows", 12.4).
+    The pairing grows by one pair at a time, by the chain of changes that gains most, until no chain
+    gains (successive augmenting paths: Ahuja, Magnanti and Orlin, "Network Flows", 12.4).
     """
     partners: list[int | None] = [None] * shared.shape[0]
     while True:
@@ -119,10 +120,10 @@ def _best_partners(shared: Overlaps) -> list[int | None]:
 
 
 def _best_way(shared: Overlaps, partners: list[int | None]) -> list[tuple[int, int]] | None:
-    """Return the pairs to make, that of the first new one last, so that most is gained."""
+    """Return the chain of pairs to make that gains most floor, from its end; None if none gains."""
     count_new, count_old = shared.shape
     owner = {old: new for new, old in enumerate(partners) if old is not None}
-    # What is gained at most when a new room loses its partner, and the pair that comes of it.
+    # The most that is gained if a new room gives up its partner, and the pair that takes it over.
     gain = [0.0 if partner is None else -np.inf for partner in partners]
     before: list[tuple[int, int] | None] = [None] * count_new
     for _ in range(count_new):

@@ -1,8 +1,8 @@
 """Change detection: what stands on a known map's floor now, and what no longer does.
 
-While the robot goes about its work, and knows its place, its scans are counted on the cells of the
-map. A *look* is what it saw from several places in some time; several looks decide, so that
-people who walk or stand about are no change; neither are things too small to be furniture.
+While the robot works and knows its place, its scans are counted on the cells of the map. A *look*
+is what the robot saw from several places in some time. Several looks decide, so that people who
+walk or stand about are no change. Things too small to be furniture are no change either.
 """
 
 from __future__ import annotations
@@ -45,7 +45,8 @@ class Change:
     """One change: the middle of the cells that changed, how far they reach along the map's axes, m,
     and their area, m2.
 
-    ``cells`` is int64 [n, 2], row and column: of what appeared only the sides that were seen.
+    ``cells`` is int64 [n, 2], row and column. Of a thing that appeared these are only the sides
+    that were seen.
     """
 
     kind: ChangeKind
@@ -58,15 +59,15 @@ class Change:
 
     @property
     def size(self) -> float:
-        """How far it reaches along the map's axes at most, m."""
+        """How far the change reaches along one of the map's axes at most, m."""
         return max(self.width, self.height)
 
 
 class MapChanges:
     """Collects the changes of one map, in constant memory.
 
-    When a person accepts what is :meth:`proposed`, begin a new object for that map; what a person
-    refuses is :meth:`dismissed`.
+    When a person accepts the :meth:`proposed` map, begin a new object for that map. Tell by
+    :meth:`dismissed` which change a person refuses.
     """
 
     def __init__(self, occupancy: OccupancyMap, config: MapChangesConfig) -> None:
@@ -88,9 +89,9 @@ class MapChanges:
         """Number of finished looks; the changes are updated at the end of each."""
 
     def see(self, now: float, ranges: NDArray[np.float32], lidar: LidarBeams, pose: Pose) -> None:
-        """Take a scan, float32 [beams], m, taken at ``now``, s, at a pose of the map that is known.
+        """Count a scan, float32 [beams], m, taken at ``now``, s, from a known pose of the map.
 
-        Some 2 to 5 a second are enough.
+        Some 2 to 5 scans a second are enough.
         """
         if not self._is_new(pose):
             return
@@ -129,7 +130,7 @@ class MapChanges:
         return self._known
 
     def dismissed(self, change: Change) -> None:
-        """Do not offer this change again, unless it grows by as much as makes a change."""
+        """Do not offer this change again, unless what is added to it is a change by itself."""
         refused = self._refused[change.kind]
         cells = np.zeros(refused.shape, np.bool_)
         cells[change.cells[:, 0], change.cells[:, 1]] = True
@@ -205,7 +206,7 @@ class MapChanges:
     def _is_blurred(self, stands: Mask) -> Mask:
         """Return the cells too near to what stands to tell a change.
 
-        There noise of range and pose, and the edges of cells, let beams end and pass by turns.
+        There some beams end and some pass, by the noise of ranges and poses and the edges of cells.
         """
         cells = self._config.blur / self._map.frame.resolution
         return np.asarray(distance_to_nearest(stands) <= cells)
@@ -228,7 +229,7 @@ class MapChanges:
         )
 
     def _put(self, values: NDArray[np.int8], change: Change) -> None:
-        """Make cells occupied; floor that they enclose is no longer known."""
+        """Make the change's cells occupied, and floor that these enclose unknown."""
         values[change.cells[:, 0], change.cells[:, 1]] = OCCUPIED
         low, high = change.cells.min(axis=0) - 1, change.cells.max(axis=0) + 1
         regions = numbered_regions(values == FREE)
@@ -240,7 +241,7 @@ class MapChanges:
         values[~reaches_out[regions]] = UNKNOWN
 
     def _take_away(self, values: NDArray[np.int8], change: Change) -> None:
-        """Make cells free, and known what is seen now of the unknown behind them."""
+        """Make the change's cells free, and enter what is seen now of the unknown behind them."""
         gone = np.zeros(values.shape, np.bool_)
         gone[change.cells[:, 0], change.cells[:, 1]] = True
         values[gone] = FREE
@@ -254,7 +255,7 @@ class MapChanges:
 def _not_moved(
     changes: list[Change], others: list[Change], config: MapChangesConfig
 ) -> list[Change]:
-    """Return changes without chairs and the like, which ``others`` show near by."""
+    """Return changes without small things, as chairs, that moved: ``others`` show them near by."""
     return [
         change
         for change in changes

@@ -1,4 +1,4 @@
-"""Compiled bookkeeping of what scans say of the cells of a map: counts of a look, and scores."""
+"""Compiled bookkeeping of a map's cells: counts of beams in a look, and scores over looks."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from roomba.perception.slam.drawing.drawing_kernels import CountArrays, draw
 from roomba.perception.slam.scan_matching.surface_kernels import NORMAL_X, NORMAL_Y, X, Y
 
 MOST: Final = 5
-"""The largest score of a cell, so that a change is noticed soon also after a long time."""
+"""The limit of a cell's score, so that a change is noticed soon after any time without change."""
 NO_BOUNDS: Final = np.array([2**40, -1, 2**40, -1])
 """First and last row and column with counts, while there are none."""
 
@@ -30,11 +30,11 @@ def count_scan(
     pose: Floats,
     points: NDArray[np.float32],
 ) -> None:
-    """Count where the beams of a scan, seen from ``pose`` [3], ended, and what they passed.
+    """Count the cells where beams of a scan from ``pose`` [3] ended, and those that they passed.
 
     ``ranges`` is float32 [beams], m, of which those from ``nearest`` to ``farthest`` count;
     ``directions`` [beams, 2], cosine and sine in the lidar's frame; ``mount`` [3] the lidar's place
-    in the robot's frame. It works in ``points`` [beams, 4].
+    in the robot's frame. ``points`` [beams, 4] is a work array.
     """
     turn_cosine, turn_sine = math.cos(mount[2]), math.sin(mount[2])
     count = 0
@@ -45,7 +45,7 @@ def count_scan(
         cosine, sine = directions[beam, 0], directions[beam, 1]
         points[count, X] = mount[0] + length * (turn_cosine * cosine - turn_sine * sine)
         points[count, Y] = mount[1] + length * (turn_sine * cosine + turn_cosine * sine)
-        # Surface normals would place them better by half a cell, but double the time.
+        # Surface normals would place the points better by half a cell, but double the time.
         points[count, NORMAL_X], points[count, NORMAL_Y] = 0.0, 0.0
         count += 1
     draw(cells, points[:count], mount[:2], pose)
@@ -57,8 +57,9 @@ def score_look(
 ) -> None:
     """Add the counts of a look to the scores, int8 [rows, columns], and begin a new one.
 
-    A cell where ``least`` beams, and ``solid_share`` of all, ended gets 1 more; one in which less
-    than ``open_share`` ended 1 less.
+    Cells that fewer than ``least`` beams met are left as they are. A cell in which ``least`` beams
+    ended, and a share ``solid_share`` of its beams, gets 1 more; one in which a smaller share than
+    ``open_share`` ended gets 1 less.
     """
     for row in range(cells.bounds[0], cells.bounds[1] + 1):
         for column in range(cells.bounds[2], cells.bounds[3] + 1):

@@ -1,8 +1,8 @@
 """Recognition of the floor on which the robot woke, and of its pose there; or of a new floor.
 
-All places of all floors are compared by how well the same scans fit there, and so is the hypothesis
-that the floor is new. The one that is clearly the likeliest is believed; until then more scans from
-other places are needed.
+All places of all floors are compared by how well the same scans fit there; so is the hypothesis
+that the floor is new. The hypothesis that is clearly the likeliest is believed; until there is one,
+more scans from other places are needed.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ class FloorVerdict(Enum):
     SEARCHING = "places are being compared"
     """Call :meth:`FloorRecognition.advance`; before that, show it a scan."""
     UNSURE = "more than one place fits"
-    """Scans from other places may tell; on floors that look alike they never will."""
+    """Scans from other places may decide; on floors that look alike they never will."""
     KNOWN = "one place fits"
-    """It is :attr:`FloorRecognition.place`."""
+    """The place is :attr:`FloorRecognition.place`."""
     NEW = "no floor fits"
     """The robot was never here."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FloorRecord:
-    """A floor that is known: its map, and where the docked robot stands in it."""
+    """A floor that is known: its map, and the docked robot's pose in it."""
 
     occupancy: OccupancyMap
     station: Pose
@@ -45,7 +45,7 @@ class FloorRecord:
 class FloorPlace:
     """Where the robot may be: a floor by name, the pose in its map at the newest scan that counted.
 
-    ``evidence`` compares places and floors, by all scans so far; ``fit`` is that of the newest.
+    ``evidence`` of all scans so far compares places and floors; ``fit`` is that of the newest scan.
     """
 
     floor: str
@@ -81,8 +81,8 @@ class FloorRecognition:
     def see(self, view: ScanView, reckoned: Pose) -> None:
         """Take a scan that was taken at ``reckoned``.
 
-        It counts when it has enough beams, and the robot has moved or turned since the last that
-        did; while places are being searched for it is left out.
+        The scan counts if it has enough beams, and if the robot has moved or turned since the last
+        scan that counted. While places are being searched for, scans are left out.
         """
         if len(view) < self._config.least_beams or not self._floors:
             return
@@ -97,7 +97,7 @@ class FloorRecognition:
             self._count(view, reckoned)
 
     def advance(self) -> None:
-        """Search on for a while, some 10 ms, if that is not done yet."""
+        """Search on for some 10 ms, if a search is not finished yet."""
         for search in self._searches.values():
             if search.verdict is Verdict.SEARCHING:
                 search.advance()
@@ -126,7 +126,7 @@ class FloorRecognition:
 
     @property
     def places(self) -> tuple[FloorPlace, ...]:
-        """Where it may be on all floors, likeliest first; none while places are searched for."""
+        """Where the robot may be on all floors, likeliest first; none until a search has places."""
         found = [
             FloorPlace(name, each.frame.compose(self._reckoned), each.evidence, each.fit)
             for name, search in self._searches.items()

@@ -1,14 +1,15 @@
 """Whether two maps show the same floor, and how one lies on the other.
 
-The stations are laid on each other, then the walls. Two things are compared: *walls*, of those
-stretches that lie where the other map knows something the share that have a wall there, too, and
-*floor*, the share of the smaller map's free floor that is free on the other one. The first tells
-homes apart whose floors lie over each other, the second maps that hardly have anything in common.
+The stations are laid on each other, then the walls. Two shares are compared. *walls* counts the
+wall cells that lie where the other map is known: it is the share of these that have a wall there,
+too. *floor* is the share of the smaller map's free floor that is free on the other map, too. The
+first tells homes apart whose floors overlap; the second, maps that have hardly anything in common.
 
 Measured on 81 maps that the robot made of 32 homes, each with each, the stations off by some 3 cm
-and 2 degrees (1 sigma). Of one home (other noise; up to three pieces of furniture moved and six
-more things; doors shut), 172 pairs, three times: walls 0.81 to 1.00, floor 0.86 to 1.00. Of two
-homes, 6308 pairs: walls 0.70 at most, and 0.65 where the floor in common is more than 0.3.
+and 2 degrees (1 sigma). Two maps of one home (other noise; up to three pieces of furniture moved
+and six more things; doors shut), 172 pairs, three times: walls 0.81 to 1.00, floor 0.86 to 1.00.
+Maps of two homes, 6308 pairs: walls 0.70 at most, and 0.65 where the floor in common is more than
+0.3.
 """
 
 from __future__ import annotations
@@ -29,18 +30,18 @@ from roomba.perception.matching.surface_field import SurfaceField
 from roomba.raster.distance import distance_to_nearest
 
 _TURNS: Final = (0.0, 0.05, -0.05)
-"""rad; a docked robot stands a little askew, and matching follows that so far and no farther."""
+"""rad; turns to start a match from, as a docked robot may stand more askew than a match follows."""
 _SPREAD: Final = np.diag([0.3**2, 0.3**2, 0.2**2])
 _SCALES: Final = np.array([0.4, 0.3, 0.2, 0.1, 0.1, 0.05, 0.05])
 _VARIANCE: Final = 0.05**2
-"""m2, rad2; m; m2: how unsure the station is, from how far walls are matched, and how exactly."""
+"""m2, rad2: variances of the station. m: scales at which walls lose weight. m2: variance of one."""
 
 
 @dataclass(frozen=True, slots=True)
 class FloorMatch:
     """How well two maps fit: shares 0..1, see above; ``old_in_new`` puts the old on the new one.
 
-    ``is_same``: they show the same floor.
+    ``is_same``: both maps show the same floor.
     """
 
     walls: float
@@ -52,11 +53,11 @@ class FloorMatch:
 def match_floors(new: FloorRecord, old: FloorRecord, config: FloorsConfig) -> FloorMatch:
     """Return how well two maps fit, laid on each other as well as can be near their stations.
 
-    Two on one grid that fit nowhere better than as they are lie on each other exactly.
+    If both have one grid, and fit nowhere better than as they are, ``old_in_new`` is 0 exactly.
     """
     station = new.station
     starts = [Pose(station.x, station.y, station.theta + turn) for turn in _TURNS]
-    # Maps that were begun at the same place have one frame.
+    # Maps that were begun at the same place have the same frame.
     starts.append(old.station)
     field, walls = SurfaceField.of(new.occupancy), _walls(old.occupancy)
     ends = np.zeros((len(walls), 4))
@@ -70,7 +71,7 @@ def match_floors(new: FloorRecord, old: FloorRecord, config: FloorsConfig) -> Fl
 
 
 def _aligned(field: SurfaceField, ends: Floats, start: Pose) -> Pose:
-    """Return where a robot that sees these ``ends`` is, near ``start``."""
+    """Return the pose near ``start`` of a robot that sees these ``ends``."""
     prior = start.as_array()
     pose, spread = prior.copy(), _SPREAD.copy()
     match(field.values, field.place, ends, len(ends), prior, spread, _SCALES, _VARIANCE, pose)
@@ -92,8 +93,9 @@ def _compared(
 
 
 def _agreeing(walls: Floats, occupancy: OccupancyMap, near: float) -> tuple[int, int]:
-    """Return how many of these points are within ``near`` m of walls of a map, and of how many it
-    says anything.
+    """Return how many of these points are within ``near`` m of a map's walls.
+
+    Also return of how many the map tells anything: those, and the ones on free floor.
     """
     occupied = occupancy.values == OCCUPIED
     away = distance_to_nearest(occupied) * occupancy.frame.resolution

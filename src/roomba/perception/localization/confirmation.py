@@ -1,4 +1,4 @@
-"""A pose that was told, or that is believed no more: scans confirm it, or refute it."""
+"""A pose that was reported, or is no longer believed: scans confirm it, or refute it."""
 
 from __future__ import annotations
 
@@ -25,9 +25,10 @@ class Refuted(NamedTuple):
 
 
 class Confirmation:
-    """What is still to be confirmed: ``awaited`` by the next scan that tells, or ``compared``.
+    """The pose to be confirmed: ``awaited`` until the next scan that tells, then ``compared``.
 
-    What was told last was told at ``told_at``, s of the robot's clock.
+    It is compared with all other places only if that scan does not decide. ``told_at`` is when a
+    pose was reported last, s of the robot's clock.
     """
 
     def __init__(self, config: LocalizationConfig, doubt: Doubt) -> None:
@@ -41,11 +42,11 @@ class Confirmation:
 
     @property
     def is_open(self) -> bool:
-        """Whether there is something to be confirmed."""
+        """Whether a pose is still to be confirmed."""
         return self.awaited is not None or self.compared is not None
 
     def told(self, now: float, pose: Pose, deviation: tuple[float, float]) -> None:
-        """Take a pose of the map that was told, with deviations in m and rad, in place of all."""
+        """Await a reported pose, map frame, with deviations in m and rad, in place of any other."""
         self.compared, self.told_at = None, now
         self.await_at(pose, deviation)
 
@@ -55,29 +56,29 @@ class Confirmation:
         self._least, self._most = self._config.fit.good_agree, self._config.fit.good_through
 
     def need_less(self) -> None:
-        """Take what is awaited by a fair fit: it has more evidence than a report."""
+        """Let a fair fit confirm the pose: more speaks for it than for a reported one."""
         self._least, self._most = self._config.fit.fair_agree, self._config.fit.fair_through
 
     def compare_near(
         self, now: float, pose: Pose, view: ScanView, reckoned: Pose, field: SurfaceField
     ) -> Refuted | None:
-        """Begin to compare a pose that a scan fits best of all near by with all others.
+        """Begin to compare a pose, which a scan fits best of all near by, with all others.
 
-        However well it fits: in a symmetric room others fit as well. As of :meth:`refuted`, which
-        goes on with it.
+        It is compared however well it fits: in a symmetric room others fit as well. The result is
+        that of :meth:`refuted`, which goes on with the comparison.
         """
         self._doubt.drop()
         self.compared, self._is_near = where_found_near(pose, self._config), True
         return self._go_on_comparing(self.compared, now, view, reckoned, field)
 
     def drop(self) -> None:
-        """Confirm nothing any more: the pose is not believed."""
+        """Confirm nothing any more, as the pose is not believed."""
         self.awaited = self.compared = None
 
     def refuted(
         self, now: float, fit: Fit, view: ScanView, reckoned: Pose, field: SurfaceField
     ) -> Refuted | None:
-        """Take a scan and its fit; return what it refutes, None: the pose is to be kept.
+        """Take a scan and its fit; return the pose if it is refuted, None if it is to be kept.
 
         ``now`` is in s, ``reckoned`` the pose of dead reckoning at which the scan was taken.
         """
@@ -99,9 +100,10 @@ class Confirmation:
         return Refuted(here, _TOLD) if compared.is_elsewhere else None
 
     def _checked(self, told: Expectation, fit: Fit) -> Refuted | None:
-        """Take what was told if the scan fits well there; else compare it with the map.
+        """Confirm the awaited pose if the scan fits well there; refute it if the scan hardly fits.
 
-        Where it fits in part, as on a map of another day, it goes by what was told meanwhile.
+        If the scan fits in part, as on a map of another day, the pose is kept and compared with all
+        other places.
         """
         self.awaited = None
         if fit.agree >= self._least and fit.through <= self._most:

@@ -26,7 +26,7 @@ class DeadReckoning:
     def __init__(
         self, config: LocalizationConfig, gyro: GyroConfig, belief: Rows | None = None
     ) -> None:
-        """Begin at the origin; the pose on the map of a ``belief`` goes along."""
+        """Begin at the origin; the pose on the map of a ``belief``, if given, moves along."""
         self._gyro = gyro
         self.belief = unknown_belief() if belief is None else belief
         self._belief = self.belief[0]
@@ -37,7 +37,7 @@ class DeadReckoning:
         self.path = ReckonedPath.empty()
 
     def begin_guessing(self, config: LocalizationConfig) -> None:
-        """Go on with odometry that is guessed: what was measured of the wheels is not its own."""
+        """Go on with guessed odometry, to which the measured errors of the wheels do not apply."""
         row = self._belief["calibration"]
         self._measured = row.copy()
         forget_wheels(row, config)
@@ -50,16 +50,16 @@ class DeadReckoning:
         self.numbers[:] = numbers_of(config, self._gyro)
 
     def move(self, stamp: float, odometry: Pose, turning: float | None) -> None:
-        """Take the wheels' odometry and the gyro's turning speed, rad/s, if it has one, at a time.
+        """Take wheel odometry and the gyro's turning speed, rad/s, if there is one, at a time.
 
-        What is a little older than the last is left out, and so is a jump. When a clock is set back
-        the way still counts, but nothing is known of the time that it took.
+        Odometry a little older than the last is left out, and so is a jump. If the clock was set
+        back the way still counts, but the time that it took is not known.
         """
         reckon_on(
             self.belief,
             self.numbers,
             self.path,
-            float(stamp),  # of a whole number all of it would be compiled once more
+            float(stamp),  # for an int the kernel would be compiled once more
             odometry.x,
             odometry.y,
             odometry.theta,

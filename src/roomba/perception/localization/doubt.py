@@ -1,7 +1,7 @@
-"""Doubting the pose: the scan does not fit the map there. Did the home change, or is it elsewhere?
+"""Doubt of the pose if scans do not fit the map: the home changed, or the robot is elsewhere.
 
-What the robot sees now is compared with what it saw a moment ago: if that is the same, it was not
-carried. The place may have been wrong before, so it is compared with all others.
+What the robot sees now is compared with what it saw a moment ago: if that is the same, the robot
+was not carried. But its pose may have been wrong before, and is compared with all other places.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from roomba.perception.matching.surface_field import SurfaceField
 
 
 class Compared(NamedTuple):
-    """What came of comparing a place with all others."""
+    """The result of comparing a place with all others."""
 
     verdict: Verdict
     is_expected: bool
@@ -37,9 +37,9 @@ class Compared(NamedTuple):
 
 
 class Doubt:
-    """Gets each scan; ``reckoned`` is the pose of dead reckoning at which it was taken.
+    """The doubt about a known pose. It gets each scan; ``sight`` has those of the last seconds.
 
-    ``sight`` has those of the last seconds.
+    ``reckoned`` is the pose of dead reckoning at which a scan was taken.
     """
 
     def __init__(self, config: LocalizationConfig, body_radius: float) -> None:
@@ -50,19 +50,19 @@ class Doubt:
         self._compared = -math.inf
         self._last: Pose | None = None
         self._way = 0.0
-        """m; driven, turns on the spot left out, while scans did not correct the pose."""
+        """m; the way driven while scans did not correct the pose."""
 
     def note(self, stamp: float, reckoned: Pose, view: ScanView) -> None:
         """Remember a scan that was taken at a time, s."""
         self.sight.note(stamp, reckoned, view)
 
     def drop(self) -> None:
-        """End a comparison that is under way: the map is another one, or the pose not known."""
+        """End a comparison under way, as the map is another one, or the pose is not known."""
         self._comparison = None
         self.end()
 
     def end(self) -> None:
-        """Doubt no more: scans fit again."""
+        """Doubt no more, as scans fit again."""
         self._last, self._way = None, 0.0
 
     def follow(self, reckoned: Pose, *, fits: bool) -> None:
@@ -88,9 +88,9 @@ class Doubt:
         pose: Pose,
         field: SurfaceField,
     ) -> Expectation | None:
-        """Return where to expect the robot in a search, or None: ``pose`` is to be kept.
+        """Return where to expect the robot in a search, or None if ``pose`` is to be kept.
 
-        Comparing takes some scans: meanwhile it is kept. ``now`` and ``stamp`` are in s.
+        A comparison takes some scans: meanwhile the pose is kept. ``now`` and ``stamp`` are in s.
         """
         is_still = self.sight.is_still(stamp, reckoned, view)
         here = where_known(pose, self._config, is_still=is_still)
@@ -105,9 +105,9 @@ class Doubt:
     def compare(
         self, now: float, view: ScanView, reckoned: Pose, here: Expectation, field: SurfaceField
     ) -> Compared | None:
-        """Compare the place with all others, a piece at each scan; return what came of it.
+        """Compare the place with all others, a piece at each scan; return the result.
 
-        None: it goes on at the next scan. ``now`` is in s.
+        None means that the comparison goes on at the next scan. ``now`` is in s.
         """
         if self._comparison is None:
             self._comparison = Relocation(

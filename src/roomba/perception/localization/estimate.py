@@ -22,11 +22,11 @@ class Knowledge(Enum):
     KNOWN = "known"
     """The pose can be relied on."""
     ROUGH = "rough"
-    """Only by wheels and gyro, or by too little in sight: good enough for driving slowly."""
+    """The pose is by wheels and gyro alone, or by too little in sight: enough to drive slowly."""
     SEARCHING = "searching"
-    """Not known: places are compared, and looking around helps."""
+    """The pose is not known: places are compared, and looking around helps."""
     LOST = "lost"
-    """Not found in time; a person should help."""
+    """The pose was not found in time; a person should help."""
 
     @property
     def is_usable(self) -> bool:
@@ -38,9 +38,9 @@ class Knowledge(Enum):
 class Estimate:
     """Where the robot is, map frame, as far as it knows.
 
-    ``covariance`` is float64 [3, 3], of x, y (m2) and theta (rad2); ``agreement`` the share of the
-    last scan's beams that agree with the map; ``reason`` says why it is not known, and what helps.
-    What is not known at all is unsure by UNKNOWN_COVARIANCE.
+    ``covariance`` is float64 [3, 3], of x, y (m2) and theta (rad2), and UNKNOWN_COVARIANCE if the
+    pose is not known at all. ``agreement`` is the share of the last scan's beams that agree with
+    the map; ``reason`` says why the pose is not known, and what helps.
     """
 
     pose: Pose

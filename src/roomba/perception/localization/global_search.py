@@ -1,7 +1,7 @@
-"""The robot looked for on the whole map: one search, from forgetting its place until it is found.
+"""A search for the robot on the whole map, from when its place is forgotten until it is found.
 
-Relocations compare places by what is in sight; after a way on which none was found, particles
-follow all places that may be.
+Relocations compare places by what is in sight. If none is found while the robot drives some way,
+particles follow all places where it may be.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from roomba.perception.matching.scan_view import Fit, ScanView
 
 
 class FoundPlace(NamedTuple):
-    """Where the robot is now, map frame, and how well the scan fits that it was found by."""
+    """Where the robot is now, map frame, and how well the scan fits by which it was found."""
 
     pose: Pose
     fit: Fit
 
 
 class GlobalSearch:
-    """A search that goes on ``since`` a time, s of the robot's clock, and ``why``.
+    """A search under way: ``since`` when, s of the robot's clock, and ``why``.
 
-    Poses that were ``reckoned`` are those of DeadReckoning.
+    ``reckoned`` poses are those of DeadReckoning.
     """
 
     def __init__(
@@ -53,18 +53,18 @@ class GlobalSearch:
         self._config, self._body_radius = config, body_radius
         self._relocation: Relocation | None = None
         self._told: Relocation | None = None
-        """The newest one that has compared places: one that has just begun has none yet."""
+        """The newest relocation that has compared places; one that has just begun has not."""
         self._particles: ParticleSearch | None = None
         self._from: Pose | None = None
         self._tried = -math.inf
 
     def use(self, walls: LearnedWalls) -> None:
-        """Go on in another map, with the time that is left."""
+        """Go on searching in another map; the time since the search began still counts."""
         self._walls = walls
         self._relocation = self._told = self._particles = None
 
     def clock_set(self, now: float) -> None:
-        """Begin all times anew, by a clock that was set."""
+        """Begin all times anew, as the clock was set."""
         self.since = self._counted_from = self._tried = now
 
     def look_anew(self, now: float) -> None:
@@ -72,7 +72,7 @@ class GlobalSearch:
         self._counted_from = now
 
     def so_far(self, now: float) -> Searched:
-        """Return what came of it up to a time, s."""
+        """Return the state of the search at a time, s."""
         return Searched(self.why, now - self._counted_from, self.verdict)
 
     def see(
@@ -80,7 +80,8 @@ class GlobalSearch:
     ) -> FoundPlace | None:
         """Search on by a scan that was taken at ``reckoned``; return the place once it is found.
 
-        Dead reckoning is at its ``newest`` pose by now, s, which would be ``believed`` on the map.
+        At the time ``now``, s, dead reckoning is at its ``newest`` pose, which is ``believed`` on
+        the map if the pose was right before the search.
         """
         since = reckoned.inverse().compose(newest)
         if self._relocation is None:
@@ -91,13 +92,13 @@ class GlobalSearch:
         )
 
     def needs_views(self, now: float) -> bool:
-        """Whether what was seen up to a time, s, does not tell the place, and more would help."""
+        """Whether the scans up to a time, s, do not tell the place, and other views would help."""
         if self._relocation is None:
             return now - self.since > self._config.searching.wait_before_moving
         return self._relocation.verdict is not Verdict.SEARCHING
 
     def hypotheses(self, reckoned: Pose) -> list[Pose]:
-        """Return where the robot may be, map frame, likeliest first; none before places are known.
+        """Return where the robot may be, map frame, likeliest first; [] before places are compared.
 
         ``reckoned`` is where dead reckoning is now.
         """
@@ -105,7 +106,7 @@ class GlobalSearch:
         return [each.frame.compose(reckoned) for each in places]
 
     def _begun(self, now: float, view: ScanView, reckoned: Pose, here: Pose) -> Relocation:
-        """Begin to compare places; dead reckoning alone would be ``here`` on the map."""
+        """Begin to compare places; by dead reckoning alone the robot is ``here`` on the map."""
         expectation = self._expectation and searched_for(
             self._expectation, here, now - self.since, self._config
         )
@@ -114,10 +115,10 @@ class GlobalSearch:
         )
 
     def _followed(self, view: ScanView, reckoned: Pose, since: Pose) -> FoundPlace | None:
-        """Follow all places that may be, once it drove without finding one.
+        """Follow all places by particles, once the robot drove some way without being found.
 
-        Of places that look the same all the way, particles are left at one by chance: as long as
-        relocations cannot tell them apart none is believed.
+        Of places that look the same all the way, particles are left at one by chance. So as long as
+        the relocation cannot tell places apart, none is believed.
         """
         start = self._from = self._from or reckoned
         if self._particles is None:
@@ -138,7 +139,7 @@ class GlobalSearch:
     def _compared(
         self, relocation: Relocation, now: float, view: ScanView, reckoned: Pose, newest: Pose
     ) -> FoundPlace | None:
-        """Compare places by the scan; begin anew after a while if none fits."""
+        """Compare places by the scan; after a while begin anew, unless several places fit."""
         was_searching = relocation.verdict is Verdict.SEARCHING
         relocation.advance()
         relocation.see(view, reckoned)
@@ -157,5 +158,5 @@ class GlobalSearch:
         return None
 
     def _is_believed(self, place: Hypothesis) -> bool:
-        """Whether the likeliest place is taken; where many look alike it must convince."""
+        """Whether the likeliest place is believed; once particles search, it must be convincing."""
         return self._particles is None or place.is_expected or place.is_convincing(self._config.fit)

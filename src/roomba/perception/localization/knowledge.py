@@ -1,4 +1,4 @@
-"""How well the place is known, from all that it depends on, and what is said of the reason."""
+"""How well the robot's place is known, and the reason, in words, why not better."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ class Searched(NamedTuple):
 
     why: str
     seconds: float
-    """Since it began, or since the robot began to look around."""
+    """Time since the search began, or since the robot began to look around."""
     verdict: Verdict
-    """Of the last time that all places were compared."""
+    """Result of the last comparison of all places."""
 
 
 class Circumstances(NamedTuple):
     """What the knowledge of the place depends on at a moment."""
 
     deviation: float
-    """Of the position along its worst direction, m."""
+    """Standard deviation of the position along its worst direction, m."""
     has_map: bool
     is_lifted: bool
     is_late: bool
@@ -41,7 +41,7 @@ class Circumstances(NamedTuple):
     is_awaited: bool
     """A pose that was told was not compared with a scan yet."""
     is_compared: bool
-    """It was, fits in part, and is compared with all others."""
+    """A pose fits the scan in part, or was found near by, and is compared with all others."""
     searched: Searched | None
 
 

@@ -1,4 +1,4 @@
-"""Where in its cells a map has its walls: programs draw them in several ways, and scans tell."""
+"""Where a map's walls lie in their cells: mapping programs differ in that, and scans show it."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from roomba.perception.matching.surface_field import SurfaceField
 _LEAST_OFFSET: Final = 0.15
 """Cells of the map; walls that are off by less stay where they are."""
 _LEAST_OFFSET_BEAMS: Final = 100.0
-"""Beams that must say so, each scan as far as it shows something new."""
+"""Beams that the offset must rest on; a scan counts as far as it shows something new."""
 _MOST_OFFSET: Final = 2.0
-"""Cells that walls are off at most: some programs draw them thicker than they are."""
+"""Cells that walls are moved at most: some programs draw walls thicker than they are."""
 
 
 class LearnedWalls:
     """Moves the surfaces of ``field`` to where scans show the walls.
 
-    How far they are off is summed up in ``wall_offset`` of a belief.
+    How far the walls are off is summed up in ``wall_offset`` of a belief.
     """
 
     def __init__(self, field: SurfaceField, belief: Rows) -> None:
-        """Begin where the map has them; what ``belief`` learned of another map is dropped."""
+        """Begin with the walls of the map; forget what ``belief`` learned of another map."""
         self.field = field
         self._row, self._moved = belief[0], 0.0
         self._row["wall_offset"] = 0.0
 
     def learn(self) -> None:
-        """Move the surfaces by what the belief has learned, if that is much and sure."""
+        """Move the surfaces by the offset that the belief has learned, if it is large and sure."""
         off, beams = self._row["wall_offset"].tolist()
         cell = self.field.frame.resolution
         if beams < _LEAST_OFFSET_BEAMS or abs(off) < _LEAST_OFFSET * cell * beams:
@@ -40,9 +40,9 @@ class LearnedWalls:
         self._move(max(-0.5 * cell, min(most, self._moved - off / beams)))
 
     def find(self, view: ScanView, pose: Pose, deviation: float) -> Pose:
-        """Move the surfaces to where a scan fits best from about a pose; return it there.
+        """Move the surfaces to where a scan from about ``pose`` fits best; return the matched pose.
 
-        The pose is in the map frame; ``deviation`` is that of a beam, m.
+        Poses are in the map frame; ``deviation`` is that of a beam, m.
         """
         cell, tried = self.field.frame.resolution, []
         for moved in (0.5 * cell * number for number in range(int(2 * _MOST_OFFSET) + 1)):
@@ -53,7 +53,7 @@ class LearnedWalls:
         return there
 
     def _move(self, moved: float) -> None:
-        """Move the surfaces into what is solid: so far, m, from where the map has them."""
+        """Move the surfaces to ``moved`` m inside of what the map shows as solid."""
         self.field.raise_by(moved - self._moved)
         self._moved = moved
         self._row["wall_offset"][0] = 0.0

@@ -1,8 +1,8 @@
 """Localization on a known map: the stages put together.
 
-Dead reckoning says how it moved, a tracker corrects that by each scan, and when scans do not fit
-any more, or it was carried, a global search looks for it in the whole map. Plain values in and
-out; times in s of the robot's clock.
+Dead reckoning says how the robot moved, and a tracker corrects that by each scan. When scans no
+longer fit, or the robot was carried, a global search looks for it on the whole map. Plain values
+in and out; times in s of the robot's clock.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ from roomba.perception.matching.scan_view import Fit, LidarModel, PlacedScan, Sc
 from roomba.perception.matching.surface_field import SurfaceField
 
 _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
-"""m2, rad2; of a place that was found, before scans narrow it down."""
+"""m2, rad2; covariance of a place that was just found, before scans narrow it down."""
 
 
 class Localizer:
     """Keeps the estimate; tell it what the sensors say in the order of time.
 
-    ``view`` is the newest scan; ``placed`` is that scan where it was taken on the map, None if that
-    is not known. While it :attr:`is_calm`, kernels may do its work on ``belief``, ``path`` and
-    ``numbers`` (see :mod:`.belief.correct_kernels`), and on ``sights`` (see
-    :mod:`.recent_sight_kernels`), until it has :meth:`resumed`.
+    ``view`` is the newest scan; ``placed`` is that scan at the pose on the map where it was taken,
+    None if that is not known. While the localizer :attr:`is_calm`, kernels may do its work on
+    ``belief``, ``path`` and ``numbers`` (see :mod:`.belief.correct_kernels`), and on ``sights``
+    (see :mod:`.recent_sight_kernels`), until :meth:`resumed` is called.
     """
 
     def __init__(
@@ -59,8 +59,8 @@ class Localizer:
     ) -> None:
         """Begin near ``start``, map frame, unsure by ``deviation``, m and rad.
 
-        Without a map it goes by wheels and gyro, until :meth:`use_map`. A scan that it is shown
-        stands for so many of the lidar's, its ``stride``.
+        Without a map it goes by wheels and gyro, until :meth:`use_map`. It is shown every
+        ``stride``-th scan of the lidar.
         """
         self._map = occupancy
         self.view: ScanView | None = None
@@ -128,9 +128,9 @@ class Localizer:
 
     @property
     def is_calm(self) -> bool:
-        """Whether the place is known and nothing waits to be done: the belief says it all.
+        """Whether the place is known and nothing is under way, so that the belief says it all.
 
-        Kernels take each scan for one that comes in time.
+        It is not calm if scans come late: kernels take each scan for one that comes in time.
         """
         if self._is_lifted or self._search is not None or self._map is None or self.latency:
             return False
@@ -144,16 +144,16 @@ class Localizer:
         return self._doubt.sight.arrays
 
     def resumed(self, now: float) -> None:
-        """Go on after kernels that brought the belief up to ``now``, s, from when it was calm."""
+        """Go on after kernels brought the belief, calm so far, up to the time ``now``, s."""
         self._stamps.last = float(self._row["stamp"])
         self._followed.forget_heading()
         self._times.last = max(self._times.last or now, now)
         self._now = max(self._now, now)
 
     def reconsider(self, stamp: float, ranges: NDArray[np.float32], lidar: LidarModel) -> None:
-        """Finish what kernels left of a scan that they corrected the pose by: it is not calm now.
+        """Finish a scan by which kernels corrected the pose, after which it is not calm any more.
 
-        As of :meth:`see`.
+        The arguments are those of :meth:`see`.
         """
         still = lidar.at_once(stamp, ranges, self.path)
         self.view = view = lidar.view(still)
@@ -173,22 +173,22 @@ class Localizer:
         )
 
     def feel(self, radius: float, first: float, last: float) -> None:
-        """Learn nothing of a touch: it goes by its map."""
+        """Ignore a touch: the localizer goes by its map."""
 
     def go_by_lidar(self) -> None:
-        """Take the lidar for where it is, if that is known better by now; call it between scans.
+        """Apply the lidar's measured mount, if it is known better by now; call this between scans.
 
-        What was seen stays where it is on the map: it is the robot's body that is elsewhere.
+        Points that were seen stay where they are on the map: the pose of the robot's body moves.
         """
         self._followed.go_by_lidar()
 
     def pass_time(self, now: float) -> None:
-        """Tell the time when no sensor does: silence counts, too."""
+        """Tell the time while no sensor does, so that their silence is noticed."""
         if self._has_clock:
             self._follow_clock(now, self._times)
 
     def use_map(self, occupancy: OccupancyMap) -> None:
-        """Go on with another map of the same frame; a pose that it does not fit is searched for."""
+        """Go on with another map in the same frame; search for the robot if scans do not fit it."""
         if self._map is not None and (
             occupancy.frame == self._map.frame
             and np.array_equal(occupancy.values, self._map.values)
@@ -205,8 +205,8 @@ class Localizer:
     def go_on(self, occupancy: OccupancyMap, at: tuple[Pose, tuple[float, float]] | None) -> None:
         """Go on with another map without a search, as the place on it is known.
 
-        ``at`` is the pose there, m and rad unsure; None: the same as before. Should a scan hardly
-        fit there it is searched for all the same.
+        ``at`` is the pose on it and its deviations, m and rad; None means the same pose as before.
+        If a scan hardly fits there, the robot is searched for all the same.
         """
         if at is None and self._search is not None:
             self.use_map(occupancy)
@@ -258,7 +258,7 @@ class Localizer:
 
     @property
     def sight_to_look_around(self) -> tuple[Pose, Floats] | None:
-        """Where it is reckoned to be and what it sees, if driving a little helps to find it."""
+        """The reckoned pose and the beams' ends, if driving a little helps to find the robot."""
         search, sees_nothing = self._search, self._map is None or self._is_blind or self._is_late
         if search is None or self.view is None or self._is_lifted or sees_nothing:
             return None
@@ -289,7 +289,7 @@ class Localizer:
     def _follow_clock(self, time: float, clock: ClockJumps) -> None:
         """Take the time that a clock shows.
 
-        Stamps and the time itself are two clocks: stamps are always a little late.
+        Stamps of sensors and the time itself are two clocks: stamps are always a little late.
         """
         was_set = clock.at(time) != 0.0
         if not self._has_clock or was_set:
@@ -325,7 +325,7 @@ class Localizer:
 
     @property
     def _fits(self) -> bool:
-        """Whether so much of the newest scans agrees with the map that they correct the pose."""
+        """Whether enough of the newest scans agrees with the map for them to correct the pose."""
         return bool(self._row["agree"] >= self._config.fit.doubt_agree)
 
     @property
@@ -335,7 +335,7 @@ class Localizer:
     def _follow(
         self, view: ScanView, stamp: float, reckoned: Pose, tells_places_apart: bool
     ) -> None:
-        """Correct the pose by a scan that was taken at ``reckoned``, and heed what it says."""
+        """Correct the pose by a scan taken at ``reckoned``, and react if the scan does not fit."""
         followed = self._followed
         unsure = followed.position_deviation
         if self._confirmation.awaited is None and unsure > self._config.astray_deviation:
@@ -356,14 +356,14 @@ class Localizer:
             self._reconsider(stamp, view, reckoned)
 
     def _reconsider(self, stamp: float, view: ScanView, reckoned: Pose) -> None:
-        """Forget the pose, unless what is in sight says that the home changed, and not the pose."""
-        # Where all is as it was seen a moment ago, it is the home that changed.
+        """Forget the pose, unless scans show that it is the home that changed."""
+        # If everything looks as it did a moment ago, it is the home that changed.
         is_still = self._doubt.sight.is_still(stamp, reckoned, view)
         if not is_still and self._is_found_near(view, reckoned):
             return
         expected = self._doubt.expected(self._now, stamp, view, reckoned, self.pose, self.field)
         if expected is not None:
-            # What the place looks like may have changed as well.
+            # The robot may still be here, if the look of the place has changed as well.
             self._search_for("the scan does not fit the map here any more", expected)
 
     def _is_found_near(self, view: ScanView, reckoned: Pose) -> bool:

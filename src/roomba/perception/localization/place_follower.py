@@ -1,7 +1,7 @@
 """The robot's place on a map, followed while it is known.
 
-Dead reckoning carries the pose from scan to scan, and each scan corrects it by the map. Meanwhile
-it learns how late scans are, and where the map's walls really stand.
+Dead reckoning carries the pose from scan to scan, and each scan corrects the pose by the map.
+Meanwhile the follower learns how late scans are, and where the map's walls really stand.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class PlaceFollower:
     """Keeps ``belief``, one row: the pose, how unsure it is, and what was learned on the way.
 
     ``reckoning`` tells how the robot moved, ``field`` and ``walls`` are those of the map, and
-    ``numbers`` those that kernels go by. Poses that were ``reckoned`` are of DeadReckoning.
+    ``numbers`` the parameters of the kernels. ``reckoned`` poses are those of DeadReckoning.
     """
 
     def __init__(
@@ -42,9 +42,9 @@ class PlaceFollower:
         gyro: GyroConfig,
         stride: int,
     ) -> None:
-        """Begin at the map's origin, which is to be told where the robot is: :meth:`begin_at`.
+        """Begin at the map's origin; call :meth:`begin_at` to tell where the robot really is.
 
-        A scan stands for so many of the lidar's, its ``stride``.
+        Every ``stride``-th scan of the lidar is shown.
         """
         self.belief: Rows = unknown_belief()
         self.row, self.numbers = self.belief[0], numbers_of(config, gyro, stride)
@@ -55,17 +55,17 @@ class PlaceFollower:
         self.begin_at(Pose(0.0, 0.0, 0.0), np.zeros((3, 3)))
 
     def use(self, occupancy: OccupancyMap | None) -> None:
-        """Go on with another map, of which no wall is learned yet; None: nothing is known."""
+        """Go on with another map, of which no wall is learned yet; None: there is no map."""
         self.field = SurfaceField.of(occupancy) if occupancy else SurfaceField.unknown()
         self.walls = LearnedWalls(self.field, self.belief)
 
     def begin_at(self, pose: Pose, covariance: NDArray[np.float64]) -> None:
-        """Go on at another pose of the map, unsure by float64 [3, 3], m2 and rad2."""
+        """Go on at another pose of the map, with a covariance, float64 [3, 3], m2 and rad2."""
         self.forget_heading()
         self.tracker = Tracker(self.field, pose, covariance, self.belief, self.numbers)
 
     def forget_heading(self) -> None:
-        """Compare the next scan's turn to none before it: the pose changed otherwise."""
+        """Learn no latency from the next scan's turn, as the pose was changed by other means."""
         self._heading = math.nan
 
     @property
@@ -86,7 +86,7 @@ class PlaceFollower:
     def pose_then(self, reckoned: Pose) -> Pose:
         """Return where the robot was on the map when dead reckoning had it at ``reckoned``.
 
-        As compiled code has it, to the last bit.
+        The result is that of compiled code, to the last bit.
         """
         here, then = self.tracker.pose.as_array(), reckoned.as_array()
         return Pose(*pose_then(here, self.row["reckoned"], then))
@@ -112,9 +112,9 @@ class PlaceFollower:
         return fit
 
     def go_by_lidar(self) -> None:
-        """Take the lidar for where it is, if that is known better by now; call it between scans.
+        """Apply the lidar's measured mount, if it is known better by now; call this between scans.
 
-        What was seen stays where it is on the map: it is the robot's body that is elsewhere.
+        Points that were seen stay where they are on the map: the pose of the robot's body moves.
         """
         if not self.row["calibration"]["is_lidar_due"]:
             return
@@ -125,7 +125,7 @@ class PlaceFollower:
         self.forget_heading()
 
     def _pose_since(self, reckoned: Pose) -> Pose:
-        """Return where the robot is that was at the tracker's pose at ``reckoned``."""
+        """Return where the robot is now, if it was at the tracker's pose at ``reckoned``."""
         here, then = self.tracker.pose.as_array(), reckoned.as_array()
         return Pose(*pose_then(here, then, self.row["reckoned"]))
 

@@ -24,7 +24,7 @@ _SECTORS: Final = 360
 class RecentSight:
     """Scans of the last seconds, each with where dead reckoning said that it was taken.
 
-    Kernels may go on with its ``arrays``.
+    Kernels may go on with its ``arrays``, in its place.
     """
 
     def __init__(self, config: RecentSightConfig) -> None:
@@ -38,7 +38,7 @@ class RecentSight:
 
     @property
     def arrays(self) -> Sights:
-        """Return it as kernels know it: another one after scans of more beams."""
+        """The scans as kernels know them; ask anew after scans of more beams."""
         return Sights(
             self._ring, self._stamps, self._places, self._counts, self._ends, self._config.apart
         )
@@ -58,7 +58,7 @@ class RecentSight:
         note_sight(self.arrays, stamp, place, view.ends, len(view))
 
     def is_still(self, stamp: float, reckoned: Pose, view: ScanView) -> bool:
-        """Whether a newer scan shows what was seen there before it."""
+        """Whether a scan shows what was seen some time before, seen from where the robot is now."""
         for number in range(int(self._ring[1])):
             kept = newest_of(self._ring, number)
             if self._config.newest <= stamp - self._stamps[kept] <= self._config.oldest:
@@ -69,9 +69,9 @@ class RecentSight:
 
 
 def _is_same(before: ScanView, view: ScanView, step: Pose, config: RecentSightConfig) -> bool:
-    """Whether a scan shows the same as one before it, taken a ``step`` further on.
+    """Whether a scan, taken a ``step`` after another one, shows the same as that one.
 
-    What lies behind what was seen then may be new: it was hidden.
+    A beam that ends behind the surfaces seen before is no difference: what it met was hidden.
     """
     if not len(before) or not len(view):
         return False
@@ -90,7 +90,7 @@ def _is_same(before: ScanView, view: ScanView, step: Pose, config: RecentSightCo
 
 
 def _outline(view: ScanView) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return for each sector how near and how far what was seen in it and next to it is, m."""
+    """Return the nearest and the farthest range in each sector and its two neighbours, m."""
     x, y = view.ends[:, 0] - view.mount[0], view.ends[:, 1] - view.mount[1]
     away, sector = np.hypot(x, y), _sectors(x, y)
     nearest, farthest = np.full(_SECTORS, np.inf), np.zeros(_SECTORS)

@@ -17,9 +17,10 @@ KEPT: Final = 12
 class Sights(NamedTuple):
     """The newest scans, in a ring of KEPT.
 
-    ``ring`` int64 [2] is where the next one goes and how many there are; ``stamps`` [KEPT] are s,
-    ``places`` [KEPT, 3] of dead reckoning; of ``ends`` [KEPT, beams, 4] the first ``counts`` count.
-    Scans are kept that are ``apart``, s, or more.
+    ``ring`` int64 [2] is the row of the next scan and the number of scans. In each row ``stamps``
+    [KEPT] has its time, s, ``places`` [KEPT, 3] the pose of dead reckoning, and ``ends``
+    [KEPT, beams, 4] its ends, of which the first ``counts`` [KEPT] count. Scans are kept that are
+    ``apart``, s, or more.
     """
 
     ring: NDArray[np.int64]
@@ -54,5 +55,5 @@ def note_sight(sights: Sights, stamp: float, place: Floats, ends: Floats, count:
 
 @entry
 def newest_of(ring: NDArray[np.int64], number: int) -> int:
-    """Return where in the ring the newest scan but ``number`` is."""
+    """Return the row of the scan that came ``number`` scans before the newest one."""
     return int((ring[0] - 1 - number) % KEPT)

@@ -25,9 +25,9 @@ class Tracker:
         belief: Rows,
         numbers: Rows,
     ) -> None:
-        """Begin where the robot is known to be; of its owner's ``belief`` it takes the place over.
+        """Begin where the robot is known to be; pose and covariance go to the owner's ``belief``.
 
-        ``numbers`` are those that its owner goes by.
+        ``numbers`` are the owner's parameters for kernels.
         """
         self._beliefs, self._belief, self._numbers = belief, belief[0], numbers
         self._pose: NDArray[np.float64] = self._belief["pose"]
@@ -49,7 +49,7 @@ class Tracker:
 
     @property
     def covariance(self) -> NDArray[np.float64]:
-        """How unsure that is: a copy."""
+        """A copy of the pose's covariance."""
         return self._covariance.copy()
 
     @covariance.setter
@@ -58,18 +58,18 @@ class Tracker:
 
     @property
     def map_spread(self) -> NDArray[np.float64]:
-        """Covariance of the pose by the map's errors, float64 [3, 3]: a copy."""
+        """A copy of the pose's covariance by the map's errors, float64 [3, 3]."""
         spread: NDArray[np.float64] = self._belief["map_spread"].copy()
         return spread
 
     @property
     def fit(self) -> Fit | None:
-        """How well the last scan fits, if there was one that tells."""
+        """How well the last scan fits that was judged; None before the first."""
         return Fit(*self._fit.tolist()) if self._belief["is_judged"] else None
 
     @property
     def agreement(self) -> float:
-        """Share of the last scan's beams that agree with the map; 0 if no scan told yet."""
+        """Share of beams that agree with the map in the last scan that was judged; 0 before it."""
         return float(self._fit[AGREE]) if self._belief["is_judged"] else 0.0
 
     def see(self, view: ScanView) -> None:
@@ -104,7 +104,7 @@ class Tracker:
         return bool(self._belief["is_doubtful"])
 
     def trust(self, fit: Fit) -> None:
-        """Take this fit for the usual one: the place was compared with all others."""
+        """Take this fit for the usual one, as the place was compared with all others."""
         self._fit[:] = fit.agree, fit.short, fit.through, fit.evidence
         self._belief["is_doubtful"] = False
         trust(self._beliefs)

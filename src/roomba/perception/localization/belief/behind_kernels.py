@@ -1,11 +1,12 @@
-"""Compiled: beams that a match leaves behind surfaces of the map tell nothing of the pose.
+"""Compiled: beams that end behind surfaces of the map after a match say nothing of the pose.
 
-A mirror sends beams on, and what it shows seems to stand behind it; glass, and a door that the map
-shows shut, let them through. Where many beams of one direction end behind what the map shows, those
-beside them that happen to end near it are of the same kind: the robot's own image behind a mirror
-is as near to it as the robot, and takes the place along when the robot drives away. So all of that
-direction are left out (a gate for what belongs to a landmark; Bar-Shalom, Li and Kirubarajan,
-"Estimation with Applications to Tracking and Navigation", 2001).
+A mirror reflects beams, and what it shows seems to stand behind it; glass lets beams through, and
+so does an open door that the map shows shut. Where many beams of one direction end behind what the
+map shows, the beams beside them that happen to end near the surface are wrong in the same way. The
+robot's own image, for example, is as far behind a mirror as the robot is before it, and would take
+the pose along when the robot drives away. So all beams of such a direction are left out (a gate for
+what belongs to a landmark; Bar-Shalom, Li and Kirubarajan, "Estimation with Applications to
+Tracking and Navigation", 2001).
 """
 
 from __future__ import annotations
@@ -22,16 +23,16 @@ BEHIND_LANES: Final = 3
 _IS_BEHIND: Final = 2
 """The row that tells which beams end behind a surface."""
 _DEVIATIONS: Final = 2.0
-"""Deviations of where a wall is: a beam that ends deeper behind one went through it."""
+"""Standard deviations of a wall's place: a beam that ends farther behind a wall went through it."""
 _OF_RANGE: Final = 0.02
-"""Share of a range, m per m, that is added to it: far ranges are less exact."""
+"""Share of the range, m per m, that is added to that depth: far ranges are less exact."""
 _DIRECTIONS: Final = 24
-"""In so many parts of all beams these are looked at together, to either side of each."""
+"""Parts of all beams; each beam is judged with as many neighbours on either side as a part has."""
 _MANY: Final = 0.25
-"""Share of them that must end behind surfaces for all to be left out."""
+"""Share of these that must end behind surfaces for the beam to be left out."""
 
 _EDGE: Final = 1e-6
-"""Cells from the last middles of the map, between which distances are known."""
+"""In cells; margin to the last cell's middle, as distances are known only between middles."""
 
 
 @inner_part
@@ -41,9 +42,9 @@ def leave_out_behind(
     """Leave out beams that ended behind surfaces, with those beside them; return how many are left.
 
     ``lanes`` [BEHIND_LANES or more, n] has x and y of the ends of ``count`` beams, m, in the frame
-    of the robot at ``pose`` [3]. Those that are left out are moved far off the map, where they
-    count as behind it when it is called again: what was left out gets a margin.
-    ``wall_variance``, m2, is that of where walls are against the map.
+    of the robot at ``pose`` [3]. Beams that are left out are moved far off the map. There they
+    count as behind a surface at the next call, which so leaves out a margin beside them.
+    ``wall_variance``, m2, is that of the walls' true places against the map.
     """
     aside = max(1, count // _DIRECTIONS)
     beside = 2 * aside + 1
@@ -74,7 +75,7 @@ def leave_out_behind(
 
 @inner_part
 def _distance(field: Field, place: Place, x: float, y: float) -> float:
-    """Return the distance to the nearest surface there, m; off the map it is behind its edge."""
+    """Return the distance to the nearest surface, m; off the map, less the way from its edge."""
     rows, columns = field.shape
     inside_x = min(max(x, place[0]), place[0] + (columns - 1 - _EDGE) * place[2])
     inside_y = min(max(y, place[1]), place[1] + (rows - 1 - _EDGE) * place[2])

@@ -33,28 +33,28 @@ BELIEF: Final = np.dtype(
         ("covariance", "f8", (3, 3)),  # of these, m2 and rad2
         ("unmatched", "f8", (3,)),  # both as they were before the newest scan was matched
         ("unmatched_covariance", "f8", (3, 3)),
-        ("map_spread", "f8", (3, 3)),  # covariance by the map's errors where it is, m2 and rad2
+        ("map_spread", "f8", (3, 3)),  # covariance by the map's errors here, m2 and rad2
         ("wall_offset", "f8", (2,)),  # of walls against the map's: beams times m, and beams
-        ("unlike", "f8"),  # 0..1, how much else is in sight than at the newest scan
-        ("walls_apart", "f8", (2,)),  # of single walls: sum of squares, m2, and walls
-        ("pulls", "f8", (3,)),  # back along what scans tell least: beams, squared, and as it seems
+        ("unlike", "f8"),  # 0..1, how far the view has changed since the newest scan
+        ("walls_apart", "f8", (2,)),  # offsets of single walls: sum of squares, m2, and walls
+        ("pulls", "f8", (3,)),  # means for weak_kernels: pull back, its square, seeming information
         ("reckoned", "f8", (3,)),  # x, y, theta, own
         ("spread", "f8", (3,)),  # variances ahead, left, of the turn, since the newest scan
         ("reckoned_spread", "f8", (3,)),  # the same, up to that scan
         ("off", "f8", (3,)),  # what that scan corrected: ahead, left, m, and of theta
-        ("odometry_scale", "f8", (3,)),  # times its variances that dead reckoning is off, learned
+        ("odometry_scale", "f8", (3,)),  # factors on dead reckoning's variances, learned
         ("odometry", "f8", (3,)),  # the wheels' newest, in their frame
         ("stamp", "f8"),  # of these; -inf: none came yet
         ("turning", "f8"),  # what the gyro said then, rad/s; nan: nothing
         ("bias", "f8"),  # of the gyro, as learned, rad/s
-        ("samples", "i8"),  # it was learned from, since the wheels stand
+        ("samples", "i8"),  # that the bias was learned from, since the wheels stand
         ("still_since", "f8"),  # inf: the wheels turn
         ("seen", "f8"),  # s, when the newest scan came in which anything was seen
         ("beams", "i8"),  # that met something in the newest scan
         ("is_judged", "?"),  # whether a fit is known
-        ("is_doubtful", "?"),  # whether scans fit so badly that it may be somewhere else
+        ("is_doubtful", "?"),  # whether scans fit so badly that the robot may be elsewhere
         ("fit", "f8", (4,)),  # of the newest scan that was judged
-        ("agree", "f8"),  # shares of beams, of about the last three scans
+        ("agree", "f8"),  # shares of beams (see Fit), of about the last three scans
         ("through", "f8"),
         ("usual_agree", "f8"),  # and of about the last 5 s
         ("usual_through", "f8"),
@@ -96,9 +96,9 @@ NUMBERS: Final = np.dtype(
 SMOOTHING: Final = 0.4
 """Share of the newest scan in what the fit is now: about the last three scans count."""
 ADAPTING: Final = 0.02
-"""Share of it in the usual fit: about the last 5 s."""
+"""Share of the newest scan in the usual fit: about the last 5 s count."""
 _MOST_SMOOTHING: Final = 0.5
-"""The same if few scans are used: one that fits half as well as usual raises no doubt."""
+"""Limit of :data:`SMOOTHING` if few scans are used: one that fits half as well raises no doubt."""
 
 
 def unknown_belief() -> Rows:
@@ -111,7 +111,7 @@ def unknown_belief() -> Rows:
 
 
 def numbers_of(config: LocalizationConfig, gyro: GyroConfig, every: int = 1) -> Rows:
-    """Return the numbers for kernels that are shown each ``every``-th scan of a lidar."""
+    """Return the numbers for kernels that get every ``every``-th scan of a lidar."""
     fields: dict[str, float] = {
         "way_variance": config.way_noise**2,
         "side_variance": config.side_noise**2,
@@ -141,5 +141,5 @@ def numbers_of(config: LocalizationConfig, gyro: GyroConfig, every: int = 1) -> 
 
 
 def share_of(share: float, scans: int, most: float) -> float:
-    """Return what a scan that stands for so many counts, if each of them counts ``share``."""
+    """Return the share of a scan that stands for ``scans`` ones, of which each counts ``share``."""
     return share if scans == 1 else min(most, 1.0 - (1.0 - share) ** scans)

@@ -36,19 +36,19 @@ _NARROW: Final = np.array([0.10, 0.05, 0.05])
 _WIDE: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05])
 """m; beams that end farther off than this lose weight, round by round."""
 _STRIDE: Final = 8
-"""Stride over the beams that are judged; of 360 these are enough to notice a wrong pose."""
+"""Stride over the beams that are judged: every eighth of 360 is enough to notice a wrong pose."""
 _LEAST_JUDGED: Final = 24
-"""Beams; of scans in which few met something, so many are judged: fewer tell too little."""
+"""Beams that are judged at least, if so many met something: fewer tell too little."""
 _MATCHES: Final = 3
-"""Of a scan at most; each of those that follow leaves out what the one before left behind walls."""
+"""Matches of a scan at most; each leaves out the beams that the one before left behind walls."""
 _OF_MAP: Final = 0.1
-"""Share of the newest scan in what the map's errors are taken for."""
+"""Share of the newest scan in the estimate of the covariance by the map's errors."""
 _OF_WALLS: Final = 0.02
-"""Share of new surroundings in how far walls are taken to be off."""
+"""Share of new surroundings in the estimate of how far walls are off."""
 _LEAST_BEAMS: Final = 50.0
 """Beams from which on it is known how far all walls are off alike."""
 _STILL: Final = (0.0005**2, 0.0005**2, 0.0003**2)
-"""m2, rad2; the least variance, of the map's errors, which more scans do not reduce."""
+"""m2, rad2; added before each match: errors of the map, which more scans do not reduce."""
 
 
 @entry
@@ -65,8 +65,8 @@ def correct(
 
     ``now`` is when it came, s.
 
-    ``lidar.ends`` has these beams then. Whether the pose is still to be trusted tells
-    :func:`is_calm`.
+    Afterwards ``lidar.ends`` has the beams that ended. :func:`is_calm` tells whether the pose is
+    still to be trusted.
     """
     belief = beliefs[0]
     count = beam_ends(
@@ -96,8 +96,8 @@ def correct_late(
 ) -> int:
     """Correct the pose as :func:`correct` does, by a scan that was taken at ``stamp``, s.
 
-    ``reckoned`` [3] is filled with where ``path`` had the robot then; a scan from before all of
-    ``path`` tells nothing.
+    ``reckoned`` [3] is filled with where ``path`` had the robot then. A scan from before all of
+    ``path`` is left out: 0 is returned.
     """
     belief, pose = beliefs[0], beliefs[0].pose
     if not pose_at(path, stamp, reckoned):
@@ -142,7 +142,7 @@ def deviation(covariance: Floats) -> float:
 
 @part
 def place_deviation(beliefs: Rows) -> float:
-    """Return the same of the place, m, errors of the map included."""
+    """Return that deviation of a belief's position, m, with the errors of the map included."""
     own, of_map = beliefs[0].covariance, beliefs[0].map_spread
     return _worst(own[0, 0] + of_map[0, 0], own[0, 1] + of_map[0, 1], own[1, 1] + of_map[1, 1])
 
@@ -197,7 +197,7 @@ def match_ends(
 
 @inner_part
 def _is_unsure(covariance: Floats, numbers: Row) -> bool:
-    """Whether the pose is so unsure that a scan is matched from farther away."""
+    """Whether the pose is so unsure that a scan is matched to surfaces farther away."""
     unsure: float = numbers.unsure_deviation
     is_unsure: bool = max(covariance[0, 0], covariance[1, 1]) > unsure * unsure
     return is_unsure
@@ -205,7 +205,7 @@ def _is_unsure(covariance: Floats, numbers: Row) -> bool:
 
 @inner_part
 def _take_back(belief: Row) -> None:
-    """Make the pose, and how unsure it is, what they were before the newest scan was matched."""
+    """Reset pose and covariance to what they were before the newest scan was matched."""
     for row in range(3):
         belief.pose[row] = belief.unmatched[row]
         for column in range(3):
@@ -216,9 +216,9 @@ def _take_back(belief: Row) -> None:
 def _note_map_errors(
     belief: Row, field: Field, place: Place, ends: Floats, count: int, share: float
 ) -> None:
-    """Take what a scan that was just matched tells of the map's errors.
+    """Learn of the map's errors from a scan that was just matched.
 
-    It told but a ``share`` of what it seemed to, as of :func:`believe_less`.
+    ``share`` is what :func:`believe_less` left of its information along the weakest direction.
     """
     spread, told, apart = np.empty((3, 3)), np.empty(4), belief.walls_apart
     wall_variance = wall_variance_of(belief, place)
@@ -228,7 +228,7 @@ def _note_map_errors(
     ):
         return
     if share < 1.0:
-        # What does not follow walls is not pulled off as they are.
+        # Along this direction the pose hardly follows the walls, nor, then, their errors.
         leave_out(belief.work[9], share, spread)
     for row in range(3):
         for column in range(3):
@@ -246,7 +246,7 @@ def _note_map_errors(
 def _beam_variance(numbers: Row, place: Place, count: int) -> float:
     """Return the variance of a beam, m2.
 
-    Beams of one thing err together, and so do the scans that follow.
+    It grows if there are few beams: beams that met one thing err together, in later scans as well.
     """
     cell = 0.5 * place[2]
     share = max(1.0, numbers.least_beams / max(count, 1))
@@ -265,9 +265,9 @@ def judge_ends(
     mount: Floats,
     lanes: Floats,
 ) -> None:
-    """Judge how well a scan fits the pose, and whether scans do so much worse than usual.
+    """Judge how well a scan fits the pose, and whether scans fit much worse than usual.
 
-    One that hardly fits moves nothing, while the pose is not unsure.
+    The correction by a scan that hardly fits is taken back, unless the pose was unsure before.
     """
     belief, known = beliefs[0], numbers[0]
     pose, fit, counts = belief.pose, belief.fit, belief.counts
@@ -289,7 +289,7 @@ def judge_ends(
     )
     if not belief.is_doubtful:
         learn_trust(belief)
-    # What little agrees with the map may stand elsewhere now: it would take the robot along.
+    # The few beams that agree may have met a thing that was moved: it would take the pose along.
     if fit[AGREE] < known.doubt_agree and not _is_unsure(belief.unmatched_covariance, known):
         _take_back(belief)
 

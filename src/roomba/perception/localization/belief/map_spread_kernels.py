@@ -1,9 +1,9 @@
 """Compiled: how far the map's own errors pull a pose off, and where in their cells its walls are.
 
-Walls lie anywhere in their cells, and some have moved since. All beams on one wall err together,
-and so do all scans from near by: more of them make the pose no surer. How far walls are off is
-learned from how far apart they are where a scan fits best; the pose is as unsure as that makes it
-(the cluster-robust covariance; Liang and Zeger, Biometrika 73, 1986).
+Walls lie anywhere in their cells, and some have moved since the map was made. All beams on one wall
+err together, and so do all scans from near by: more of them make the pose no surer. How far walls
+are off is learned from their residuals where a scan fits best. The covariance of the pose follows
+from that (the cluster-robust covariance; Liang and Zeger, Biometrika 73, 1986).
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from roomba.perception.matching.field_kernels import Field, Place, look
 from roomba.perception.matching.match_kernels import invert
 
 _GROUPS: Final = 16
-"""Groups of neighbouring beams; those that follow and face alike are of one wall."""
+"""Groups of neighbouring beams; consecutive groups that face alike are one wall."""
 _LOOKED_AT: Final = 96
-"""Beams that are looked at, at most: six of a group tell how far it is off."""
+"""Beams that are looked at, at most: six of a group tell how far the group is off."""
 _ALIKE: Final = 0.8
 """Cosine of the angle between surfaces that face alike."""
 _LARGEST: Final = (0.3, 0.3, 0.15)
-"""m, rad; along what a scan does not tell the map's errors do not count for more."""
+"""m, rad; limits of the map's errors along directions of which a scan tells nothing."""
 _LEAST_WEIGHT: Final = 5.0
-"""Beams that must end at surfaces."""
+"""Beams that must end near surfaces, by weight."""
 _LEAST_WALLS: Final = 20.0
-"""Walls from which on how far they are off is known."""
+"""Walls from which on the estimate of how far walls are off is relied on."""
 _FREE: Final = 3.0
-"""Numbers of a pose, which a match fits to the walls."""
+"""Degrees of freedom that a match takes from the walls: x, y and theta."""
 
 OFFSET: Final = 0
 OFFSET_BEAMS: Final = 1
@@ -43,16 +43,16 @@ APART_WALLS: Final = 3
 
 @inner_part
 def wall_variance_of(belief: Row, place: Place) -> float:
-    """Return the variance of where a wall is against the map's, m2."""
+    """Return the variance of a wall's true place against the map, m2."""
     apart = belief.walls_apart
-    # A wall lies anywhere in its cell: that few walls in sight agree tells nothing of the others.
+    # A wall lies anywhere in its cell: if few walls in sight agree, others may be off all the same.
     variance: float = max(apart[0] / max(apart[1], _LEAST_WALLS), of_cell(place))
     return variance
 
 
 @inner_part
 def of_cell(place: Place) -> float:
-    """Return the variance of where in its cell of the map a wall is, m2."""
+    """Return the variance of a wall's place within its cell of the map, m2: it is uniform."""
     variance: float = place[2] * place[2] / 12.0
     return variance
 
@@ -69,13 +69,13 @@ def map_spread(
     spread: Floats,
     told: Floats,
 ) -> bool:
-    """Fill ``spread`` [3, 3] with the covariance by the map's errors; tell if there is one.
+    """Fill ``spread`` [3, 3] with the pose's covariance by the map's errors; tell if there is one.
 
-    ``pose`` [3] is where ``ends`` [n, 4], the first ``count`` of them, were matched to; each wall
-    is off by ``wall_variance``, m2, and all alike by ``offset_variance``. What the scan says of
-    the walls goes to ``told`` [4]: the information, in beams, times how far all are off alike, m,
-    and that information; the sum of squares of how far each is off, m2, and the walls less those
-    that the match needs.
+    ``pose`` [3] is where the first ``count`` of ``ends`` [n, 4] were matched to. Each wall is off
+    with ``wall_variance``, m2, and all walls have an offset in common, with ``offset_variance``.
+    What the scan says of the walls goes to ``told`` [4]: the common offset, m, times its
+    information, in beams; that information; the sum of squares of the walls' residuals, m2; and the
+    number of walls less the degrees of freedom that the match takes.
     """
     size = max(1, -(-min(count, _LOOKED_AT) // _GROUPS))
     step = count / (size * _GROUPS)
@@ -137,7 +137,7 @@ def map_spread(
 
 @inner_part
 def _faces_alike(of_wall: Floats, of_group: Floats) -> bool:
-    """Whether the beams of a group meet what faces as the wall before it does."""
+    """Whether the beams of a group meet a surface that faces as the wall before it does."""
     product = of_wall[0] * of_group[0] + of_wall[1] * of_group[1]
     lengths = math.hypot(of_wall[0], of_wall[1]) * math.hypot(of_group[0], of_group[1])
     is_alike: bool = product > _ALIKE * lengths
@@ -146,7 +146,7 @@ def _faces_alike(of_wall: Floats, of_group: Floats) -> bool:
 
 @inner_part
 def _end_wall(of_wall: Floats, walls: Floats, told: Floats) -> None:
-    """Add what a wall alone would do to the pose, and begin the next one."""
+    """Add the pull of one wall on the pose, squared, and its residual; begin the next wall."""
     if of_wall[4] > 1.0:
         off = of_wall[3] / of_wall[4]
         told[APART] += off * off

@@ -1,4 +1,4 @@
-"""Compiled dead reckoning: a step of the wheels, along the fused turn of wheels and gyro."""
+"""Compiled dead reckoning: a step by the wheels, with the turn fused from wheels and gyro."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _STANDS: Final = 1e-4
 SET_BACK: Final = 0.1
 """s; a stamp older than the last one by this is of a clock that was set back."""
 _ROUNDING: Final = 1e-6
-"""s; rounding of a clock decides nothing: the same samples count at any time."""
+"""s; margin for the rounding of clocks, so that the same samples count whenever a run begins."""
 _UNSEEN: Final = 0.3
 """Deviation of the mean turning speed between two samples, as a share of its change."""
 
@@ -40,9 +40,9 @@ def reckon(
 ) -> int:
     """Go on to the wheels' odometry and the gyro's turning speed, rad/s or nan, at a time.
 
-    Moves the reckoned pose, the one on the map and its covariance; all numbers but ``turning`` must
-    be finite. What is a little older than the last is left out, and so is a jump. When a clock is
-    set back the way still counts, but nothing is known of the time that it took.
+    Moves the reckoned pose, the pose on the map and its covariance; all numbers but ``turning``
+    must be finite. Odometry a little older than the last is left out, and so is a jump. If the
+    clock was set back the way still counts, but the time that it took is not known.
     """
     belief, known = beliefs[0], numbers[0]
     since = stamp - belief.stamp
@@ -95,7 +95,7 @@ def _go(
     turning: float,
     elapsed: float,
 ) -> None:
-    """Move by a step of the wheels, m and rad, that took so long, s; 0: unknown."""
+    """Move by a step of the wheels, m and rad, that took ``elapsed``, s; 0 if that is unknown."""
     way = math.hypot(ahead, aside)
     _learn_bias(belief, numbers, way, wheels, turning)
     note_step(belief.calibration, ahead, aside, wheels)
@@ -119,10 +119,10 @@ def _go(
 
 @inner_part
 def _leave_surroundings(belief: Row, numbers: Row, way: float, turn: float) -> None:
-    """Add the map's error to the covariance as other walls, with other errors, come in sight.
+    """Add the map's errors to the covariance as other walls, with other errors, come in sight.
 
-    The pose that fits the map best is off by these errors; they are alike where the same is seen
-    (a Gauss-Markov process over way and turn).
+    The pose that fits the map best is off by the errors of the walls in sight. They are correlated
+    over poses that see the same walls (a Gauss-Markov process over way and turn).
     """
     unlike = way / numbers.same_way + abs(turn) / numbers.same_turn
     belief.unlike = min(1.0, belief.unlike + unlike)
@@ -134,7 +134,7 @@ def _leave_surroundings(belief: Row, numbers: Row, way: float, turn: float) -> N
 
 @inner_part
 def _learn_bias(belief: Row, numbers: Row, way: float, turn: float, turning: float) -> None:
-    """While the wheels stand, the mean of what the gyro shows is its bias."""
+    """Learn the gyro's bias: the mean of what the gyro shows while the wheels stand."""
     if way > _STANDS or abs(turn) > _STANDS or math.isnan(turning):
         belief.still_since, belief.samples = math.inf, 0
         return
@@ -152,7 +152,7 @@ def _learn_bias(belief: Row, numbers: Row, way: float, turn: float, turning: flo
 def _turn(
     belief: Row, numbers: Row, way: float, wheels: float, turning: float, elapsed: float
 ) -> tuple[float, float]:
-    """Return the turn, rad, of both measurements weighed, and its variance, rad2."""
+    """Return the turn, rad, weighed from wheels and gyro, and its variance, rad2."""
     before, belief.turning = belief.turning, turning
     by_wheels = numbers.wheel_variance * way + numbers.turn_variance * abs(wheels) + 1e-9
     if math.isnan(turning) or elapsed == 0.0:
@@ -165,7 +165,7 @@ def _turn(
     note_gyro(belief.calibration, gyro, elapsed)
     gyro *= 1.0 + belief.calibration.applied[GYRO]
     noise = numbers.gyro_noise * elapsed
-    # Between two samples the change of the turning is not known.
+    # How the turning speed changed between the two samples is not known.
     unseen = _UNSEEN * (turning - before) * elapsed
     by_gyro = noise * noise + numbers.drift_variance * elapsed
     by_gyro += numbers.turn_variance * abs(gyro) + unseen * unseen
@@ -197,7 +197,7 @@ def carry(
 ) -> None:
     """Move a pose, float64 [3], and its covariance, [3, 3], by a step in its own frame.
 
-    The step is unsure by three variances, along the axes of the robot after it, m2 and rad2.
+    The three variances of the step are along the robot's axes after it, m2 and rad2.
     """
     x, y = pose[0], pose[1]
     compose(pose, ahead, aside, turn)

@@ -1,7 +1,7 @@
 """Compiled: how far dead reckoning is to be trusted, as scans show it on the way.
 
-The deviations that a robot is configured with are those of its own wheels on its own floors. What
-matches correct, against what dead reckoning was unsure by meanwhile, tells of any other wheels.
+The configured deviations are those of one robot's wheels on its own floors. The corrections by
+matched scans, relative to dead reckoning's variances since the scan before, show those of others.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from roomba.compilation import inner_part
 from roomba.perception.localization.belief.belief import Row
 
 _LEARNING: Final = 0.02
-"""Share of the newest scan in how far off dead reckoning is."""
+"""Share of the newest scan in the factors on dead reckoning's variances."""
 _MARGIN: Final = 4.0
-"""What was seen of its errors is taken times this: they are not the same all the time."""
+"""Factor on the squared errors that were seen, as errors are larger at times."""
 _MOST_OFF: Final = 200.0
-"""Times its variance that one scan makes it off at most: a jump says nothing of the usual."""
+"""Limit of the factor that one scan shows: a jump says nothing of the usual errors."""
 _LEAST_SPREAD: Final = (0.001**2, 0.001**2, 0.0005**2)
-"""m2, rad2; variances of less motion, which the match itself is no surer than."""
+"""m2, rad2; a step with smaller variances teaches nothing: the match itself is no more exact."""
 
 
 @inner_part
 def note_correction(belief: Row, before: NDArray[np.float64]) -> None:
-    """Keep by what a scan moved the pose from ``before`` [3], and what it was unsure by since."""
+    """Note how a scan moved the pose from ``before`` [3], and the variances since the last scan."""
     pose, off = belief.pose, belief.off
     cosine, sine = math.cos(before[2]), math.sin(before[2])
     x, y = pose[0] - before[0], pose[1] - before[1]
@@ -40,9 +40,9 @@ def note_correction(belief: Row, before: NDArray[np.float64]) -> None:
 
 @inner_part
 def learn_trust(belief: Row) -> None:
-    """Learn from the correction that was noted how many times its variances dead reckoning is off.
+    """Learn the factors on dead reckoning's variances from the correction that was noted.
 
-    It is never trusted more than it was configured to be.
+    They are never below 1: dead reckoning is not trusted more than it was configured to be.
     """
     scale = belief.odometry_scale
     for axis in range(3):

@@ -1,12 +1,13 @@
-"""Compiled: what a scan tells of the pose along the direction of which it tells least.
+"""Compiled: how much a scan really tells along the direction of which it tells least.
 
-A bare wall tells nothing of the way along it. But it is drawn in cells, and the noise of ranges
-puts ends before and behind the steps between these, where the nearest surface lies aside. A match
-counts each such slope as information, and an end that is farther off as more of it: these are a
-regression's errors in variables (W. Fuller, "Measurement Error Models", 1987). When the pose is
-moved, slopes that are noise pull either way, and those of a surface pull it back. So what pulls
-back is measured, over some scans, and information is believed as its square: that is how it goes
-into the variance of an estimate (the sandwich; P. Huber, 1967).
+A bare wall tells nothing of the pose along the wall. But the map draws walls in cells, and the
+noise of ranges puts ends before and behind the steps between cells, where the nearest surface lies
+aside. A match takes the slope of the field at each such end for information, the more so the
+farther off the end is: these are a regression's errors in variables (W. Fuller, "Measurement Error
+Models", 1987). If the pose is moved, slopes that are noise pull either way, and those of a real
+surface pull the pose back. So the pull back is measured, over some scans. The information is then
+scaled by the square of the share that pulls back, as that is how it goes into the variance of an
+estimate (the sandwich; P. Huber, 1967).
 """
 
 from __future__ import annotations
@@ -21,16 +22,16 @@ from roomba.perception.matching.field_kernels import Field, Place
 from roomba.perception.matching.match_kernels import add_beams, invert
 
 _SHIFT: Final = 0.02
-"""m, rad; how far the pose is moved to either side: no farther than ends still count."""
+"""m, rad; how far the pose is moved to either side: so little that the ends still count."""
 _OF_SURFACES: Final = 0.5
-"""Share of information that pulls back where it is of surfaces: ends off them do so less. In
-furnished homes 0.53 to 0.75 of it does, along bare walls 0.07."""
+"""Share of the information that pulls back at real surfaces: ends off surfaces pull back less. In
+furnished homes 0.53 to 0.75 of the information pulls back, along bare walls 0.07."""
 _NEWEST: Final = 0.1
-"""Share of the newest scan in how much pulls back: few of its ends tell."""
+"""Share of the newest scan in the mean pull: few ends of one scan tell anything along a wall."""
 _OF_MEAN: Final = _NEWEST / (2.0 - _NEWEST)
-"""Share of the variance of what pulls back in a scan that its mean has."""
+"""Variance of the mean pull, as a share of the variance of a single scan's pull."""
 _SURELY: Final = 0.5
-"""Deviations of that mean that are taken off it: along a bare wall some pulls back by chance."""
+"""Deviations that are taken off the mean pull: along a bare wall some ends pull back by chance."""
 _LEAST_INFORMATION: Final = 1.0
 """1/m2, 1/rad2; added, so that a direction of which a scan tells nothing is found as well."""
 _ROUNDS: Final = 4
@@ -52,11 +53,12 @@ def believe_less(
     scale: float,
     variance: float,
 ) -> float:
-    """Take back from a pose that was just matched what is noise; return the share that is left.
+    """Take back what noise did to a pose that was just matched; return the share that is left.
 
-    That is along ``belief.work[9]``, of length 1 in m and rad. ``lanes``, ``scale``, m, and
-    ``variance``, m2, are those of :func:`roomba.perception.matching.match_kernels.match_in` in its
-    last round, which leaves the prior's information in ``belief.work[0:3]``.
+    Only the weakest direction is changed; it goes to ``belief.work[9]``, of length 1 in m and rad.
+    ``lanes``, ``scale``, m, and ``variance``, m2, are those of
+    :func:`roomba.perception.matching.match_kernels.match_in` in its last round, which leaves the
+    prior's information in ``belief.work[0:3]``.
     """
     pose, covariance, prior, pulls = belief.pose, belief.covariance, belief.unmatched, belief.pulls
     of_prior, information = belief.work[0:3], belief.work[3:6]
@@ -82,7 +84,7 @@ def believe_less(
     if share == 1.0:
         return 1.0
     less = (1.0 - share) * told
-    # Where the match ended the beams pull as the prior does.
+    # Where the match ended, the pull of the beams and that of the prior are in balance.
     pulled = 0.0
     for row in range(3):
         for column in range(3):
@@ -98,7 +100,7 @@ def believe_less(
 
 @inner_part
 def leave_out(weak: Floats, share: float, spread: Floats) -> None:
-    """Leave of a covariance [3, 3] along a direction [3], of length 1, a share of its deviation."""
+    """Reduce a covariance's [3, 3] deviation along a direction [3], of length 1, to a share."""
     less = 1.0 - share
     along = 0.0
     for row in range(3):
@@ -116,7 +118,10 @@ def leave_out(weak: Floats, share: float, spread: Floats) -> None:
 
 @inner_part
 def _find_weakest(inverse: Floats, weak: Floats) -> float:
-    """Fill ``weak`` [3] with the direction of least information; return that, by its inverse."""
+    """Fill ``weak`` [3] with the direction of least information, and return that information.
+
+    ``inverse`` [3, 3] is the inverse of the information.
+    """
     first = 0
     for axis in range(1, 3):
         if inverse[axis, axis] > inverse[first, first]:
@@ -139,9 +144,9 @@ def _find_weakest(inverse: Floats, weak: Floats) -> float:
 def _pull_back(
     belief: Row, field: Field, place: Place, lanes: Floats, count: int, weak: Floats, scale: float
 ) -> float:
-    """Return by how much ends pull a pose back that is moved along ``weak``, in beams.
+    """Return how strongly the ends pull back a pose that is moved along ``weak``, in beams.
 
-    One that ends at a surface that faces that way is a beam.
+    An end at a surface that faces along ``weak`` counts as one beam.
     """
     unused, moved, gradient = belief.work[6:9], belief.work[10], belief.work[11]
     for axis in range(3):

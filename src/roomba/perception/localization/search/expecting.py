@@ -1,4 +1,4 @@
-"""Expectations for a comparison of places: near a pose that was told, or was known."""
+"""Expectations for a comparison of places: near a pose that was reported, or was known."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from roomba.perception.localization.search.relocation import Expectation
 def where_told(
     pose: Pose, deviation: tuple[float, float], config: LocalizationConfig
 ) -> Expectation:
-    """Return where to expect a robot that is near a pose, unsure by so much, m and rad."""
+    """Return where to expect a robot that was reported at a pose, with deviations, m and rad."""
     told = config.expecting
     radius = max(told.told_radius, 3.0 * deviation[0])
     turn = max(told.told_turn, 3.0 * deviation[1])
@@ -18,16 +18,17 @@ def where_told(
 
 
 def where_known(pose: Pose, config: LocalizationConfig, *, is_still: bool) -> Expectation:
-    """Return where to expect a robot that was there; ``is_still``: it was not carried."""
+    """Return where to expect a robot that was known to be at a pose; ``is_still``: not carried."""
     here = config.expecting
     evidence = config.needed_evidence + (here.still_evidence if is_still else here.here_evidence)
     return Expectation(pose, here.here_radius, here.here_turn, evidence)
 
 
 def where_found_near(pose: Pose, config: LocalizationConfig) -> Expectation:
-    """Return where to expect a robot of which a scan fits there best of all places near by.
+    """Return where to expect a robot whose scan fits best at ``pose``, of all places near by.
 
-    It may have been carried farther: another place that is likelier makes that unsure.
+    The robot may have been carried farther. So the pose has no evidence of its own beyond what is
+    needed to tell places apart.
     """
     here = config.expecting
     return Expectation(pose, here.here_radius, here.here_turn, config.needed_evidence)
@@ -36,5 +37,5 @@ def where_found_near(pose: Pose, config: LocalizationConfig) -> Expectation:
 def searched_for(
     expectation: Expectation, here: Pose, seconds: float, config: LocalizationConfig
 ) -> Expectation:
-    """Return the same after a search of so many s, in which dead reckoning led to a pose."""
+    """Return an expectation after ``seconds`` of search, in which dead reckoning led ``here``."""
     return expectation.drifted(here, config.expecting.drift * seconds)

@@ -1,4 +1,4 @@
-"""Where a scan fits best from a pose on that is tried, and the beams by which many are compared."""
+"""Matching of a scan from a pose that is tried, and the choice of beams to compare many poses."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FROM_NEAR: Final = np.array([0.15, 0.10, 0.05, 0.05])
 FROM_AFAR: Final = np.array([0.40, 0.30, 0.20, 0.10, 0.05, 0.05])
 """m; beams that end farther off than this lose weight, round by round."""
 _SPREAD: Final = np.diag([0.3**2, 0.3**2, 0.2**2])
-"""m2, rad2; of a pose that is tried."""
+"""m2, rad2; covariance of a pose that is tried."""
 
 
 def matched(
@@ -26,7 +26,7 @@ def matched(
     deviation: float,
     scales: NDArray[np.float64] = FROM_AFAR,
 ) -> tuple[Pose, Fit]:
-    """Return where a scan fits best from a start on, and how well; ``deviation`` is a beam's, m."""
+    """Return the best pose for a scan near a start, and its fit; ``deviation`` is a beam's, m."""
     prior = start.as_array()
     pose, covariance = prior.copy(), _SPREAD.copy()
     match(
@@ -44,5 +44,5 @@ def matched(
 
 
 def evenly_chosen(count: int, most: int) -> NDArray[np.int64]:
-    """Return the numbers of ``most`` beams, evenly out of so many; of all if they are fewer."""
+    """Return the indices of ``most`` beams, evenly out of ``count``; all if there are fewer."""
     return np.linspace(0, count - 1, min(count, most)).astype(np.int64)

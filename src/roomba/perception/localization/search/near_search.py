@@ -1,4 +1,4 @@
-"""Looking around a pose for where a scan fits: wheels slipped, or a turn was not told."""
+"""A search around a pose for where a scan fits, as wheels slipped, or a turn was not measured."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from roomba.perception.matching.surface_field import SurfaceField
 
 _STEP: Final = 0.12
 _TURN_STEP: Final = 0.07
-"""m, rad; between poses that are tried: a match finds its way from half of that."""
+"""m, rad; steps between poses that are tried: a match finds its way from half a step."""
 _WIDTH: Final = 0.35
 """m; a beam that ends farther than this from a surface adds nothing."""
 _BEAMS: Final = 48
 _MATCHED: Final = 8
-"""Beams that are compared, and poses that are matched."""
+"""Beams by which poses are compared, and the number of the best poses that are then matched."""
 _LEAST_ROOM: Final = 0.05
-"""m; nearer than this to a surface no robot's middle is."""
+"""m; a robot's middle is never nearer than this to a surface."""
 
 
 def best_near(
@@ -66,7 +66,8 @@ def better_near(
 ) -> tuple[Pose, Fit] | None:
     """Return a pose near ``pose``, map frame, that a scan fits clearly better, and about as usual.
 
-    ``usual`` are shares of beams that agree, and that go through walls. None: there is no such.
+    ``usual`` are the usual shares of beams that agree, and that go through walls. Return None if
+    there is no such pose.
     """
     found, worse = best_near(view, field, pose, config), config.fit
     if found is None:

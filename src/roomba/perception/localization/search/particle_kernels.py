@@ -17,7 +17,7 @@ Particles = NDArray[np.float64]
 
 @entry
 def spread_over(spots: Floats, headings: int, particles: Particles) -> None:
-    """Fill ``particles`` with each spot, [m, 2], m, in so many headings, all of weight 1."""
+    """Fill ``particles`` with each spot, [n, 2], m, in ``headings`` headings, all of weight 1."""
     turn = 2.0 * math.pi / headings
     for index in range(particles.shape[0]):
         spot, heading = index // headings, index % headings
@@ -28,7 +28,7 @@ def spread_over(spots: Floats, headings: int, particles: Particles) -> None:
 
 @entry
 def move_all(particles: Particles, x: float, y: float, turn: float, noise: Floats) -> None:
-    """Move all by a step in their own frames, m and rad, each by its ``noise`` [n, 3] more."""
+    """Move all particles by a step in their own frames, m and rad, plus ``noise`` [n, 3] each."""
     for index in range(particles.shape[0]):
         cosine, sine = math.cos(particles[index, 2]), math.sin(particles[index, 2])
         ahead, aside = x + noise[index, 0], y + noise[index, 1]
@@ -67,9 +67,9 @@ def weigh_all(
     outside: float,
     particles: Particles,
 ) -> None:
-    """Add to each weight how likely the beams are there, each by its ``share``.
+    """Add to each particle's weight the likelihood of the beams there, each times ``share``.
 
-    ``chosen`` are rows of ``ends`` (see ``beam_ends``); one that ends off the map counts
+    ``chosen`` are rows of ``ends`` (see ``beam_ends``); a beam that ends off the map counts
     ``outside``.
     """
     rows, columns = likelihoods.shape
@@ -106,7 +106,7 @@ def leave_walls(field: Field, place: Place, room: float, particles: Particles) -
 def resample(particles: Particles, weights: Floats, start: float, chosen: Particles) -> None:
     """Fill ``chosen`` [m, 4] from ``particles`` by their ``weights`` [n], which sum up to 1.
 
-    Low variance: at even steps from ``start``, 0..1 of a step.
+    This is low-variance resampling: at even steps, the first at ``start``, 0..1 of a step.
     """
     count, at, sum_of = chosen.shape[0], 0, weights[0]
     for index in range(count):
@@ -121,9 +121,9 @@ def resample(particles: Particles, weights: Floats, start: float, chosen: Partic
 
 @entry
 def normalise(particles: Particles, weights: Floats) -> float:
-    """Fill ``weights`` [n], summing up to 1; return how many particles that is worth.
+    """Fill ``weights`` [n], summing up to 1; return the effective number of particles.
 
-    0: none has any weight.
+    It is 0 if none has any weight; ``weights`` is not filled then.
     """
     count = particles.shape[0]
     most = -math.inf
@@ -147,7 +147,7 @@ def weight_around(
 ) -> float:
     """Return the weight near ``at`` [3] and fill ``middle`` [3] with its mean pose.
 
-    Near is what is less than ``near`` m off and ``turned`` rad turned.
+    Particles less than ``near`` m off and ``turned`` rad turned are near.
     """
     total = x = y = sine = cosine = 0.0
     for index in range(particles.shape[0]):

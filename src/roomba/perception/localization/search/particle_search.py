@@ -1,7 +1,8 @@
-"""The robot looked for on the whole map while it drives: a particle filter.
+"""A search for the robot on the whole map while it drives: a particle filter.
 
-One scan does not tell the place in long corridors, and on maps of another program or day hardly any
-scan fits well. Particles follow all places that may be, until the way has told them apart.
+One scan does not determine the place in long corridors, and on a map by another program or of
+another day hardly any scan fits well. Particles follow all places where the robot may be, until
+scans along its way have told these apart.
 Source: Thrun, Burgard, Fox, "Probabilistic Robotics", 2005, 8.3 (Monte Carlo localization).
 """
 
@@ -35,23 +36,23 @@ _MOST: Final = 60_000
 _LEAST: Final = 20_000
 """Particles after the first scan, at most and at least."""
 _EACH: Final = 60
-"""Particles for each part of the map, a cell of the two numbers below, that may be it."""
+"""Particles for each part of the map where the robot may be; the next two numbers are its size."""
 _PART: Final = 0.5
 _PART_TURN: Final = 0.35
 """m, rad; the size of such a part."""
 _HARDLY: Final = 1e-6
-"""Weight of a part that may not be it."""
+"""Weight of a part up to which the robot is not taken to be there."""
 _BEAMS: Final = 60
 _FIRST_BEAMS: Final = 20
-"""Beams of a scan that are compared; of the first, with which the whole map is gone through."""
+"""Beams of a scan that are compared; fewer of the first one, as it is tried on the whole map."""
 _STEP: Final = 0.2
 _TURN: Final = 0.3
 """m, rad; motion after which another scan counts."""
 _DEPTH: Final = 2.0
 _MOST_DEPTH: Final = 0.2
-"""Cells, and m at most: so far in a wall beams may end, as maps draw walls too thick."""
+"""Cells, and m at most: how deep in a wall beams may end, as maps draw walls too thick."""
 _SPREAD: Final = 0.2
-"""m; standard deviation of where beams end: by what maps of other programs and days are off."""
+"""m; standard deviation of where beams end, as maps by other programs or of other days are off."""
 _CHANCE: Final = 0.1
 """Likelihood, against that of a perfect hit, of a beam that ends anywhere else."""
 _SHARE: Final = 0.05
@@ -59,8 +60,8 @@ _SHARE: Final = 0.05
 _WAY_NOISE: Final = np.array([0.1, 0.05, 0.06])
 _TURN_NOISE: Final = 0.1
 _NOISE: Final = np.array([0.02, 0.01, 0.01])
-"""Deviations of the motion: ahead, aside (m) and turned (rad) for each m of way, the last one for
-each rad as well, and those of standing.
+"""Standard deviations of the motion, ahead, aside (m) and turned (rad): for each m of way; of the
+turn for each rad turned; and those that a robot has that stands.
 """
 _NEAR: Final = 0.7
 _TURNED: Final = 0.4
@@ -70,8 +71,8 @@ _SURE_WAY: Final = 4.0
 """Share of all weight that one place must have, over so many m of way, to be believed."""
 _HIT: Final = 0.2
 _HITS: Final = 0.6
-"""m; a beam that ends nearer to a surface has hit it, and the share of those, on average over that
-way, that a place must have to be believed: a map of another home has it nowhere.
+"""m; a beam that ends nearer than this to a surface has hit it. The share of beams that must hit on
+average over that way, for a place to be believed: on a map of another home no place has it.
 """
 
 
@@ -95,7 +96,7 @@ class ParticleSearch:
 
     @property
     def found(self) -> Pose | None:
-        """Where the robot is at the newest scan that counted, or None: it is not sure."""
+        """Where the robot was at the newest scan that counted; None if that is not sure."""
         if self._sure_way < _SURE_WAY or self._hits < _HITS:
             return None
         x, y, theta = self._middle.tolist()
@@ -136,11 +137,11 @@ class ParticleSearch:
         move_all(self._particles, step.x, step.y, step.theta, noise)
 
     def _sum_up(self, view: ScanView, way: float) -> None:
-        """Find the likeliest place; draw the particles anew where they are worth it."""
+        """Find the likeliest place; resample if few particles have weight, or too many exist."""
         weights = np.empty(len(self._particles))
         worth = normalise(self._particles, weights)
         if worth == 0.0:
-            # All of them drove into walls: it is nowhere where it was looked for.
+            # All particles drove into walls: the robot is at none of the places that were followed.
             self._begin_again()
             return
         parts, part = self._parts(weights)
@@ -166,7 +167,7 @@ class ParticleSearch:
         return number, np.bincount(number, weights).astype(np.float64)
 
     def _judge(self, view: ScanView, way: float, share: float) -> None:
-        """Count the way over which one place has nearly all weight, and how well it fits there."""
+        """Sum up the way on which one place has nearly all weight, and how well scans fit there."""
         hits = self._hit_share(view)
         if share < _SURE:
             self._sure_way, self._hits = 0.0, hits

@@ -13,7 +13,7 @@ from roomba.perception.localization.search.search_kernels import cells_with_room
 from roomba.perception.matching.surface_field import SurfaceField
 
 STEP: Final = 0.15
-"""m; between places that are tried: the match finds its way from half of that."""
+"""m; between places that are tried: a match finds its way from half of that."""
 TURN: Final = math.radians(4.0)
 """rad; between headings that are tried."""
 WIDTH: Final = 0.35
@@ -25,7 +25,7 @@ PIECE: Final = 200_000
 
 
 class PlaceSearch:
-    """One search; call :meth:`advance` until it says that all is done."""
+    """One search; call :meth:`advance` until it returns True."""
 
     def __init__(
         self,
@@ -47,7 +47,7 @@ class PlaceSearch:
         self._best = np.zeros(len(self._spots), np.float32)
 
     def advance(self) -> bool:
-        """Try some more; return whether all is tried."""
+        """Try some more poses; return whether all are tried."""
         count = max(1, PIECE // max(1, len(self._spots)))
         for theta in self._headings[self._at : self._at + count]:
             score_heading(
@@ -72,7 +72,7 @@ class PlaceSearch:
 
 
 def places_with_room(field: SurfaceField, room: float) -> NDArray[np.float64]:
-    """Return a lattice of places with so much room around, float64 [n, 2], m."""
+    """Return a lattice of places with ``room`` m around them, float64 [n, 2], m."""
     frame = field.frame
     stride = max(1, round(STEP / frame.resolution))
     blocks = -(-frame.rows // stride) * -(-frame.columns // stride)

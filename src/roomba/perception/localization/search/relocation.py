@@ -25,11 +25,11 @@ _ALIKE: Final = 0.2
 _ALIKE_TURN: Final = 0.2
 """m and rad; places nearer to each other than both are the same."""
 _TYPICAL: Final = 25.0
-"""Natural logarithm; evidence down to which differences count in full. Where even the likeliest
-place explains less of what is seen, the map is not quite this home's as it is now, and its errors
-favour one place or another."""
+"""Natural logarithm; minus the evidence down to which differences count in full. If even the
+likeliest place has less, the map does not show the home as it is now, and the map's errors favour
+one place or another."""
 _FINE_CELL: Final = 0.05
-"""m; size of cells up to which the map itself is as exact as evidence takes it to be."""
+"""m; size of cells up to which a map is as exact as the evidence assumes."""
 
 
 class Verdict(Enum):
@@ -43,10 +43,11 @@ class Verdict(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """Where the robot should be: around a pose, up to so far, m, and so much turned, rad.
+    """Where the robot should be: up to ``radius``, m, and ``turn``, rad, away from a pose.
 
-    ``evidence`` is what that counts when places are compared. There it is enough if half as many
-    beams agree, and walls may have gone: homes change more often than robots are elsewhere.
+    ``evidence`` is the advantage of such a place when places are compared. There it is also enough
+    if half as many beams agree as elsewhere, and walls may be gone: a changed home is more frequent
+    than a robot that is elsewhere.
     """
 
     pose: Pose
@@ -55,18 +56,18 @@ class Expectation:
     evidence: float
 
     def is_met(self, pose: Pose) -> bool:
-        """Whether a pose is one of those."""
+        """Whether a pose is within these limits."""
         near = pose.distance_to(self.pose.x, self.pose.y) <= self.radius
         return near and abs(wrap_angle(pose.theta - self.pose.theta)) <= self.turn
 
     def drifted(self, pose: Pose, more: float) -> Expectation:
-        """Return the same around where dead reckoning led since, unsure by so much more, m, rad."""
+        """Return it around ``pose``, where dead reckoning led, with limits ``more`` (m, rad) wider."""
         return Expectation(pose, self.radius + more, self.turn + more, self.evidence)
 
 
 @dataclass(slots=True)
 class Hypothesis:
-    """A place where the robot may be: where dead reckoning's frame lies in the map then."""
+    """A place where the robot may be, as the pose of dead reckoning's ``frame`` in the map."""
 
     frame: Pose
     evidence: float
@@ -74,15 +75,16 @@ class Hypothesis:
     is_expected: bool = False
 
     def is_possible(self, needed: FitConfig) -> bool:
-        """Whether the scan fits at all there."""
+        """Whether the scan fits at all at this place."""
         if self.is_expected:
             return self.fit.agree > 0.5 * needed.found_agree
         return self.fit.agree >= needed.found_agree and self.fit.through <= needed.found_through
 
     def is_convincing(self, needed: FitConfig) -> bool:
-        """Whether so much of the scan fits that the robot was carried there without being lifted.
+        """Whether enough of the scan fits to believe that the robot is not where it is expected.
 
-        Else furniture was moved where it is, and there another place may look a little likelier.
+        Otherwise furniture may have been moved around the expected place, so that another place
+        only looks a little likelier.
         """
         return self.fit.agree >= needed.carried_agree and self.fit.through <= needed.carried_through
 
@@ -90,7 +92,7 @@ class Hypothesis:
 class Relocation:
     """One attempt to find the robot; ``reckoned`` poses are those of DeadReckoning.
 
-    ``hypotheses`` are the places that may be, likeliest first, after so many ``views``.
+    ``hypotheses`` are the possible places, likeliest first, after ``views`` scans that counted.
     """
 
     def __init__(
@@ -125,7 +127,7 @@ class Relocation:
         return Verdict.FOUND if self._is_clear() else Verdict.AMBIGUOUS
 
     def advance(self) -> None:
-        """Search on for a while, if that is not done yet."""
+        """Search on for a while, if the search is not finished yet."""
         if self._search is not None and self._search.advance():
             starts = self._search.best(CANDIDATES)
             self._search = None
@@ -145,11 +147,10 @@ class Relocation:
         self._sort()
 
     def is_tied(self, pose: Pose, reckoned: Pose) -> bool:
-        """Whether all that was seen fits another possible place about as well as this one.
+        """Whether all scans fit another possible place about as well as this one.
 
-        Not before places are compared, and not where this is none of them.
-
-        ``pose`` is where the robot would be, map frame, when dead reckoning is at ``reckoned``.
+        False before places are compared, and if this place is not one of those compared. ``pose``
+        is where the robot would be, map frame, when dead reckoning is at ``reckoned``.
         """
         frame = pose.compose(reckoned.inverse())
         this = next((each for each in self.hypotheses if self._are_alike(each.frame, frame)), None)
@@ -165,9 +166,9 @@ class Relocation:
         back, expected = self._reckoned.inverse(), self._expectation
         tries = [(Pose(*start), FROM_AFAR) for start in starts.tolist()]
         if expected is not None:
-            # Matched from farther away, new furniture would draw it off.
+            # Also match to near surfaces alone: new furniture would draw off a wider match.
             tries = [(expected.pose, FROM_NEAR), (expected.pose, FROM_AFAR), *tries]
-            # The place where it was gets its prior evidence.
+            # The expected pose itself, unmatched, is a candidate, too, with its prior evidence.
             self._weigh(expected.pose, self._view.fit(self._field, expected.pose.as_array()), back)
         for start, scales in tries:
             self._weigh(*self._matched(start, scales), back)
@@ -175,7 +176,7 @@ class Relocation:
         self._sort()
 
     def _weigh(self, pose: Pose, fit: Fit, back: Pose) -> None:
-        """Add a place, with the advantage that an expected one has."""
+        """Add a place, with the advantage of an expected one if it is expected."""
         expected = self._expectation
         hypothesis = Hypothesis(pose.compose(back), fit.evidence, fit)
         if expected is not None and expected.is_met(pose):
@@ -187,7 +188,7 @@ class Relocation:
         return matched(self._view, self._field, start, self._config.beam_deviation, scales)
 
     def _sort(self) -> None:
-        """Put the best first; leave out what is the same place, or has no hope."""
+        """Sort the best place first; drop duplicates, and places whose evidence is hopeless."""
         kept: list[Hypothesis] = []
         best = max((each.evidence for each in self.hypotheses), default=0.0)
         hopeless = best - self._config.searching.hopeless * _unlike(best)
@@ -217,12 +218,12 @@ class Relocation:
 
     @property
     def _clear_lead(self) -> float:
-        """Evidence by which one place must lead another to be told from it."""
-        # Walls of a coarse map are farther off, and all evidence errs with them.
+        """The lead in evidence that one place must have over another to be told apart from it."""
+        # The walls of a coarse map are farther off, and the evidence errs with them.
         coarse = max(1.0, self._field.frame.resolution / _FINE_CELL)
         return self._config.needed_evidence * coarse * _unlike(self.hypotheses[0].evidence)
 
 
 def _unlike(evidence: float) -> float:
-    """Return by how much differences of evidence count less where the best place has this much."""
+    """Return the factor by which a lead must be larger, if the best place has this evidence."""
     return max(1.0, -evidence / _TYPICAL)

@@ -62,8 +62,8 @@ def score_heading(
 def cells_with_room(field: Field, room: float, stride: int, cells: NDArray[np.int64]) -> int:
     """Fill ``cells`` [n, 2], row and column, with a cell of each block; return how many there are.
 
-    A block is ``stride`` by ``stride`` cells. Of those with ``room`` m around it is the one nearest
-    to the block's middle, so that narrow places are not left out.
+    A block is ``stride`` by ``stride`` cells. Chosen is the cell nearest to the block's middle of
+    those with ``room`` m around, so that narrow places are not left out.
     """
     rows, columns = field.shape
     count = 0
