@@ -9,18 +9,18 @@ from roomba.arrays import Floats
 from roomba.compilation import part
 
 _ALL_AROUND: Final = 0.01
-"""rad; beams that lack no more of a full turn have no first and no last one."""
+"""rad; beams that cover a full turn but for less than this go all around: none is the last."""
 
 
 class LidarBeams(NamedTuple):
     """A lidar as kernels know it, with work arrays for the ends of its beams.
 
-    ``directions`` is float64 [beams, 2], cosine and sine in its own frame; ``mount`` [3] its x, y,
-    theta in the robot's frame; ``first_angle`` that of beam 0 in the lidar's and ``step`` from one
-    beam to the next, rad; ranges count from ``nearest`` on that are less than ``farthest``, m. Each
-    beam is measured ``time_increment``, s, after the one before it. ``ends`` is [beams, 4], as of
-    :class:`roomba.perception.matching.scan_view.ScanView`; ``lanes`` [JUDGE_LANES, beams] is a work
-    array.
+    ``directions`` is float64 [beams, 2], cosine and sine in the lidar's frame; ``mount`` [3] is the
+    lidar's x, y, theta in the robot's frame; ``first_angle`` is the angle of beam 0 in the lidar's
+    frame and ``step`` that from one beam to the next, rad. Ranges count from ``nearest`` on that
+    are less than ``farthest``, m. Each beam is measured ``time_increment``, s, after the one before
+    it. ``ends`` is [beams, 4], as of :class:`roomba.perception.matching.scan_view.ScanView`;
+    ``lanes`` [JUDGE_LANES, beams] is a work array.
     """
 
     directions: Floats

@@ -45,10 +45,10 @@ def look(field: Field, place: Place, x: float, y: float) -> tuple[float, float, 
 def fill_near_surfaces(
     solid: NDArray[np.bool_], metres: NDArray[np.float32], values: Field
 ) -> None:
-    """Fill ``values`` with signed distances, where these are short.
+    """Fill ``values`` with signed distances, exact where these are short.
 
-    ``metres`` [most**2 + 1] tells them, m, by the squared distance, in cells, to the nearest cell
-    of the other kind; the last is for all that are farther.
+    ``metres`` [most**2 + 1] is a table: the distance, m, by the squared distance, in cells, to the
+    nearest cell of the other kind. Its last entry is for all cells that are farther off.
     """
     rows, columns = solid.shape
     last = metres.size - 1
@@ -62,16 +62,16 @@ def fill_near_surfaces(
         _nearest_squares(to_solid[row], most, outside)
         _nearest_squares(to_free[row], most, inside)
         for column in range(columns):
-            # One of the two is 0: that to its own kind.
+            # One of the two is 0: the distance to the cell's own kind.
             off = metres[max(outside[column], inside[column])]
             values[row, column] = off if free[row, column] else -off
 
 
 @allocating_part
 def _nearest_squares(up: NDArray[np.int16], most: int, squares: NDArray[np.int32]) -> None:
-    """Fill a row with the least squared distance, from how far it is along each column, in cells.
+    """Fill a row with squared distances, in cells, from the distances ``up`` along each column.
 
-    Nothing is farther than ``most``.
+    Distances end at ``most`` cells.
     """
     columns = up.size
     squares[:] = most * most

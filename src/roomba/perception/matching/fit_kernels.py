@@ -24,11 +24,11 @@ _SLACK_SHARE: Final = 0.01
 _SPREAD: Final = 0.03
 """m; standard deviation of where beams that agree end: noise of range, pose and map."""
 _FINE_CELL: Final = 0.05
-"""m; by what the cells of a map are larger, a wall may be farther off."""
+"""m; a wall may be farther off by as much as the cells of a map are larger than this."""
 _CHANCE: Final = 0.03
 """Likelihood, against that of a perfect hit, of a beam that ends anywhere else."""
 _BEHIND: Final = 0.01
-"""The same of a beam that goes through what the map says is solid."""
+"""Likelihood, in the same scale, of a beam that goes through what the map shows as solid."""
 JUDGE_LANES: Final = 8
 """Rows of the work array of :func:`judge`; each column is a ray."""
 _ALONG: Final = 0
@@ -45,11 +45,11 @@ _IS_THROUGH: Final = 7
 _TOUCH: Final = 0.005
 """m; a ray that is this near to a surface has met it."""
 _GRAZED: Final = 0.35
-"""Cells of a coarse map; a ray meets a wall only so deep in it: walls are thinner than cells."""
+"""In cells; in a coarse map a ray meets a wall only so deep in it: walls are thinner than cells."""
 _LEAST_STEP: Final = 0.02
 """m; a ray that grazes a surface goes on by at least this."""
 _NEAREST_SURFACE: Final = 0.1
-"""m; surfaces of the map nearer to the lidar do not count: the robot stands in that place."""
+"""m; surfaces of the map nearer to the lidar than this do not count: the robot itself is there."""
 _SHARE: Final = 0.1
 """Weight of one beam: neighbours, and scans from nearby places, are not independent."""
 
@@ -69,9 +69,10 @@ def judge(
     """Fill ``fit`` [5] with how well each ``stride``-th beam fits ``pose`` [3].
 
     The numbers are: the beams that were looked at; those of them that end where the map has a
-    surface; those that end before one (at something that the map does not show) and those that end
-    behind one (through something that it shows); and the logarithm of their likelihood, as evidence
-    to compare poses by. ``lanes`` [JUDGE_LANES, n] is the work array, a column for each such beam.
+    surface; those that end before a surface (at something that the map does not show) and those
+    that end behind one (through something that the map shows); and the logarithm of their
+    likelihood, as evidence to compare poses by. ``lanes`` [JUDGE_LANES, n] is a work array with a
+    column for each beam that is looked at.
     """
     cosine, sine = math.cos(pose[2]), math.sin(pose[2])
     x = pose[0] + cosine * mount[0] - sine * mount[1]
@@ -126,7 +127,7 @@ def _trace(field: Field, place: Place, x: float, y: float, lanes: Floats, rays: 
         for ray in range(rays):
             there, most = lanes[_DISTANCE, ray], lanes[_MOST, ray]
             has_met = there < touch
-            # It made a step too many, perhaps a little into what it met.
+            # The ray made a step too many, perhaps a little into the surface that it met.
             if has_met and lanes[_WAY, ray] - _LEAST_STEP + min(there, 0.0) < most:
                 lanes[_IS_THROUGH, int(lanes[_NUMBER, ray])] = 1.0
             # A ray that goes on moves up; one that ended is overwritten by the next.

@@ -18,8 +18,8 @@ from roomba.compilation import allocating_entry, allocating_part, any_order_entr
 from roomba.perception.matching.field_kernels import Field, Place
 
 _MORE_ROUNDS: Final = 2
-"""Rounds after those with scales of their own. Always as many: an end at a small correction would
-make 0.1 mm of a difference in the last bit."""
+"""Rounds after those with scales of their own. Their number is fixed: if they ended at a small
+correction, a difference in the last bit could become one of 0.1 mm."""
 MATCH_WORK: Final = 10
 """Rows of the work array of :func:`match_in`."""
 
@@ -35,7 +35,7 @@ def beam_ends(
 ) -> int:
     """Fill ``ends`` [beams, 4] with those beams that met something; return how many.
 
-    Of each the end x, y in the robot's frame, m, and its direction there, cosine and sine.
+    A row is a beam's end x, y, m, and its direction, cosine and sine, in the robot's frame.
     ``directions`` is [beams, 2], cosine and sine in the lidar's frame; ``mount`` x, y, theta of the
     lidar in the robot's frame.
     """
@@ -74,11 +74,11 @@ def add_beams(
     information: Floats,
     gradient: Floats,
 ) -> None:
-    """Add what the beams say to the upper half of ``information`` [3, 3] and ``gradient`` [3].
+    """Add the beams' terms to the upper half of ``information`` [3, 3] and to ``gradient`` [3].
 
-    ``lanes`` [2 or more, n] has x and y of their ends. A beam whose end lies on a surface weighs
-    ``certainty``, 1/m2, one that is ``scale`` m off a quarter of that. The field is looked up
-    as by :func:`roomba.perception.matching.field_kernels.look`, for many beams at a time.
+    ``lanes`` [2 or more, n] has x and y of the beams' ends. A beam whose end lies on a surface
+    weighs ``certainty``, 1/m2, and one that ends ``scale`` m off, a quarter of that. The field is
+    looked up as by :func:`roomba.perception.matching.field_kernels.look`, for many beams at a time.
     """
     rows, columns = field.shape
     if rows < 2 or columns < 2:
@@ -165,10 +165,10 @@ def match(
 ) -> int:
     """Move ``pose`` [3] to where the scan fits best, near ``prior`` [3]; return the rounds of that.
 
-    Both headings count as they are, without wrapping. ``covariance`` [3, 3] is the prior's, and
-    becomes that of the pose. ``scales``, m, are those at which beams lose weight, one for each
-    round, the last one for those that follow; ``variance``, m2, is a beam's, its dependence on the
-    others included.
+    Headings are not wrapped. ``covariance`` [3, 3] is the prior's, and becomes that of the pose.
+    ``scales``, m, are those at which beams lose weight, one for each round; the last one also holds
+    for the rounds that follow. ``variance``, m2, is a beam's, its dependence on the others
+    included.
     """
     work, lanes = np.empty((MATCH_WORK, 3)), np.empty((2, count))
     fill_lanes(ends, count, lanes)
@@ -188,11 +188,10 @@ def match_in(
     work: Floats,
     lanes: Floats,
 ) -> int:
-    """Do the same as :func:`match`, in the caller's ``work`` [MATCH_WORK, 3].
+    """Do the same as :func:`match`, in the caller's ``work`` [MATCH_WORK, 3], without allocating.
 
     ``lanes`` [2 or more, n] has x and y of the ends of ``count`` beams, as :func:`add_beams` takes
-    them. Nothing is allocated. The first three rows of ``work`` are the prior's information
-    afterwards.
+    them. Afterwards the first three rows of ``work`` are the prior's information.
     """
     of_prior, information, solved = work[0:3], work[3:6], work[6:9]
     gradient = work[9]

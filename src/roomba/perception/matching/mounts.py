@@ -1,4 +1,4 @@
-"""Where sensors are on a robot, from transforms between frames that do not move."""
+"""Where sensors are on a robot, from transforms between frames fixed to it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ UPRIGHT: Final = (0.0, 0.0, 1.0)
 UPSIDE_DOWN: Final = (0.0, 0.0, -1.0)
 """The robot's vertical along the axes of a sensor that stands, and of one that hangs."""
 _DIGITS: Final = 6
-"""Of the vertical; what a rotation is less than that off is its rounding."""
+"""Digits to which the vertical is rounded: rotations are no more exact than that."""
 _SHORTEST_ROTATION: Final = 1e-6
 """Length of a quaternion; a shorter one is no rotation."""
 
@@ -34,7 +34,7 @@ class FrameTransform(NamedTuple):
     def of(
         parent: str, child: str, shift: Sequence[float], turn: Sequence[float]
     ) -> FrameTransform:
-        """Return one of a translation x, y, z, m, and a quaternion x, y, z, w.
+        """Return the transform of a translation x, y, z, m, and a quaternion x, y, z, w.
 
         Raises ValueError for numbers that are not finite, or a rotation of zeros.
         """
@@ -74,13 +74,13 @@ class Mount:
 
     @property
     def is_upside_down(self) -> bool:
-        """Whether it hangs rather than stands."""
+        """Whether the sensor hangs rather than stands."""
         return self.up[2] < 0.0
 
     def about_vertical(self, turning: tuple[float, float, float]) -> float:
-        """Return the part about the robot's vertical of a ``turning`` about the sensor's axes.
+        """Return the turning about the robot's vertical, of a ``turning`` about the sensor's axes.
 
-        An axis that is level does not count: some sensors tell no number of it.
+        A level axis does not count, as some sensors report NaN about it.
         """
         return sum(share * speed for share, speed in zip(self.up, turning, strict=True) if share)
 
@@ -89,13 +89,13 @@ class Mounts:
     """A tree of frames that do not move against each other."""
 
     def __init__(self) -> None:
-        """Know nothing yet."""
+        """Begin with no frame known."""
         self._parents: dict[str, tuple[str, NDArray[np.float64]]] = {}
         self._changes = 0
         self._found: tuple[tuple[int, str, str], Mount | None] = ((0, "", ""), None)
 
     def add(self, transforms: Iterable[FrameTransform]) -> None:
-        """Learn where frames are in others."""
+        """Add transforms, or replace those of the same child frames."""
         for transform in transforms:
             self._parents[transform.child] = (transform.parent, transform.matrix)
         self._changes += 1
@@ -103,7 +103,7 @@ class Mounts:
     def mount(self, base: str, frame: str) -> Mount | None:
         """Return where ``frame`` is on the robot, whose frame is ``base``; None if not known.
 
-        It is asked for each scan of a lidar, and found for the first one.
+        The last result is kept, as this is asked for each scan of a lidar.
         """
         asked, found = (self._changes, base, frame), self._found
         if found[0] != asked:

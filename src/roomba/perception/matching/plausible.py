@@ -1,5 +1,5 @@
-"""What messages are refused for: a scan for numbers that are those of no planar lidar in m and rad,
-and what says itself that it was not measured.
+"""Checks of messages: scans whose numbers no planar lidar has in m and rad, and sensor data that
+its own driver marks as not measured.
 """
 
 from __future__ import annotations
@@ -12,17 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 FARTHEST_ECHO: Final = 100.0
-"""m; no planar lidar that a robot carries measures more: what is told to be farther met nothing."""
+"""m; no planar lidar that a robot carries measures more: a longer range means no echo."""
 _UNMEASURED: Final = -1.0
-"""Stands for the first variance of what a driver does not measure (sensor_msgs/Imu)."""
+"""The first variance of data that a driver does not measure (sensor_msgs/Imu)."""
 _WIDEST: Final = 4.0 * math.pi
-"""rad; no scan goes round more often than twice."""
+"""rad; no scan covers more than two turns."""
 _LEAST: Final = 10
-"""Beams; fewer that are too far may have failed."""
+"""Beams; if fewer have too long a range, these beams may just have failed."""
 
 
 def is_measured(covariance: Sequence[float]) -> bool:
-    """Return whether a message of sensor_msgs/Imu measures what has this ``covariance``, [9]."""
+    """Return whether a sensor_msgs/Imu measures the quantity that has this ``covariance``, [9]."""
     return covariance[0] != _UNMEASURED
 
 
@@ -32,8 +32,8 @@ def scan_fault(
     """Return what was expected of a scan, and what came; "" if nothing is wrong with it.
 
     ``ranges`` is float32 [beams], m, the beams go from the angle ``first`` on by ``step``, rad, and
-    ranges count from ``nearest`` to ``farthest``, m. What single beams tell is not looked at: they
-    may have failed.
+    ranges count from ``nearest`` to ``farthest``, m. Single ranges are no reason to refuse a scan,
+    as single beams may fail.
     """
     beams = len(ranges)
     if not (math.isfinite(first) and math.isfinite(step)):
@@ -57,7 +57,7 @@ def scan_fault(
     echoes = ranges[(ranges > 0.0) & (ranges < 1e3 * FARTHEST_ECHO)]
     far = echoes[echoes > FARTHEST_ECHO]
     is_usual = len(far) >= _LEAST and 2 * len(far) > len(echoes)
-    # One number again and again is what a driver tells for no echo.
+    # The same number again and again is how a driver reports that there was no echo.
     if is_usual and 2 * len(np.unique(far)) > len(far):
         return (
             f"expected ranges up to {FARTHEST_ECHO:g} m, got {len(far)} of {len(echoes)} that are "

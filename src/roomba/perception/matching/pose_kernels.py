@@ -13,9 +13,9 @@ from roomba.compilation import entry
 def beyond(
     x: float, y: float, theta: float, ahead: float, aside: float, turn: float
 ) -> tuple[float, float, float]:
-    """Return the pose, x, y, theta, that the one at ``x``, ``y``, ``theta`` sees: m and rad.
+    """Return the pose, x, y, theta, that lies beyond the pose ``x``, ``y``, ``theta``: m and rad.
 
-    It lies ``ahead`` and ``aside``, to the left, and is turned by ``turn``.
+    As seen from that pose it lies ``ahead`` and ``aside``, to the left, and is turned by ``turn``.
     """
     cosine, sine = math.cos(theta), math.sin(theta)
     return (
@@ -35,9 +35,9 @@ def seen_from(pose: Floats, other: Floats) -> tuple[float, float, float]:
 
 @entry
 def pose_then(pose: Floats, reckoned: Floats, then: Floats) -> tuple[float, float, float]:
-    """Return where a robot was on the map, x, y, theta, that is at ``pose`` [3] now.
+    """Return where a robot that is at ``pose`` [3] now was on the map before, x, y, theta.
 
-    Dead reckoning has it at ``reckoned`` [3] now, and had it at ``then`` [3].
+    Dead reckoning has the robot at ``reckoned`` [3] now, and had it at ``then`` [3] before.
     """
     back = seen_from(reckoned, then)
     return beyond(pose[0], pose[1], pose[2], back[0], back[1], back[2])

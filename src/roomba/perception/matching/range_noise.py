@@ -2,8 +2,8 @@
 
 Along a straight wall 1/r is a sinusoid of the beam's angle, so that its fourth difference over five
 neighbouring beams is next to nothing but noise. Where beams meet corners, legs or different things
-it is large, which the median of many leaves out. Where single ranges are wrong, each spoils five
-differences, and soon most: then the tenth that is least tells more.
+the difference is large; the median of many differences leaves these out. A single wrong range
+spoils five differences, so that soon most are spoilt: then the lowest tenth tells more.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ Rows = NDArray[np.void]
 
 _BINS: Final = 160
 _FIRST, _LAST = 1e-4, 1.0
-"""m; deviations between which samples are told apart, in steps of 6 %."""
+"""m; the range of deviations that the histogram covers, in steps of 6 %."""
 _STEP: Final = math.log(_LAST / _FIRST) / _BINS
 LEAST_SAMPLES: Final = 300
-"""Fewer say too little."""
+"""Fewer samples say too little."""
 _MOST_SAMPLES: Final = 100_000
-"""With more the older ones count half."""
+"""Above this number all samples so far are counted as half as many."""
 _PER_MEDIAN: Final = 1.4826
-"""Standard deviation of a normal distribution in medians of its absolute values."""
+"""Standard deviation of a normal distribution over the median of its absolute values."""
 _PER_TENTH: Final = 1.0 / 0.12566
-"""The same in those of its absolute values that a tenth of them lie below."""
+"""The same over the first decile of its absolute values."""
 _SPOILT: Final = 0.05
-"""m; no lidar is so noisy: most differences are of wrong ranges."""
+"""m; no lidar is so noisy: with a larger deviation most differences come of wrong ranges."""
 _OF_FIVE: Final = math.sqrt(1.0 + 16.0 + 36.0 + 16.0 + 1.0)
-"""Standard deviation of a fourth difference in those of its terms."""
+"""Standard deviation of a fourth difference over that of each of its terms."""
 _FARTHEST: Final = 8.0
 """m; neighbouring beams farther off are too far apart to meet one surface."""
 _TYPICAL: Final = 0.005
-"""m; before anything is known."""
+"""m; taken for the deviation before anything is known."""
 _LEAST: Final = 0.001
-"""m; ranges that are rounded may seem to have no noise."""
+"""m; the least deviation: ranges that are rounded may seem to have no noise."""
 
 
 NOISE: Final = np.dtype(
@@ -54,7 +54,7 @@ NOISE: Final = np.dtype(
 
 
 def unknown_noise() -> Rows:
-    """Return what is taken for a lidar's noise before a scan came, NOISE [1]."""
+    """Return the noise that is assumed before a scan came, NOISE [1]."""
     noise = np.zeros(1, NOISE)
     noise["deviation"] = _TYPICAL
     return noise
@@ -82,7 +82,7 @@ def measure_noise(
 
 @inner_part
 def _quantile(counts: NDArray[np.int64], below: float) -> float:
-    """Return the deviation, m, that so many of ``counts`` [_BINS] lie below."""
+    """Return the deviation, m, below which ``below`` of the samples in ``counts`` [_BINS] lie."""
     sum_so_far, place = 0, 0
     while sum_so_far + counts[place] < below:
         sum_so_far += counts[place]
@@ -94,9 +94,9 @@ def _quantile(counts: NDArray[np.int64], below: float) -> float:
 def _count(
     ranges: NDArray[np.float32], nearest: float, farthest: float, counts: NDArray[np.int64]
 ) -> int:
-    """Add to ``counts`` [_BINS] the deviations that each five neighbouring beams show.
+    """Add to ``counts`` [_BINS] the deviation that each five neighbouring beams show.
 
-    Returns how many there are.
+    Returns how many samples were added.
     """
     samples = whole = 0
     # 1/r of the last five beams, the newest one last.

@@ -13,13 +13,13 @@ from roomba.arrays import Floats
 from roomba.compilation import entry, inner_part
 
 _REMEMBERED: Final = 2.0
-"""s; how late a scan may come: all of that time is known, however seldom odometry is told."""
+"""s; how late a scan may come: the path covers this time, however seldom odometry comes."""
 _MOST: Final = 1024
-"""Poses that are remembered at most: with more than 500 a second it is less than that time."""
+"""Poses that are remembered at most: with more than 500 a second they cover less time."""
 _AHEAD: Final = 0.5
-"""s; so far beyond the newest pose the robot is taken to go on as it did."""
+"""s; for this time after the newest pose the robot is taken to go on as it did."""
 _PAIR: Final = 2
-"""Poses between which others are known."""
+"""Poses that are needed to interpolate between them."""
 _NEWEST: Final = 0
 _COUNT: Final = 1
 """Places in ``ends``."""
@@ -29,7 +29,7 @@ class ReckonedPath(NamedTuple):
     """The newest poses, in the frame of dead reckoning.
 
     ``rows`` is float64 [n, 4], a ring of stamp, s, x, y, m, and theta, rad; ``ends`` is int64 [2],
-    the row of the newest one, and how many there are.
+    the row of the newest pose, and the number of poses.
     """
 
     rows: Floats
@@ -37,7 +37,7 @@ class ReckonedPath(NamedTuple):
 
     @staticmethod
     def empty() -> ReckonedPath:
-        """Return one without a pose."""
+        """Return a path without a pose."""
         return ReckonedPath(np.zeros((_MOST, 4)), np.zeros(2, np.int64))
 
 
@@ -58,7 +58,7 @@ def remember(path: ReckonedPath, stamp: float, pose: Floats) -> None:
         rows[newest, 1 + axis] = pose[axis]
     ends[_NEWEST] = newest
     count = min(ends[_COUNT] + 1, size)
-    # The newest one from before that time stays: between it and the next one the robot was, too.
+    # The newest pose from before that time stays, to interpolate between it and the next one.
     while count > _PAIR and rows[(newest + 2 - count) % size, 0] < stamp - _REMEMBERED:
         count -= 1
     ends[_COUNT] = count
@@ -75,9 +75,9 @@ def is_told_within(path: ReckonedPath, seconds: float) -> bool:
 
 @entry
 def pose_at(path: ReckonedPath, stamp: float, pose: Floats) -> bool:
-    """Fill ``pose`` [3] with that at a time, between those that are known; the newest ones after.
+    """Fill ``pose`` [3] with the interpolated pose at a time; after the newest pose with that one.
 
-    Returns whether it is known: not of a time before all of them.
+    Returns whether the pose is known: it is not for a time before all poses.
     """
     rows = path.rows
     earlier, later = _rows_around(path, stamp)
@@ -98,9 +98,9 @@ def pose_at(path: ReckonedPath, stamp: float, pose: Floats) -> bool:
 
 @inner_part
 def _rows_around(path: ReckonedPath, stamp: float) -> tuple[int, int]:
-    """Return the rows of the newest pose that is not after a time, and of the next one.
+    """Return the rows of the newest pose that is not after a time, and of the next pose.
 
-    Either is -1 if there is none.
+    A row is -1 if there is no such pose.
     """
     size, newest, later = path.rows.shape[0], path.ends[_NEWEST], -1
     for back in range(path.ends[_COUNT]):
@@ -112,10 +112,10 @@ def _rows_around(path: ReckonedPath, stamp: float) -> tuple[int, int]:
 
 
 class Stretch(NamedTuple):
-    """A part of the path along which the robot goes on evenly.
+    """A part of the path along which the robot moves with constant velocity.
 
-    It is at x, y, m, theta, rad, at ``stamp``, s, and moves by ``speed_x``, ``speed_y``, m/s, and
-    ``turning``, rad/s, before ``until``, s.
+    The robot is at x, y, m, theta, rad, at ``stamp``, s, and moves by ``speed_x``, ``speed_y``,
+    m/s, and ``turning``, rad/s, until ``until``, s.
     """
 
     stamp: float
@@ -130,10 +130,10 @@ class Stretch(NamedTuple):
 
 @inner_part
 def stretch_at(path: ReckonedPath, stamp: float) -> Stretch:
-    """Return where the robot is from a time on, also a little before or beyond all that is known.
+    """Return the stretch in which a time lies, also for times before or after all poses.
 
-    Before all poses it stands at the oldest one; beyond them it goes on as between the newest two,
-    for half a second, and stands then.
+    Before all poses the robot stands at the oldest one. After them it goes on as between the newest
+    two, for half a second, and then stands.
     """
     rows, ends = path.rows, path.ends
     size, newest, count = rows.shape[0], ends[_NEWEST], ends[_COUNT]

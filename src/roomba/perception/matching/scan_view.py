@@ -29,7 +29,7 @@ from roomba.perception.matching.sweep import SWEEP_WORK, at_once
 Ranges = NDArray[np.float32]
 
 _LONGEST_SWEEP: Final = 1.5
-"""s; no lidar takes longer for a scan: drivers fill the field with other things."""
+"""s; no lidar takes longer for a scan: with a longer time the driver filled in something else."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class Fit:
 
 
 def plain_ranges(ranges: Ranges) -> Ranges:
-    """Return a scan as it is, or a copy if its numbers lie apart or may not be written.
+    """Return a scan as it is, or a copy if the array is not contiguous, or is read-only.
 
     Kernels would be compiled anew, for seconds, for each such kind of array.
     """
@@ -65,9 +65,11 @@ class LidarModel:
         mount: Pose | None = None,
         time_increment: float = 0.0,
     ) -> None:
-        """``angles`` is float64 [beams], rad, evenly spaced; ranges count from ``nearest`` on that
-        are less than ``farthest``, m. Each beam is measured ``time_increment``, s, after the one
-        before it, the first one at the stamp of its scan; numbers that make no sense count as 0.
+        """Take the beams' ``angles``, float64 [beams], rad, evenly spaced.
+
+        Ranges count from ``nearest`` on that are less than ``farthest``, m. Each beam is measured
+        ``time_increment``, s, after the one before it, the first one at the stamp of its scan; an
+        increment that makes no sense counts as 0.
         """
         mount = mount or Pose()
         self.beams = len(angles)
@@ -75,7 +77,7 @@ class LidarModel:
         self._first_angle = float(angles[0]) if self.beams else 0.0
         self._step = float(angles[1] - angles[0]) if self.beams > 1 else 2.0 * np.pi
         self._directions = np.column_stack((np.cos(angles), np.sin(angles)))
-        # Ranges are float32: one as long as the farthest is told for no echo.
+        # In float32, as ranges are: drivers report no echo as a range equal to the farthest.
         self._nearest = float(nearest)
         self._farthest = float(np.float32(min(farthest, FARTHEST_ECHO)))
         is_sweep = abs(time_increment) * self.beams <= _LONGEST_SWEEP
@@ -88,7 +90,7 @@ class LidarModel:
         return LidarModel(np.arange(beams) * (2.0 * np.pi / beams), nearest, farthest)
 
     def moved(self, by: Pose) -> LidarModel:
-        """Return the same lidar where ``by`` moves its mount to, in the robot's frame."""
+        """Return the same lidar with its mount moved by ``by``, in the robot's frame."""
         lidar = copy(self)
         mount = by.compose(Pose(*self.mount.tolist()))
         lidar.mount, lidar._arrays = mount.as_array(), None
@@ -97,8 +99,8 @@ class LidarModel:
     def swept(self, time_increment: float, *, is_backwards: bool) -> LidarModel:
         """Return the same lidar with another time between beams, s.
 
-        One that ``is_backwards`` has its beams in the opposite order: its scans are to be turned
-        round as well.
+        A lidar that ``is_backwards`` has its beams in the opposite order: the ranges of its scans
+        are to be reversed as well.
         """
         lidar = copy(self)
         lidar.time_increment, lidar._arrays = time_increment, None
@@ -110,7 +112,7 @@ class LidarModel:
 
     @property
     def step(self) -> float:
-        """From one beam to the next, rad."""
+        """Angle from one beam to the next, rad."""
         return self._step
 
     def arrays(self) -> LidarBeams:
@@ -136,8 +138,8 @@ class LidarModel:
     def at_once(self, stamp: float, ranges: Ranges, path: ReckonedPath) -> Ranges:
         """Return a scan, float32 [beams], m, as if all of it was measured at its stamp, s.
 
-        ``path`` tells how the robot moved meanwhile. That of a lidar that measures all beams at
-        once is returned as it is.
+        ``path`` tells how the robot moved meanwhile. If the lidar measures all beams at once, the
+        scan is returned as it is.
         """
         if self.time_increment == 0.0 or ranges.shape != (self.beams,):
             return ranges
@@ -148,7 +150,7 @@ class LidarModel:
         return still
 
     def view(self, ranges: NDArray[np.float32]) -> ScanView:
-        """Return a scan, float32 [beams], m; raises ValueError for another number of beams."""
+        """Return the view of a scan, float32 [beams], m; raises ValueError for another shape."""
         if ranges.shape != (self.beams,):
             raise ValueError(f"expected a scan of {self.beams} ranges, got shape {ranges.shape}")
         ends, plain = np.empty((self.beams, 4)), plain_ranges(ranges)
@@ -159,7 +161,7 @@ class LidarModel:
 class PlacedScan(NamedTuple):
     """What a scan showed from ``pose``, map frame: ``ranges`` is float32 [beams], m.
 
-    They are as if all of them were measured at once, there; ``measured`` are as they were.
+    ``ranges`` are as if all were measured at once from there; ``measured`` are the original ones.
     """
 
     pose: Pose
@@ -170,7 +172,10 @@ class PlacedScan(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ScanView:
-    """``ends`` is float64 [n, 4]: end x, y, m, and direction, cosine and sine, robot's frame."""
+    """Beams that met something: ``ends`` is float64 [n, 4], in the robot's frame.
+
+    A row is a beam's end x, y, m, and its direction, cosine and sine. ``mount`` [3] is the lidar's.
+    """
 
     ends: NDArray[np.float64]
     mount: NDArray[np.float64]
@@ -180,7 +185,7 @@ class ScanView:
         return len(self.ends)
 
     def ends_at(self, pose: Pose) -> NDArray[np.float32]:
-        """Return where the beams met something as seen from a pose, float32 [n, 2], m."""
+        """Return the beams' ends in the frame of which ``pose`` is a pose: float32 [n, 2], m."""
         cosine, sine = np.cos(pose.theta), np.sin(pose.theta)
         x, y = self.ends[:, 0], self.ends[:, 1]
         return np.column_stack(

@@ -23,10 +23,10 @@ class SurfaceField:
     """Signed distances to the surfaces of a map, at the middles of its cells.
 
     ``values`` is float32 [rows, columns], m: positive on free floor, negative inside what is solid.
-    Between middles it is bilinear, so that a wall's surface lies where the wall's
-    cells end and not in their middles, to a fraction of a cell (a likelihood field, Thrun, Burgard
-    and Fox, "Probabilistic Robotics", 6.4, but for its sign). Through cells that are solid in part,
-    as slanted walls make them, it goes where their shares say.
+    Between middles the field is bilinear, so that a wall's surface lies where the wall's cells end
+    and not in their middles, to a fraction of a cell (a likelihood field, Thrun, Burgard and Fox,
+    "Probabilistic Robotics", 6.4, but for its sign). Slanted walls make cells solid in part: there
+    the surface lies where the solid share of the cell puts it.
     """
 
     frame: GridFrame
@@ -34,7 +34,7 @@ class SurfaceField:
 
     @staticmethod
     def of(occupancy: OccupancyMap) -> SurfaceField:
-        """Return the field of a map; where a map has no surface at all it is far everywhere."""
+        """Return the field of a map; in a map without any surface all distances are far."""
         solid = _solid(occupancy)
         outside = distance_to_nearest(solid)
         inside = distance_to_nearest(~solid)
@@ -53,7 +53,7 @@ class SurfaceField:
     def near(occupancy: OccupancyMap, farthest: float) -> SurfaceField:
         """Return the field of a map as :meth:`of` does, but nowhere more than ``farthest``, m.
 
-        It takes a tenth of the time. All that is unknown counts as solid.
+        This takes a tenth of the time. All unknown cells count as solid.
         """
         resolution = occupancy.frame.resolution
         most = math.ceil(farthest / resolution + 0.5)
@@ -80,8 +80,8 @@ class SurfaceField:
 def _solid(occupancy: OccupancyMap) -> NDArray[np.bool_]:
     """Return which cells count as solid, bool [rows, columns].
 
-    All that is unknown does, but for spots that no beam happened to pass: their cells are as the
-    known one nearest to them.
+    Unknown cells are solid, but for small spots that no beam happened to pass: cells of these are
+    as the known cell nearest to them.
     """
     likely, is_known = occupancy.likely_solid, occupancy.values >= FREE
     resolution = occupancy.frame.resolution
@@ -94,9 +94,9 @@ def _solid(occupancy: OccupancyMap) -> NDArray[np.bool_]:
 
 
 def _use_shares(values: NDArray[np.float32], occupancy: OccupancyMap) -> None:
-    """Let surfaces go through cells that are partly solid: as far off the middle as that says.
+    """Put surfaces inside of partly solid cells, as far off the middle as the solid share says.
 
-    Other cells than those beside a surface are what their map does not know for sure.
+    Only cells beside a surface are changed: elsewhere such a value means that the map is not sure.
     """
     resolution = occupancy.frame.resolution
     partly = (occupancy.values > FREE) & (occupancy.values < OCCUPIED)

@@ -1,8 +1,9 @@
-"""Scans of a lidar that turns while the robot moves, as if all beams were measured at once.
+"""Correction of scans for the robot's motion: as if all beams were measured at once.
 
-Each beam is measured from where dead reckoning had the robot at its own time (as in Zhang and
+Each beam starts from where dead reckoning had the robot at the beam's own time (as in Zhang and
 Singh, "LOAM: lidar odometry and mapping in real-time", 2014). Seen from where the robot was at the
-first beam, the ends lie between the lidar's directions; on a surface they are interpolated there.
+first beam, the ends lie between the directions of the lidar's beams. On a surface, ranges in these
+directions are interpolated.
 """
 
 from __future__ import annotations
@@ -24,21 +25,21 @@ Ranges = NDArray[np.float32]
 
 _GRAZING: Final = 7.0
 _NOISE: Final = 0.03
-"""Two beams side by side met one surface if their ranges differ by no more than so many times what
-lies between them, and so much, m."""
+"""Two neighbouring beams met one surface if their ranges differ by no more than this factor times
+the distance between the beams, plus this, m."""
 _MOST_TURNED: Final = 0.5
-"""Share of the angle between two beams by which ends may lie apart at most to be neighbours still,
-beyond that angle itself."""
+"""In angles between two beams; the ends of neighbours may lie apart by one angle and this more."""
 SWEEP_WORK: Final = 6
 """Rows of what :func:`at_once` works in."""
 
 
 class Ends(NamedTuple):
-    """Where beams ended, as seen by the lidar from where the first was measured, each [beams].
+    """Ends of beams as seen by the lidar from where the first beam was measured, each [beams].
 
-    ``places`` are their directions, in beams, ``lengths`` their distances, m, nan of those that met
-    nothing, ``x`` and ``y`` where they are, m. In ``cosines`` and ``sines`` it works. All is done
-    stage by stage, each without branches, so that the compiler works on eight beams together.
+    ``places`` are the directions of the ends, in beams; ``lengths`` their distances, m, nan for
+    beams that met nothing; ``x`` and ``y`` their points, m. ``cosines`` and ``sines`` are work
+    arrays. The work is done in stages without branches, so that the compiler can take eight beams
+    together.
     """
 
     places: Floats
@@ -60,8 +61,8 @@ def at_once(
 ) -> None:
     """Fill ``still`` [beams], m, with the scan as if all of it was measured at ``stamp``, s.
 
-    That is the time of the first beam; ``ranges`` is float32 [beams], m, and ``path`` is where the
-    robot was. A direction that no beam came near is nan. ``work`` is [SWEEP_WORK, beams].
+    ``stamp`` is the time of the first beam; ``ranges`` is float32 [beams], m, and ``path`` is where
+    the robot was. A direction that no beam came near gets nan. ``work`` is [SWEEP_WORK, beams].
     """
     beams = ranges.size
     ends = Ends(work[0], work[1], work[2], work[3], work[4], work[5])
@@ -69,7 +70,7 @@ def at_once(
     for beam in range(beams):
         still[beam] = math.nan
     is_around = is_all_around(beams, lidar.step)
-    # What met nothing first: what met something takes its place.
+    # Beams that met nothing come first, so that those that met something overwrite them.
     for beam in range(beams):
         if not ends.lengths[beam] >= 0.0:
             _put(still, round(ends.places[beam]), ranges[beam], is_around)
@@ -84,7 +85,7 @@ def at_once(
 def _see_from_first(
     ranges: Ranges, lidar: LidarBeams, path: ReckonedPath, stamp: float, ends: Ends
 ) -> None:
-    """Find where the ends of beams are, as seen by the lidar from where the first was measured."""
+    """Find the ends of beams, as seen by the lidar from where the first beam was measured."""
     first = pose_in(stretch_at(path, stamp), stamp)
     _follow(lidar, path, stamp, first, ends)
     _see_lidar(lidar, first[2], ends)
@@ -100,7 +101,7 @@ def _follow(
     first: tuple[float, float, float],
     ends: Ends,
 ) -> None:
-    """Find how far the robot has come at each beam, x and y, and turned, ``places``, rad."""
+    """Find how far the robot has moved at each beam: ``x``, ``y``, m, and its turn, ``places``."""
     stretch = stretch_at(path, stamp)
     for beam in range(ends.places.size):
         now = stamp + beam * lidar.time_increment
@@ -113,7 +114,7 @@ def _follow(
 
 @inner_part
 def _see_lidar(lidar: LidarBeams, first_theta: float, ends: Ends) -> None:
-    """Find where the lidar is at each beam, in its own frame at the first: x and y in place."""
+    """Replace ``x``, ``y`` by where the lidar is at each beam, in its own frame at the first."""
     for beam in range(ends.places.size):
         ends.sines[beam], ends.cosines[beam] = sine_cosine(ends.places[beam])
     cosine, sine = math.cos(first_theta), math.sin(first_theta)
@@ -132,7 +133,7 @@ def _see_lidar(lidar: LidarBeams, first_theta: float, ends: Ends) -> None:
 
 @inner_part
 def _see_ends(ranges: Ranges, lidar: LidarBeams, ends: Ends) -> None:
-    """Find the ends as seen along each beam's direction: x ahead, y aside, where the lidar was."""
+    """Replace ``x``, ``y`` by the ends in a frame along each beam's direction: ahead and aside."""
     for beam in range(ranges.size):
         ends.cosines[beam] *= ranges[beam]
         ends.sines[beam] *= ranges[beam]
@@ -145,7 +146,7 @@ def _see_ends(ranges: Ranges, lidar: LidarBeams, ends: Ends) -> None:
 
 @inner_part
 def _place(ranges: Ranges, lidar: LidarBeams, ends: Ends) -> None:
-    """Make directions and lengths of the ends; a beam that met nothing is only turned."""
+    """Fill in directions and lengths of the ends; a beam that met nothing is only turned."""
     for beam in range(ranges.size):
         is_met = (ranges[beam] >= lidar.nearest) & (ranges[beam] < lidar.farthest)
         ahead, aside = ends.x[beam], ends.y[beam]
@@ -194,7 +195,7 @@ def _put(still: Ranges, place: int, length: float, is_around: bool) -> None:
 
 @inner_part
 def _index(place: int, beams: int, is_around: bool) -> int:
-    """Return which beam points in a direction, no more than a turn before or after all; or -1."""
+    """Return the index of the beam in a direction, which may be a turn off; -1 if there is none."""
     if is_around and place < 0:
         place += beams
     elif is_around and place >= beams:

@@ -1,4 +1,4 @@
-"""Compiled search for narrow places: basins of the distance to the walls, and what ends there.
+"""Compiled search for narrow places: basins of the distance to walls, and the walls at openings.
 
 Grids are [rows, columns]; lengths in cells; ``clearance`` is the distance to the nearest wall.
 """
@@ -20,7 +20,7 @@ Clearance = NDArray[np.float32]
 _OPPOSITE = -0.5
 """Cosine: the second end of an opening is more than 120 degrees away from the first."""
 NOWHERE = 1e9
-"""Cells; how far one has to go for what is not found."""
+"""Cells; the distance to something that was not found."""
 
 
 @allocating_entry
@@ -29,9 +29,9 @@ def flood_basins(
 ) -> NDArray[np.float32]:
     """Number the basins around the widest places; return the clearance there, by number.
 
-    ``order`` are the flat indices of the cells to flood, widest first; ``basins`` is 0 at first.
-    Two basins that meet are one if the smaller is wider than the place where they meet by less
-    than ``least_step``. Number 0 is what was not flooded.
+    ``order`` are the flat indices of the cells to flood, widest first; ``basins`` is 0 at first,
+    and stays 0 in cells that are not flooded. Two basins that meet become one if the clearance at
+    the smaller peak exceeds that at the meeting place by less than ``least_step``.
     """
     rows, columns = clearance.shape
     parents = np.zeros(order.size + 1, np.int32)
@@ -88,8 +88,8 @@ def _renumbered(
 def opening_at(solid: Mask, row: int, column: int, clearance: float) -> tuple[int, int, int, int]:
     """Return row and column of the nearest solid cell, and of the nearest on the other side.
 
-    ``row``, ``column`` lies in a passage, ``clearance`` away from the first of them. Four times -1
-    if there is no second one within twice the clearance.
+    ``row``, ``column`` lies in a passage, ``clearance`` away from the first solid cell. If there is
+    no second one within twice the clearance, all four are -1.
     """
     reach = math.ceil(2.0 * clearance) + 1
     low, high = max(0, row - reach), min(solid.shape[0], row + reach + 1)
@@ -129,8 +129,9 @@ def wall_thicknesses(
 ) -> tuple[float, float]:
     """Return how thick the wall is at either end of an opening, NOWHERE if it does not end there.
 
-    The ends are solid cells. Going through the middle, up to ``look`` to either side, the floor
-    opens beside an end where it is ``jamb`` wider; from there to there is the thickness.
+    The ends are solid cells. On the way through the middle of the opening, up to ``look`` to either
+    side, the wall ends where the floor is wider by ``jamb`` on that end. The thickness is the way
+    between the two places where it ends.
     """
     length = math.hypot(to_row - row, to_column - column)
     if length == 0.0:
@@ -182,9 +183,10 @@ def gaps(
 ) -> NDArray[np.int32]:
     """Return gaps between two ends of walls: int32 [n, 5].
 
-    Row and column of both solid cells, and how thick both walls are, added up, see
+    A row has row and column of both solid cells, and the sum of both walls' thicknesses, see
     :func:`wall_thicknesses`. The cells are corners that see each other, with ``narrowest`` to
-    ``widest`` between them. A doorway is found several times: walls' ends have several corners.
+    ``widest`` between them. A doorway is found several times, as ends of walls have several
+    corners.
     """
     corners = _corners(solid)
     found = np.empty((64, 5), np.int32)

@@ -34,8 +34,8 @@ def clearance_of(solid: Mask) -> NDArray[np.float32]:
 def doorways(solid: Mask, resolution: float, config: RoomsConfig) -> list[Opening]:
     """Return the doorways of a floor, ``solid`` bool [rows, columns] with a solid border.
 
-    First come gaps between the ends of two walls that are as wide as a door; with these closed,
-    openings that narrow the floor.
+    First come gaps between the ends of two walls that are as wide as a door. With these closed,
+    openings that narrow the floor follow.
     """
     doors = _doors(solid, resolution, config)
     closed = solid.copy()
@@ -47,8 +47,8 @@ def doorways(solid: Mask, resolution: float, config: RoomsConfig) -> list[Openin
 def _doors(solid: Mask, resolution: float, config: RoomsConfig) -> list[Opening]:
     """Return gaps between the ends of two walls.
 
-    Of gaps across each other or side by side counts the one whose walls are thinnest: it runs
-    along the walls, and not from one of them to furniture near the door.
+    Of gaps that cross each other or lie side by side, the one whose walls are thinnest is kept: it
+    runs along the walls, and not from one of them to furniture near the door.
     """
     thickest = _cells_through(config.thickest_wall, resolution)
     found = gaps(
@@ -72,10 +72,10 @@ def _doors(solid: Mask, resolution: float, config: RoomsConfig) -> list[Opening]
 
 
 def _narrow_places(solid: Mask, resolution: float, config: RoomsConfig) -> list[Opening]:
-    """Return openings that narrow the floor, and where a wall ends.
+    """Return openings that narrow the floor and are doorways.
 
-    The floor is flooded from its widest places outwards, as by water that falls, and where two
-    basins meet is a narrow place: a saddle of the distance to the walls.
+    The floor is flooded from its widest places outwards. Where two basins meet is a narrow place: a
+    saddle of the distance to the walls (a watershed).
     """
     clearance = clearance_of(solid)
     cells = np.flatnonzero(clearance * resolution >= config.tightest_passage / 2.0)
@@ -104,8 +104,8 @@ def _is_doorway(
 ) -> bool:
     """Return whether a narrow place is a doorway: it lies between walls, beside one, or is deep.
 
-    ``ends`` are the rows and columns of the solid cells at its sides, ``width`` is in m, ``share``
-    that of the floor's width on the narrower side.
+    ``ends`` are the rows and columns of the solid cells at its sides, ``width`` is in m; ``share``
+    is the width relative to that of the floor on the narrower side.
     """
     if width < config.narrowest_door:
         return False
@@ -132,5 +132,5 @@ def _saddles(
 
 
 def _cells_through(thickness: float, resolution: float) -> int:
-    """Return a thickness, m, in cells; steps are whole cells, so it may seem one thicker."""
+    """Return a thickness, m, in cells, and one more: it is measured in steps of whole cells."""
     return round(thickness / resolution) + 1

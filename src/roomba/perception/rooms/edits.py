@@ -13,7 +13,7 @@ RoomLabels = NDArray[np.int16]
 
 
 def are_touching(labels: RoomLabels, chosen: Sequence[int]) -> bool:
-    """Whether one can go between all chosen labels through chosen labels alone."""
+    """Whether each chosen label can be reached from each other through chosen labels alone."""
     pairs = contacts(np.where(np.isin(labels, chosen), labels, 0).astype(np.int32))[:, :2]
     reached = {chosen[0]}
     for _ in chosen:
@@ -22,7 +22,7 @@ def are_touching(labels: RoomLabels, chosen: Sequence[int]) -> bool:
 
 
 def joined(labels: RoomLabels, chosen: Sequence[int]) -> RoomLabels:
-    """Return labels with all chosen ones become the first; the others close up."""
+    """Return labels with all chosen ones made the first of them; the others close the gaps."""
     number = np.arange(int(labels.max()) + 1)
     number[list(chosen)] = chosen[0]
     kept, closed_up = np.unique(number, return_inverse=True)
@@ -36,9 +36,9 @@ def split(
 ) -> RoomLabels | None:
     """Return labels with one cut along a line of cells; None if it does not fall into pieces.
 
-    ``line`` is row and column of both ends; a piece has ``least`` cells or more, what is smaller
-    goes to the piece beside it. The largest piece keeps the label, the others follow the last one,
-    by size.
+    ``line`` is row and column of both ends. A piece has ``least`` cells or more; smaller parts go
+    to the piece beside them. The largest piece keeps the label, the others get labels after the
+    last one, by size.
     """
     mask = labels == label
     cut = mask.copy()

@@ -1,7 +1,7 @@
 """Carpets that the robot felt by its brush, place by place, over many cleans.
 
-Each tick of a clean is a vote of the floor below the tool, for carpet or against it. A carpet that
-was taken away is voted down again.
+At each tick of a clean the cells below the tool get a vote for or against carpet. A carpet that was
+taken away is voted down again.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ from roomba.perception.rooms.zones import Corners
 from roomba.raster.carried import carried
 
 MOST_CARPETS: Final = 100
-"""Of one map; of more the largest count."""
+"""Carpets of one map; if there are more, the largest are kept."""
 MOST_CORNERS: Final = 200
-"""Of a carpet, as of a zone; one with more is told by the shape around it."""
+"""Corners of a carpet, as of a zone; one with more is replaced by the rectangle around it."""
 CELL: Final = 0.10
-"""m; half of the tool's width, and about as far as its middle is driven while a floor is felt."""
+"""m; side of a cell: half of the tool's width, and about the way that it takes to feel a floor."""
 _BESIDE: Final = 0.05
-"""m; from the tool's middle to those of the cells that it covers."""
+"""m; along x and y, from the tool's middle to the places whose cells get its vote."""
 _FELT: Final = 4
-"""Votes, more than against it, from which on a cell is carpet: half of a pass at 0.3 m/s."""
+"""Votes for carpet, less those against, from which on a cell is carpet: half a pass at 0.3 m/s."""
 _MOST: Final = 30
-"""Votes for or against that count: some passes, so that two or three cleans turn them."""
+"""Limit of a cell's votes to either side: some passes, so that two or three cleans turn them."""
 _LEAST_AREA: Final = 0.10
-"""m2; what is smaller is a sill, or an error of the place."""
+"""m2; a smaller area is a sill, or an error of the pose."""
 _STAIR: Final = 0.06
-"""m; corners that are less aside are no corners: edges are stairs of cells."""
+"""m; tolerance of outlines, which drops the stairs that cells make of an edge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,22 +58,22 @@ class CarpetVotes:
         self._felt = FeltCarpets()
 
     def note(self, places: NDArray[np.float64], *, is_on: bool) -> None:
-        """Take ticks at places of the tool, float64 [n, 2], m, all of them on carpet or off."""
+        """Vote at places of the tool, float64 [n, 2], m, which are all on carpet or all off it."""
         frame = self.frame
         _vote(self.votes, frame.origin_x, frame.origin_y, places, 1 if is_on else -1)
         if self._was_on and not is_on:
-            # It left a carpet, which is larger now.
+            # The tool left a carpet: what was felt of it is complete, and outlines are due.
             self._is_told = False
         self._was_on = is_on
 
     def recall(self, felt: FeltCarpets) -> None:
-        """Go on with what was felt in former lives."""
+        """Restore the carpets that were felt before the program was started anew."""
         for corners in felt.all:
             self.votes[cells_inside(shapely.Polygon(corners), self.frame)] = _MOST
         self._felt, self._is_told = felt, True
 
     def carried_to(self, occupancy: OccupancyMap, moved: Pose) -> CarpetVotes:
-        """Return the same over another map, in which the frame of this one lies at ``moved``."""
+        """Return the same votes over another map, in which this one's frame lies at ``moved``."""
         over = CarpetVotes(occupancy)
         over.votes = carried(self.votes, self.frame, over.frame, moved)
         over._is_told = False
@@ -81,7 +81,7 @@ class CarpetVotes:
 
     @property
     def felt(self) -> FeltCarpets:
-        """The carpets that are known now: the same object as long as they are the same."""
+        """The carpets that are known now; the same object as long as they do not change."""
         if not self._is_told:
             self._is_told = True
             felt = FeltCarpets(self._outlines())
@@ -109,7 +109,7 @@ def _vote(
     places: NDArray[np.float64],
     vote: int,
 ) -> None:
-    """Add a vote to each cell below the tool at each place; no more count than :data:`_MOST`."""
+    """Add a vote to the cells below the tool at each place, up to :data:`_MOST` of either kind."""
     for number in range(len(places)):
         for dx in (-_BESIDE, _BESIDE):
             column = math.floor((places[number, 0] + dx - origin_x) / CELL)

@@ -16,9 +16,10 @@ Labels = NDArray[np.int32]
 
 @allocating_entry
 def clear_small_things(solid: Mask, longest: int) -> None:
-    """Free what stands alone: true cells, connected over sides and corners, in a small square.
+    """Free small groups of true cells that are connected over sides and corners.
 
-    Small is up to ``longest`` rows and columns; what reaches the border of the grid stays.
+    Small are groups of up to ``longest`` rows and columns. Groups that reach the border of the grid
+    stay.
     """
     rows, columns = solid.shape
     seen = np.zeros(solid.shape, np.bool_)
@@ -52,7 +53,7 @@ def clear_small_things(solid: Mask, longest: int) -> None:
 def grow(labels: Labels, allowed: Mask, reach: int) -> None:
     """Give unlabelled ``allowed`` cells the label from which the fewest steps lead to them.
 
-    At most ``reach`` steps over sides of cells.
+    Steps lead over sides of cells; cells more than ``reach`` steps away stay unlabelled.
     """
     rows, columns = labels.shape
     queue = np.empty(labels.size, np.int32)
@@ -114,8 +115,8 @@ def connected_parts(labels: Labels) -> Labels:
 def contacts(labels: Labels) -> NDArray[np.int32]:
     """Return where regions touch over a side: int32 [n, 5] of lower and higher label, place.
 
-    A place is the row and column of one of the two cells, and the number, from 0, of the opening:
-    contacts of the same two regions that are next to each other, up to two cells apart.
+    A place is the row and column of one of the two cells, and the number, from 0, of the opening.
+    Contacts of the same two regions that are up to two cells apart are one opening.
     """
     rows, columns = labels.shape
     found = np.empty((0, 5), np.int32)
@@ -189,7 +190,7 @@ def draw_line(mask: Mask, row: int, column: int, to_row: int, to_column: int) ->
 def border_counts(
     labels: Labels, unknown: Mask, count: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return how many sides of each label's cells are towards unknown and other unlabelled cells.
+    """Return how many sides of each label's cells border on unknown and on other unlabelled cells.
 
     Both int64 [count + 1], by label; the outside of the grid is unknown.
     """

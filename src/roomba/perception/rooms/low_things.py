@@ -1,7 +1,7 @@
 """Low things: what the bumper felt often where neither the map nor the lidar shows anything.
 
-Cables and sills lie below the lidar's light. They stay where they are for more than a clean, so
-that each is kept with the map, and offered as a no-go zone.
+Cables and sills lie below the lidar's beams. They stay in place for more than one clean. So each is
+kept with the map, and offered as a no-go zone.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from roomba.geometry import Pose
 from roomba.perception.rooms.zones import Corners, Zones
 
 MOST_LOW_THINGS: Final = 100
-"""Of one map; of more those go that were felt the fewest times."""
+"""Low things of one map; of more, those are dropped that are not ignored and were felt least."""
 
 
 @dataclass(frozen=True, slots=True)
 class LowThing:
     """Where something was felt ``times`` times: lowest x and y, highest x and y, m, map frame.
 
-    One that ``is_ignored`` is never offered.
+    A thing that ``is_ignored`` is never offered.
     """
 
     x0: float
@@ -34,8 +34,7 @@ class LowThing:
     is_ignored: bool = False
 
     def away(self, other: LowThing) -> float:
-        """Return how far another one is along the axis on which it is farther, m; 0 where they
-        overlap."""
+        """Return the gap to another one, m: along x or y, the larger of both; 0 if they overlap."""
         return max(
             self.x0 - other.x1, other.x0 - self.x1, self.y0 - other.y1, other.y0 - self.y1, 0.0
         )
@@ -52,18 +51,18 @@ class LowThing:
         )
 
     def moved(self, moved: Pose) -> LowThing:
-        """Return the same in another frame, in which this one lies at ``moved``."""
+        """Return the thing in another frame, in which this one's frame lies at ``moved``."""
         ends = [moved.compose(Pose(x, y)) for x in (self.x0, self.x1) for y in (self.y0, self.y1)]
         x, y = [end.x for end in ends], [end.y for end in ends]
         return replace(self, x0=min(x), y0=min(y), x1=max(x), y1=max(y))
 
     @property
     def longest(self) -> float:
-        """Its longer side, m."""
+        """The longer side of the thing, m."""
         return max(self.x1 - self.x0, self.y1 - self.y0)
 
     def corners(self, margin: float) -> Corners:
-        """Return the corners of a zone around it that is ``margin`` m wider on each side."""
+        """Return the corners of a zone that is ``margin`` m larger than the thing on each side."""
         left, right = self.x0 - margin, self.x1 + margin
         low, high = self.y0 - margin, self.y1 + margin
         return ((left, low), (right, low), (right, high), (left, high))
@@ -79,14 +78,15 @@ class OfferedZone:
 
 @dataclass(frozen=True, slots=True)
 class LowThings:
-    """All of a map; each change returns new ones."""
+    """All low things of a map; each change returns a new object."""
 
     all: tuple[LowThing, ...] = ()
 
     def felt_at(self, x: float, y: float, config: LowThingsConfig) -> LowThings:
         """Return these after something was felt at a point, m.
 
-        It is a new thing, or of all that it is near to, which are one then.
+        The point is a new thing, or it is joined with the things near by, unless that makes them
+        too long, or would join an ignored thing with one that is not.
         """
         thing, others = LowThing(x, y, x, y), list[LowThing]()
         for each in sorted(self.all, key=thing.away):
@@ -104,7 +104,7 @@ class LowThings:
         return LowThings(tuple(thing.moved(moved) for thing in self.all))
 
     def ignoring(self, x: float, y: float) -> LowThings:
-        """Return these with the thing around a point, m, ignored; raises ValueError for none."""
+        """Return these with the thing at a point, m, ignored; raises ValueError without one."""
         here = LowThing(x, y, x, y)
         nearest = min(self.all, key=here.away, default=None)
         if nearest is None or nearest.away(here) > 0.0:
@@ -116,8 +116,11 @@ class LowThings:
         return LowThings(tuple(ignored if each is nearest else each for each in self.all))
 
     def offers(self, zones: Zones, config: LowThingsConfig) -> tuple[OfferedZone, ...]:
-        """Return the zones that are offered: of what was felt often, is not ignored, and is in no
-        zone yet that it must not enter."""
+        """Return the zones to offer.
+
+        They are around things that were felt often, are not ignored, and are not yet in a zone that
+        the robot must not enter.
+        """
         return tuple(
             OfferedZone(thing.times, thing.corners(config.margin))
             for thing in self.all

@@ -14,7 +14,7 @@ from roomba.grid import GridFrame
 def outline_of(mask: Mask, frame: GridFrame) -> shapely.Polygon | shapely.MultiPolygon:
     """Return the borders of the true cells, m, as polygons along the axes, with holes.
 
-    ``mask`` is bool [rows, columns] over ``frame``. Parts that touch at corners alone are apart.
+    ``mask`` is bool [rows, columns] over ``frame``. Parts that touch only at corners are separate.
     """
     runs = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     rows, begins = np.nonzero(runs == 1)
@@ -47,7 +47,7 @@ def cells_inside(outline: shapely.Geometry, frame: GridFrame) -> Mask:
 def line_on(
     frame: GridFrame, start: tuple[float, float], end: tuple[float, float]
 ) -> tuple[int, int, int, int] | None:
-    """Return row and column of both ends of a line, m, where it is on the grid; None if nowhere."""
+    """Return row and column of both ends of a line's part on the grid; None if no part is on it."""
     if not all(math.isfinite(value) for value in (*start, *end)):
         return None
     x_min, x_max, y_min, y_max = frame.extent

@@ -12,14 +12,14 @@ from roomba.perception.rooms.floor_kernels import connected_parts, grow
 from roomba.perception.rooms.rooms import Rooms
 
 _REACH: Final = 1.5
-"""m; floor that became free so far from a room's is the room's: more than furniture is deep."""
+"""m; floor that became free up to so far from a room joins it: more than furniture is deep."""
 
 
 def refitted(rooms: Rooms, before: OccupancyMap, after: OccupancyMap) -> Rooms:
     """Return the rooms of the map ``before`` on the map ``after``, of the same frame.
 
-    Floor that became free goes to the room beside it. Of a room that is parted now the largest part
-    is left, and a room without floor is no more.
+    Floor that became free goes to the room beside it. Of a room that is in parts now only the
+    largest part is kept, and a room without floor is dropped.
     """
     free = after.values == FREE
     labels = np.where(free, rooms.labels, 0).astype(np.int32)

@@ -105,7 +105,7 @@ class Rooms:
         return cls(frame, labels, tuple(name for name, _ in outlines))
 
     def label_of(self, name: str) -> int:
-        """Return a room's label, 1 or more. Raises RoomsError for a name that is none."""
+        """Return a room's label, 1 or more. Raises RoomsError if no room has this name."""
         if name in self.names:
             return self.names.index(name) + 1
         asked = name[:LONGEST_NAME]
@@ -125,7 +125,7 @@ class Rooms:
         return float(np.count_nonzero(self._cells(label))) * self.frame.resolution**2
 
     def anchor(self, label: int) -> Point:
-        """Return the point of a room that is farthest from all that is not the room, m."""
+        """Return the point of a room that is farthest from the room's border, m."""
         cells = self._cells(label)
         rows, columns = np.flatnonzero(cells.any(axis=1)), np.flatnonzero(cells.any(axis=0))
         around = np.pad(cells[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1], 1)
@@ -138,7 +138,7 @@ class Rooms:
         return outline_of(self._cells(label), self.frame)
 
     def doorways(self) -> tuple[RoomDoorway, ...]:
-        """Return where rooms touch, sorted by their labels: one for each opening."""
+        """Return where rooms touch, one doorway for each opening, sorted by the rooms' labels."""
         touching = contacts(self.labels.astype(np.int32))
         size = self.frame.resolution
         found = []
@@ -153,7 +153,7 @@ class Rooms:
         return tuple(sorted(found, key=lambda door: (door.first, door.second, door.x, door.y)))
 
     def renamed(self, name: str, new_name: str) -> Rooms:
-        """Return the rooms with another name for one. Raises RoomsError."""
+        """Return the rooms with one of them renamed. Raises RoomsError."""
         index, new = self.label_of(name) - 1, new_name.strip()
         if new != name and new in self.names:
             raise RoomsError(f"there is a room {new!r} already; choose another name")
@@ -161,9 +161,9 @@ class Rooms:
         return replace(self, names=names)
 
     def joined(self, *names: str) -> Rooms:
-        """Return the rooms with some become one, by the first's name. Raises RoomsError.
+        """Return the rooms with some joined to one, by the first's name. Raises RoomsError.
 
-        They must touch: each is to be reached from each other one through them alone.
+        The rooms must touch: each must be reached from each other through these rooms alone.
         """
         chosen = [self.label_of(name) for name in dict.fromkeys(names)]
         if len(chosen) < 2:
@@ -182,9 +182,9 @@ class Rooms:
     def split(self, name: str, start: Point, end: Point) -> Rooms:
         """Return the rooms with one cut along a straight line between two points, m.
 
-        The largest piece keeps the name "X", the others are called "X 2", "X 3" ...; what is
-        smaller than :data:`SMALLEST_PIECE` goes to the piece beside it. Raises RoomsError if the
-        line does not cut the room.
+        The largest piece keeps the name "X", the others are called "X 2", "X 3" ... A part smaller
+        than :data:`SMALLEST_PIECE` goes to the piece beside it. Raises RoomsError if the line does
+        not cut the room.
         """
         label = self.label_of(name)
         line = line_on(self.frame, start, end)
@@ -214,8 +214,8 @@ def segment(occupancy: OccupancyMap, config: RoomsConfig | None = None) -> Rooms
     """Return the rooms of a map as a person would cut it, at doorways; "Room 1" is the largest.
 
     A room is free cells (value 0) that are connected over sides. Specks, corners that no robot
-    reaches, and what a scan saw through windows are in no room. Bormann et al., "Room Segmentation:
-    Survey, Implementation, and Analysis" (2016), compare ways to do it and say how it is scored.
+    reaches, and floor that a scan saw through windows are in no room. Bormann et al., "Room
+    Segmentation: Survey, Implementation, and Analysis" (2016), compare methods and their scores.
     """
     labels = room_labels(occupancy, config or RoomsConfig())
     names = tuple(f"Room {number}" for number in range(1, int(labels.max(initial=0)) + 1))

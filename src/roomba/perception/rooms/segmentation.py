@@ -35,7 +35,7 @@ def room_labels(occupancy: OccupancyMap, config: RoomsConfig) -> NDArray[np.int1
 
 
 def _walls(occupancy: OccupancyMap, config: RoomsConfig) -> Mask:
-    """Return what is solid without small things that stand free, closed at the map's border."""
+    """Return the solid cells, without small things that stand free, and with a solid border."""
     solid = occupancy.solid
     clear_small_things(solid, round(config.furniture_size / occupancy.frame.resolution))
     solid[[0, -1]] = solid[:, [0, -1]] = True
@@ -84,7 +84,7 @@ def _without_small(labels: Labels, resolution: float, config: RoomsConfig) -> La
 
 
 def _without_outdoors(labels: Labels, occupancy: OccupancyMap, config: RoomsConfig) -> Labels:
-    """Drop pieces that end at what was never seen rather than at walls, if walls are drawn."""
+    """Drop pieces that end at unknown cells and not at walls, unless the map is mostly so."""
     to_unknown, to_known = border_counts(
         labels, occupancy.values == UNKNOWN, int(labels.max(initial=0))
     )
@@ -96,7 +96,7 @@ def _without_outdoors(labels: Labels, occupancy: OccupancyMap, config: RoomsConf
 
 
 def _is_mostly(unknown: Counts, known: Counts, config: RoomsConfig) -> Mask:
-    """Return whether borders are towards what was never seen; counts of sides of cells."""
+    """Return whether borders are mostly towards unknown cells, from counts of sides of cells."""
     return np.asarray(unknown > config.most_unknown * (unknown + known))
 
 

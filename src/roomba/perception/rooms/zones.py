@@ -1,4 +1,4 @@
-"""Zones of a map: no-go areas and virtual walls, which it must not enter, and carpets."""
+"""Zones of a map: no-go areas and virtual walls, which the robot must not enter, and carpets."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from roomba.grid import OCCUPIED, GridFrame, OccupancyMap
 from roomba.vocabulary import LONGEST_NAME, MOST_CORNERS, MOST_ZONES, fault_of_name, listed
 
 WALL_WIDTH: Final = 0.05
-"""m; of a virtual wall: as thick as a cell, so that nothing slips through."""
+"""m; width of a virtual wall: as thick as a cell, so that the robot finds no gap in it."""
 _LEAST_SHARE: Final = 1e-6
-"""Of a cell; less is rounding."""
+"""Share of a cell that a zone must cover to touch it; less is rounding."""
 LEAST_AREA: Final = 0.01
 """m2; a smaller area is a slip of the finger."""
 
@@ -48,7 +48,7 @@ class ZoneKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Zone:
-    """``points`` are the corners of an area, or those of a wall, m, map frame."""
+    """A zone; ``points`` are the corners of an area, or of a wall's line, m, map frame."""
 
     name: str
     kind: ZoneKind
@@ -79,7 +79,7 @@ class Zone:
 
     @property
     def shape(self) -> shapely.Geometry:
-        """What it covers, m: an area, or a wall with its width."""
+        """The floor that the zone covers, m: an area, or a wall with its width."""
         if self.kind.is_area:
             return self._outline
         return self._outline.buffer(0.5 * WALL_WIDTH, cap_style="square")
@@ -91,7 +91,7 @@ class Zone:
         return shapely.LineString(self.points)
 
     def cells(self, frame: GridFrame) -> NDArray[np.bool_]:
-        """Return the cells that it touches, bool [rows, columns]."""
+        """Return the cells that the zone touches, bool [rows, columns]."""
         touched = np.zeros(frame.shape, np.bool_)
         rows, columns, cells = _touched(self, frame)
         touched[rows, columns] = cells
@@ -102,7 +102,7 @@ class Zone:
 def _touched(zone: Zone, frame: GridFrame) -> tuple[slice, slice, NDArray[np.bool_]]:
     """Return the rows and columns around a zone, and which of these cells it touches.
 
-    Kept: an edit of one zone of many asks for the cells of all.
+    Results are cached, as after an edit of one zone the cells of all are asked for.
     """
     shape = zone.shape
     x_min, y_min, x_max, y_max = shape.bounds
@@ -116,7 +116,7 @@ def _touched(zone: Zone, frame: GridFrame) -> tuple[slice, slice, NDArray[np.boo
     shapely.prepare(shape)
     cells = shapely.contains_properly(shape, squares)
     on_border = ~cells & shapely.intersects(shape, squares)
-    # What shares a border with a zone and nothing else is not touched.
+    # A cell that only shares a border with the zone is not touched.
     common = shapely.area(shapely.intersection(squares[on_border], shape))
     cells[on_border] = common > _LEAST_SHARE * frame.resolution**2
     cells.setflags(write=False)
@@ -137,11 +137,11 @@ class Zones:
             )
 
     def with_zone(self, zone: Zone) -> Zones:
-        """Return these with a zone more, in place of one of the same name."""
+        """Return these zones and ``zone``, which replaces one of the same name."""
         return Zones((*(other for other in self.all if other.name != zone.name), zone))
 
     def without(self, name: str) -> Zones:
-        """Return these without a zone; raises ZonesError for a name that is none."""
+        """Return these without a zone; raises ZonesError if none has this name."""
         if name not in self.names:
             raise ZonesError(
                 f"expected the name of a zone, got {name[:LONGEST_NAME]!r}; there are: "
@@ -151,16 +151,16 @@ class Zones:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of all zones."""
+        """Names of all zones."""
         return tuple(zone.name for zone in self.all)
 
     @property
     def barred(self) -> tuple[Zone, ...]:
-        """Those that the robot must not enter."""
+        """The zones that the robot must not enter."""
         return tuple(zone for zone in self.all if zone.kind is not ZoneKind.CARPET)
 
     def kept_out(self, occupancy: OccupancyMap) -> OccupancyMap:
-        """Return a map to plan on: what zones cover is occupied. The map itself stays as it is."""
+        """Return a map to plan on, with barred zones occupied; the map itself is not changed."""
         if not self.barred:
             return occupancy
         values = occupancy.values.copy()

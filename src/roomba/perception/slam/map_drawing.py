@@ -1,6 +1,6 @@
-"""When a map that is being made is drawn: once a period, if it grew.
+"""Drawing of a map that is being made: once a period, if the map grew.
 
-All that goes by such a map goes by what was drawn, headless and on ROS alike.
+All users of such a map get the newest drawing, headless and on ROS alike.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ class MapSource(Protocol):
 
     @property
     def version(self) -> int:
-        """It changes whenever the map does; 0 before there is one."""
+        """A number that changes whenever the map does; 0 before there is a map."""
 
     def occupancy(self) -> OccupancyMap:
         """Return the map as it is now."""
@@ -29,20 +29,20 @@ class MapDrawing:
     def __init__(self, source: MapSource, timing: TimingConfig) -> None:
         """Begin with nothing drawn: the first map is drawn at once.
 
-        Ticks do not fall on periods: half of one earlier is early enough.
+        Ticks do not fall exactly on periods: a map is drawn up to half a tick early.
         """
         self._source, self._apart = source, timing.map_period - 0.5 * timing.tick
         self._version, self._drawn_at = 0, -math.inf
 
     @property
     def due_at(self) -> float:
-        """When it is drawn next if it does not grow before, s; infinite if it has not grown."""
+        """Time of the next drawing, s; infinite if the map has not grown since the last one."""
         return self._drawn_at + self._apart if self._source.version != self._version else math.inf
 
     def draw(self, now: float) -> OccupancyMap | None:
-        """Return the map at ``now`` if it is time to draw it; None if not, or before there is one.
+        """Return the map at ``now`` if it is time to draw it; None if not, or if there is no map.
 
-        A clock that was set back begins a period.
+        If the clock was set back, a new period begins.
         """
         if self._source.version == self._version or 0.0 <= now - self._drawn_at < self._apart:
             return None

@@ -76,16 +76,16 @@ class Mapper:
     ) -> Mapper:
         """Go on with what another mapper knew; the robot is about ``here``, map frame.
 
-        To within some 0.2 m and 0.1 rad: the next scan tells exactly.
+        ``here`` may be off by some 0.2 m and 0.1 rad: the next scan tells the exact pose.
         """
         mapper = cls(config, localization, gyro, Pose(*state.poses[0].tolist()))
         mapper._take_over(state, here)
         return mapper
 
     def state(self) -> MapperState | None:
-        """Return all that another one needs to go on; None before the first scan.
+        """Return all that another mapper needs to go on; None before the first scan.
 
-        What it consists of is not changed any more, so that another thread may save it.
+        The objects in it are never changed later, so that another thread may save them.
         """
         if self._lidar is None or not self.version:
             return None
@@ -93,7 +93,7 @@ class Mapper:
         return self._map.state(lidar, way, is_lost=not self._relocation.is_placed)
 
     def begin_guessing(self, localization: LocalizationConfig, following: FollowingConfig) -> None:
-        """Go on with odometry that is guessed, and with its noise."""
+        """Go on with guessed odometry, and with the noise of that."""
         self._reckoning.begin_guessing(localization)
         self._map.graph.use_odometry(localization)
         self._follower.begin_guessing(following)
@@ -131,7 +131,7 @@ class Mapper:
         self.finish_scan(stamp, ranges)
 
     def finish_scan(self, stamp: float, ranges: NDArray[np.float32]) -> None:
-        """Do what comes after the newest scan was followed: kernels left that, or :meth:`see`."""
+        """Do what is left after :meth:`see`, or a kernel, followed the newest scan."""
         follower = self._follower
         if self.version and self._finding_back.is_due:
             seen = self._seen_carried()
@@ -154,19 +154,19 @@ class Mapper:
 
     @property
     def is_calm(self) -> bool:
-        """Whether scans follow each other: kernels may take them, until it has :meth:`resumed`."""
+        """Whether scans only have to be followed: kernels may do that until :meth:`resumed`."""
         has_keyframe = self.version > 0 and bool(self._map.graph.newest.keyframes)
         is_placed = self._relocation.is_placed and not self._is_elsewhere
         return has_keyframe and self._follower.is_sure and is_placed
 
     @property
     def following(self) -> Following:
-        """What kernels follow scans with, while it :attr:`is_calm`."""
+        """The arrays by which kernels follow scans, while the mapper :attr:`is_calm`."""
         return self._follower.following
 
     @property
     def submap_pose(self) -> Floats:
-        """Where the submap lies in which the robot is followed, [3], map frame."""
+        """Pose of the newest submap, in which the robot is followed, [3], map frame."""
         pose: Floats = self._map.graph.poses[-1].copy()
         return pose
 
@@ -177,8 +177,8 @@ class Mapper:
     def lift(self, is_lifted: bool) -> None:
         """Tell whether the wheels hang in the air.
 
-        Set down again, it is lost until it was :meth:`told`, or two scans from different places
-        show where on the map it is.
+        After it is set down again, the robot is lost until :meth:`told` is called, or two scans
+        from different places show where on the map it is.
         """
         self._relocation.lift(is_lifted)
 
@@ -186,7 +186,7 @@ class Mapper:
         """Take a touch of the robot's round body, of ``radius``, m.
 
         ``first`` and ``last``, rad, robot's frame, are the bearings between which its rim was
-        pressed. If that was a mirror, as what was seen says, the map ends there.
+        pressed. If scans show that it touched a mirror, the map ends there.
         """
         if self.version and self._relocation.is_placed and not self._is_elsewhere:
             here = self.pose
@@ -195,12 +195,12 @@ class Mapper:
             self._map.feel(Touch(here.x, here.y, radius, *turned), newest)
 
     def go_by_lidar(self) -> None:
-        """Keep the lidar where it is: the map is what the lidar saw."""
+        """Do nothing: the map is what the lidar saw, so that its mount must not change meanwhile."""
 
     def set_down(self) -> None:
-        """Go on where it was set down, wherever that is: the map goes on in a piece of its own.
+        """Go on where the robot was set down, which is unknown: the map goes on in a new piece.
 
-        It begins with the next scan, and is laid where it fits when the map is finished.
+        The piece begins with the next scan, and is laid where it fits when the map is finished.
         """
         self._relocation.set_down()
         self._is_elsewhere = self.version > 0
@@ -216,12 +216,12 @@ class Mapper:
 
     @property
     def pose(self) -> Pose:
-        """Where the robot was at the newest scan and moved to since, map frame."""
+        """Where the robot is: at the newest scan, moved by the wheels since, map frame."""
         return self._follower.since(self.at_scan)
 
     @property
     def start(self) -> Pose:
-        """Where it began, map frame; turned a little when the map is finished."""
+        """Where the robot began, map frame; it is turned a little when the map is finished."""
         return Pose(*self._map.graph.poses[0].tolist())
 
     @property
@@ -233,9 +233,9 @@ class Mapper:
 
     @property
     def pace(self) -> Floats:
-        """How fast the robot moved between the newest two scans that tell, float64 [3].
+        """The robot's pace between the newest two scans that tell it, float64 [3].
 
-        Ahead and aside, m/s, and turning, rad/s.
+        It is ahead and aside, m/s, and turning, rad/s.
         """
         return self._follower.pace
 
@@ -256,15 +256,15 @@ class Mapper:
 
     @property
     def hypotheses(self) -> list[Pose]:
-        """Where the robot may be: it knows of no other place than the one where it came along."""
+        """Where the robot may be: a mapper knows only the place to which it followed the robot."""
         return [self.pose]
 
     @property
     def sight_to_look_around(self) -> None:
-        """Nothing: it has no other place to find."""
+        """None: a mapper looks for no other place."""
 
     def look_anew(self) -> None:
-        """Do nothing, for the same reason."""
+        """Do nothing, as a mapper looks for no other place."""
 
     @property
     def newest_keyframe(self) -> tuple[int, Pose]:
@@ -282,8 +282,9 @@ class Mapper:
 
     @property
     def ways_apart(self) -> list[float]:
-        """How long parts of the map are that lie where dead reckoning puts them, m: no scan of them
-        was found on the rest.
+        """Lengths, m, of the parts of the map of which no scan was found on the rest.
+
+        They lie where dead reckoning puts them.
         """
         return self._map.graph.ways_apart(self._follower.way)
 
@@ -314,7 +315,7 @@ class Mapper:
         return self.occupancy()
 
     def _relocate(self, stamp: float, points: Floats) -> None:
-        """Go on where a scan of a robot that was carried is found on the map, if it is sure."""
+        """Go on where the scan of a carried robot is found on the map, if that is sure."""
         reckoned = self._reckoning.at(stamp - self._follower.latency)
         if reckoned is None or not self.version:
             return
@@ -328,9 +329,9 @@ class Mapper:
         return Carried.SEEN if self._finding_back.shows_carried else None
 
     def _begin_piece(self, carried: Carried | None) -> None:
-        """Begin a submap that scans are matched to, though none tells where it lies.
+        """Begin a submap of which no scan tells where it lies; scans are matched to it alone.
 
-        That may be anywhere if the robot was ``carried``.
+        It may lie anywhere if the robot was ``carried``.
         """
         follower, self._is_elsewhere = self._follower, False
         unsure = follower.unsure_way, follower.unsure_turn
@@ -346,7 +347,7 @@ class Mapper:
         return self._follower.is_sure and self._follower.is_apart
 
     def _keep(self, points: Floats, ranges: NDArray[np.float32]) -> None:
-        """Keep a scan as a keyframe, of another submap if the newest is whole."""
+        """Keep a scan as a keyframe; begin another submap for it if the newest is complete."""
         follower = self._follower
         if self._map.is_newest_whole(follower.here):
             self._map.begin(follower.here, follower.way, self.range_noise)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 WANTED: Final = 1
-"""It shall be cleaned."""
+"""The cell shall be cleaned."""
 SWEPT: Final = 2
-"""The tool passed over it."""
+"""The tool passed over the cell."""
 TRIED: Final = 4
-"""Planned already while the map is being made: what is left of it waits for the whole map."""
+"""The cell was planned while the map was being made: if missed, it waits for the whole map."""

@@ -1,4 +1,4 @@
-"""Compiled sweeping: which floor the tool passed over, and how often; and counts of it."""
+"""Compiled sweeping: which cells of floor the tool passed over, and how often; and their counts."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ LONGEST_STEP: Final = 0.3
 
 @entry
 def swept_from(last_x: float, last_y: float, x: float, y: float) -> tuple[float, float]:
-    """Return where the tool swept from to a place, m: from the last one, if it drove from there.
+    """Return where the tool's way to a place began, m: at the last place, if it drove from there.
 
-    A last place that is not finite is none.
+    If the last place is too far away, or not finite, the way begins at the place itself.
     """
     if math.hypot(x - last_x, y - last_y) <= LONGEST_STEP:
         return last_x, last_y
@@ -38,10 +38,10 @@ def sweep(
     to_y: float,
     radius: float,
 ) -> int:
-    """Mark as SWEPT the cells whose middle a disc passes over that goes straight from one point to
-    another, m; return how many of the WANTED ones are new.
+    """Mark as SWEPT the cells whose middle a moving disc passes over; return the new WANTED ones.
 
-    ``place`` is x and y of the middle of the first cell, and the resolution, m.
+    The disc of ``radius`` m goes straight from one point to another, m. ``place`` is x and y of the
+    middle of the first cell, and the resolution, m.
     """
     window = _window(cells.shape, place, (from_x, from_y, to_x, to_y), radius)
     first_row, end_row, first_column, end_column = window
@@ -71,11 +71,12 @@ def visit(
     rule: tuple[float, float, int],
     poses: NDArray[np.float64],
 ) -> None:
-    """Count one visit more of each cell whose middle a disc passes over that goes from pose to
-    pose, float64 [n, 3]: s, m, m. Between poses farther apart than LONGEST_STEP it was carried.
+    """Count a visit to each cell whose middle a disc passes over on its way along ``poses``.
 
-    ``place`` is as in :func:`sweep`; ``swept_at``, s, tells when a cell was last passed. ``rule``
-    is the radius of the disc, m, after how many s a cell counts anew, and the highest count.
+    ``poses`` is float64 [n, 3]: s, m, m. Between poses farther apart than LONGEST_STEP the robot
+    was carried. ``place`` is as in :func:`sweep`; ``swept_at``, s, tells when a cell was last
+    passed. ``rule`` is the radius of the disc, m, after how many s without a pass a cell counts
+    anew, and the highest count.
     """
     radius, apart, highest = rule
     most = radius * radius
@@ -141,7 +142,7 @@ def _window(
 
 @part
 def _inverse_square(way_x: float, way_y: float) -> float:
-    """Return one over the squared length of a way, or 0 of one without length."""
+    """Return one over the squared length of a way, or 0 if it has no length."""
     square = way_x * way_x + way_y * way_y
     return 1.0 / square if square > 0.0 else 0.0
 

@@ -17,13 +17,13 @@ from roomba.raster.carried import carried
 from roomba.raster.regions import numbered_regions
 
 GRANTED: Final = 0.002
-"""m; a cell counts as swept when the tool's rim comes so near to its middle: two swaths that touch
-in the middle of a row of cells, each a millimetre off, leave none of it."""
+"""m; a cell counts as swept if the tool's rim comes as near as this to its middle. So two swaths
+that touch along the middles of cells, each a millimetre off, leave no row of cells unswept."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Patch:
-    """Floor that hangs together: its ``area``, m2, its middle, m, and its cells as a mask."""
+    """Connected floor: its ``area``, m2, its middle, m, and its cells as a mask."""
 
     area: float
     x: float
@@ -50,18 +50,18 @@ class CoverageMap:
         self.at: tuple[float, float] | None = None
 
     def sweep(self, x: float, y: float) -> None:
-        """The robot drove straight here from where it last was, sweeping."""
+        """Sweep the straight way of the robot from its last place to (x, y), m."""
         from_x, from_y = swept_from(*(self.at or (x, y)), x, y)
         self.swept_cells += sweep(self.cells, self.place, from_x, from_y, x, y, self.radius)
         self.at = (x, y)
 
     def resumed(self, swept: int, at: tuple[float, float]) -> None:
-        """Go on after kernels that swept so many cells more of the wanted floor, up to here, m."""
+        """Go on after kernels swept ``swept`` more cells of the wanted floor, up to ``at``, m."""
         self.swept_cells += swept
         self.at = at
 
     def take_back(self, points: NDArray[np.float64]) -> None:
-        """Let floor along a way, float64 [n, 2], m, be as if the tool had not passed over it."""
+        """Mark floor along a way, float64 [n, 2], m, as not swept."""
         self.cells[self.along(points)] &= np.uint8(~SWEPT & 0xFF)
         self.count_again()
 
@@ -101,27 +101,27 @@ class CoverageMap:
 
     @property
     def swept_area(self) -> float:
-        """Of the wanted floor, m2."""
+        """Area of the wanted floor that is swept, m2."""
         return self.swept_cells * self.cell_area
 
     @property
     def fraction(self) -> float:
-        """Share of the wanted floor that is swept, 0..1; all of nothing is 1."""
+        """Share of the wanted floor that is swept, 0..1; 1 if no floor is wanted."""
         return self.swept_cells / self.wanted_cells if self.wanted_cells else 1.0
 
     @property
     def wanted(self) -> Mask:
-        """What shall be cleaned."""
+        """The cells that shall be cleaned."""
         return (self.cells & WANTED) > 0
 
     @property
     def swept(self) -> Mask:
-        """What the tool passed over, wanted or not."""
+        """The cells that the tool passed over, wanted or not."""
         return (self.cells & SWEPT) > 0
 
     @property
     def missed(self) -> Mask:
-        """What is wanted and was not swept."""
+        """The cells that are wanted and were not swept."""
         missed: Mask = (self.cells & (WANTED | SWEPT)) == WANTED
         return missed
 

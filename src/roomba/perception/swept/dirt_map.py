@@ -20,26 +20,27 @@ Window = tuple[slice, slice]
 CELL: Final = 0.20
 """m; about the width of the tool, which limits the sensor's resolution."""
 LEAST_WAY: Final = 0.5 * CELL
-"""m; with less of it in a cell it is not known how dirty that is."""
+"""m; after a shorter way in a cell it is not known how dirty the cell is."""
 _ALL_OF_IT: Final = (slice(None), slice(None))
 _LEARNING: Final = 0.4
-"""Share of the newest run in what a cell is taken for."""
+"""Share of the newest run in the learned density of a cell."""
 _OFF_SIDES: Final = 1.3e-5
-"""m by which the sides of cells lie off the frame's: ways lead along those, and last bits are not
-to decide which cell counts a grain."""
+"""m by which the sides of cells lie off the frame's. Ways lead along the frame's sides, and
+rounding must not decide in which cell a grain is counted."""
 _JUST_SO: Final = 1.0 - 1e-4
-"""Factor on the density that counts as dirty; as many grains as that make floor dirty for sure."""
+"""Factor on the density from which on floor is dirty, so that floor that just reaches it is."""
 
 
 class DirtMap:
-    """Grains over m2 of floor, by cells of ``frame``.
+    """Density of dirt, grains per m2 of floor, by cells of ``frame``.
 
-    ``learned`` float32 [rows, columns] is that of all runs before, NaN where it never was;
-    ``grains`` and ``way`` are those of the present one: what was counted, and m driven there.
+    ``learned`` float32 [rows, columns] is the density by all earlier runs, NaN where the robot
+    never was. ``grains`` and ``way`` are of the present run: what was counted in a cell, and the
+    way driven there, m.
     """
 
     def __init__(self, occupancy: OccupancyMap) -> None:
-        """Lay it over a map, with nothing known."""
+        """Begin with nothing known, on a grid over a map."""
         self.frame = frame = occupancy.frame.with_cells(CELL)
         self.learned: Floats32 = np.full(self.frame.shape, np.nan, np.float32)
         self.grains: Floats32 = np.zeros(self.frame.shape, np.float32)
@@ -51,7 +52,7 @@ class DirtMap:
         note_dirt(self.grains, self.way, self.place, x, y, grains, way)
 
     def carry_on(self, before: DirtMap, moved: Pose) -> None:
-        """Go on with what the dirt map of an older map of this home knew.
+        """Take over the dirt map of an older map of this home.
 
         ``moved`` is where the older map's frame lies in this one.
         """
@@ -71,19 +72,19 @@ class DirtMap:
         self.way[:] = 0.0
 
     def usual(self) -> float:
-        """Return the median of what the present run counted, grains/m2; 0 before it did."""
+        """Return the median density of the present run, grains/m2; 0 while there is none."""
         seen = self.way > LEAST_WAY
         return float(np.median(self._density_now()[seen])) if seen.any() else 0.0
 
     def density(self, mask: Mask, frame: GridFrame) -> float:
-        """Return the mean of what was learned over a mask on another grid, grains/m2; 0 if none."""
+        """Return the mean learned density over a mask on another grid, grains/m2; 0 if none."""
         values = self.over(np.nan_to_num(self.learned), frame)[mask]
         return float(values.mean()) if values.size else 0.0
 
     def found(self, mask: Mask, frame: GridFrame) -> float:
-        """Return what the present run counted over a mask on another grid, grains/m2; 0 if none.
+        """Return the present run's grains/m2 over a mask on another grid; 0 if nothing is known.
 
-        Floor that was swept twice counts with all that was found on it.
+        If floor was swept twice, the grains of both passes are added up.
         """
         rows, columns = np.nonzero(self.way > LEAST_WAY)
         row, column = frame.cells_of(*self.frame.centres(rows, columns))
@@ -94,28 +95,28 @@ class DirtMap:
         return float(self.grains[rows, columns][here].sum() / area) if area else 0.0
 
     def dirty_cells(self, times: float, least: float) -> Mask:
-        """Return where the present run counted so many times the usual of it, over ``frame``.
+        """Return where the present run counted ``times`` its usual density or more, over ``frame``.
 
-        Where it counted fewer than ``least`` grains/m2 no floor is dirty.
+        Floor with fewer than ``least`` grains/m2 is never dirty.
         """
         return self.cells_from(self.dirty_from(times, least))
 
     def cells_from(self, density: float) -> Mask:
-        """Return where the present run counted as many grains/m2, over ``frame``."""
+        """Return where the present run counted ``density`` grains/m2 or more, over ``frame``."""
         dirty: Mask = self._density_now() >= density
         return dirty
 
     def dirty_from(self, times: float, least: float) -> float:
-        """Return from how many grains/m2 on floor of the present run is dirty."""
+        """Return the density, grains/m2, from which on floor of the present run is dirty."""
         return _JUST_SO * dirty_from(self._density_now()[self.way > LEAST_WAY], times, least)
 
     @property
     def seen_area(self) -> float:
-        """Floor of which the present run counted what lies on it, m2."""
+        """Area of the floor whose density the present run knows, m2."""
         return float(np.count_nonzero(self.way > LEAST_WAY)) * CELL**2
 
     def known(self) -> Floats32:
-        """Return grains/m2 by cells: of this run where it was, else as learned, NaN elsewhere."""
+        """Return grains/m2 by cells: by this run where it was, else as learned; NaN if unknown."""
         known: Floats32 = np.where(self.way > LEAST_WAY, self._density_now(), self.learned)
         return known
 
@@ -124,7 +125,7 @@ class DirtMap:
     ) -> NDArray[Any]:
         """Return values of the map's own cells at the middles of another grid's cells.
 
-        Only of the part of that grid in ``window``.
+        Only the part of that grid in ``window`` is returned.
         """
         rows = ((np.arange(frame.rows)[window[0]] + 0.5) * frame.resolution / CELL).astype(np.int64)
         columns = ((np.arange(frame.columns)[window[1]] + 0.5) * frame.resolution / CELL).astype(
@@ -136,7 +137,7 @@ class DirtMap:
         return over
 
     def window_of(self, cells: Mask, frame: GridFrame) -> Window:
-        """Return the part of another grid that some of the map's own cells, not none, lie on."""
+        """Return the part of another grid that ``cells`` of this map lie on; one must be true."""
         first, last = np.argwhere(cells).min(axis=0), np.argwhere(cells).max(axis=0) + 1
         parts = CELL / frame.resolution
         starts = np.floor(first * parts).astype(np.int64)
@@ -150,9 +151,9 @@ class DirtMap:
 
 
 def dirty_from(density: Floats32, times: float, least: float) -> float:
-    """Return from how many grains/m2 on floor is dirty: so many times the usual, their median.
+    """Return the density, grains/m2, from which on floor is dirty: ``times`` the median of all.
 
-    It is ``least`` grains/m2 or more. ``density`` is of any shape; NaN where nothing is known.
+    It is never less than ``least``. ``density`` is of any shape; NaN where nothing is known.
     """
     known = density[~np.isnan(density)]
     usual = float(np.median(known)) if known.size else 0.0
@@ -169,7 +170,7 @@ def note_dirt(
     grains: float,
     way: float,
 ) -> None:
-    """Add what was counted at a place, m, to its cell; ``place`` is the grid's corner and cell."""
+    """Add what was counted at a point, m, to its cell; ``place`` is the grid's corner and cell."""
     row = math.floor((y - place[1] + _OFF_SIDES) / place[2])
     column = math.floor((x - place[0] + _OFF_SIDES) / place[2])
     if 0 <= row < grains_of.shape[0] and 0 <= column < grains_of.shape[1]:

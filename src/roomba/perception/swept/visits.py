@@ -1,4 +1,4 @@
-"""How often each piece of floor was swept: what a page shows as once, twice, and more."""
+"""How often each cell of floor was swept, as a page shows it: once, twice, or more often."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Visits:
     """Counts of visits, uint8 [rows, columns] over ``frame``: 0 to 3."""
 
     def __init__(self, frame: GridFrame, tool_width: float) -> None:
-        """Lay cells over all of a frame, with nothing visited."""
+        """Begin with nothing visited, on cells over all of a frame."""
         self.frame = _over(frame)
         self.counts: NDArray[np.uint8] = np.zeros(self.frame.shape, np.uint8)
         self._swept_at = np.full(self.frame.shape, -np.inf)
@@ -50,11 +50,11 @@ class Visits:
         self._at = None
 
     def sweep(self, now: float, x: float, y: float) -> None:
-        """Count what the tool passes on a straight way to (x, y), m, at a time, s."""
+        """Count the cells that the tool passes on a straight way to (x, y), m, at a time, s."""
         self.sweep_all(np.array([(now, x, y)]))
 
     def sweep_all(self, poses: NDArray[np.float64]) -> None:
-        """Count what the tool passes from pose to pose, float64 [n, 3]: s, m, m."""
+        """Count the cells that the tool passes from pose to pose, float64 [n, 3]: s, m, m."""
         if not len(poses):
             return
         begin = poses[:1] if self._at is None else self._at
@@ -63,7 +63,7 @@ class Visits:
 
 
 def _over(frame: GridFrame) -> GridFrame:
-    """Return the frame of cells that lie over all of another one."""
+    """Return a frame with cells of CELL that covers all of another frame."""
     rows = math.ceil(frame.rows * frame.resolution / CELL)
     columns = math.ceil(frame.columns * frame.resolution / CELL)
     return GridFrame(CELL, frame.origin_x, frame.origin_y, rows, columns)

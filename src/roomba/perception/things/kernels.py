@@ -1,8 +1,9 @@
 """Compiled evidence, cell by cell, of what the lidar sees and the map does not show.
 
-A cell has *evidence*: a scan of which beams end in it adds to it, one whose beams pass through it
-or end just behind it takes from it, and what has enough of it is a *thing*. Cells with any are
-listed, so that looking at all of them costs by their number and not by the size of the home.
+A cell has *evidence*. A scan with beams that end in the cell adds evidence; a scan whose beams pass
+through the cell, or end just behind it, takes evidence from it. A cell with enough evidence is a
+*thing*. Cells with any evidence are listed, so that a walk over all of them costs by their number
+and not by the size of the home.
 """
 
 from __future__ import annotations
@@ -47,11 +48,11 @@ def note(
     unsure: float,
     scans: int,
 ) -> None:
-    """Take a scan, float32 [beams], m, that was taken at ``pose`` [3], map, which is known.
+    """Update the evidence by a scan, float32 [beams], m, from a known ``pose`` [3], map frame.
 
-    ``unsure`` is the deviation of that place, m. ``ranges`` are as if all were measured there,
-    ``measured`` as they were. The scan stands for so many ``scans``, its own included.
-    ``lidar.ends`` is a work array here.
+    ``unsure`` is the standard deviation of that position, m. ``ranges`` are as if all were measured
+    at ``pose``, ``measured`` the original ones. The scan stands for ``scans`` scans, itself
+    included. ``lidar.ends`` is a work array here.
     """
     layer = things.layer[0]
     layer.scan += 1
@@ -81,16 +82,16 @@ def _find_ends(
     at: LidarPose,
     margin: float,
 ) -> int:
-    """Fill ``lidar.ends`` with those of beams that end away from all surfaces; return how many.
+    """Fill ``lidar.ends`` with the ends of beams away from all surfaces; return how many.
 
-    ``margin`` is what a surface may be off, m. Of each beam it is x, y, m, map, and the way on
-    which it is as likely to have ended by its noise as there, along x and y, m.
+    ``margin`` is how far a surface may be off, m. A row is an end's x, y, m, map frame, and how far
+    the noise of its range reaches along the beam, as a vector x, y, m.
     """
     rows, columns = field.shape
     cosine, sine = math.cos(at.heading), math.sin(at.heading)
     inverse = 1.0 / place[2]
     around = round(2.0 * math.pi / abs(lidar.step))
-    # From nowhere in a cell a surface is farther than from its middle by more than half its size.
+    # A quick test: in a cell the distance exceeds that at its middle by half a diagonal at most.
     near = margin - 0.7072 * place[2]
     count = 0
     for beam in range(ranges.size):
@@ -142,9 +143,9 @@ def _count_in(
 def _count_behind(
     things: Things, layer: Row, field: Field, place: Place, ends: Floats, count: int
 ) -> None:
-    """Note which listed cells beams passed closely, and count those that noise may have let pass.
+    """Note the listed cells that beams end closely behind, and count beams that may have met them.
 
-    These end no farther behind a cell than their noise reaches.
+    A beam may have met a cell if it ends no farther behind it than the noise of its range reaches.
     """
     half = 0.5 * place[2]
     for index in range(count):
@@ -193,7 +194,7 @@ def _weigh(
     half = 0.7072 * place[2]
     gain = min(layer.gain * scans, layer.most_gain)
     is_other = False
-    # From the last one, as the last one takes the place of one that is no longer listed.
+    # Backwards, as the last cell takes the place of one that is no longer listed.
     for number in range(layer.count - 1, -1, -1):
         cell = things.listed[number]
         before = things.evidence[cell]
@@ -225,7 +226,8 @@ def _weigh(
 def _move_spot(things: Things, layer: Row, cell: int) -> None:
     """Move a cell's spot towards the mean of this scan's beams, by their share of all that count.
 
-    All count alike, wherever in the cell they end: the first ones of a sweep all meet one side.
+    The beams of a scan are taken together, so that their order does not matter: the first ones of a
+    sweep all meet one side of the thing.
     """
     ended = things.beams[cell, IN]
     if ended > 0:
@@ -238,7 +240,9 @@ def _move_spot(things: Things, layer: Row, cell: int) -> None:
 def _is_passed(
     ranges: Ranges, beams: int, around: int, middle: int, aside: int, way: float
 ) -> bool:
-    """Whether all beams around one went farther; those that met nothing do not tell."""
+    """Whether all beams around ``middle`` went farther than ``way``, m; those without echo do not
+    count, but some must have one.
+    """
     does_tell = False
     for number in range(middle - aside, middle + aside + 1):
         beam = number % around
@@ -261,7 +265,8 @@ def first_blocked(
 ) -> float:
     """Return where along a path, [n, 2], a thing is nearer than ``radius``, m; nan: nowhere.
 
-    Between ``first`` and ``last``, m; ``stations`` [n] tells where along the path each point is.
+    Only the part from ``first`` to ``last``, m along the path, is looked at; ``stations`` [n] tells
+    where along the path each point is.
     """
     layer = things.layer[0]
     nearest = math.inf

@@ -24,10 +24,10 @@ _MOST_CELLS: Final = 4096
 
 
 class ThingLayer:
-    """A grid over the map's frame of what is seen there besides what the map shows.
+    """A grid, over the map's frame, of what the lidar sees and the map does not show.
 
-    While a robot knows its place, show it each scan; ``arrays`` is what kernels work on, and
-    ``field`` that of the map.
+    While the robot knows its place, give each scan to :meth:`see`. ``arrays`` is what kernels work
+    on; ``field`` is the map's.
     """
 
     def __init__(self, field: SurfaceField, config: ThingConfig | None = None) -> None:
@@ -64,25 +64,25 @@ class ThingLayer:
         measured: Ranges | None = None,
         unsure: float = 0.01,
     ) -> None:
-        """Take a scan, float32 [beams], m, taken at a pose of the map that is known.
+        """Take a scan, float32 [beams], m, taken at a known pose of the map.
 
-        It stands for so many ``scans`` of the lidar, its own included. ``measured`` are the ranges
-        as they were, if ``ranges`` were made of them for a robot that moved meanwhile. ``unsure``
-        is the deviation of the place, m.
+        The scan stands for ``scans`` scans of the lidar, itself included. ``measured`` are the
+        original ranges, if ``ranges`` were corrected for the robot's motion. ``unsure`` is the
+        standard deviation of the position, m.
         """
         measured = ranges if measured is None else measured
         at = pose.as_array()
         note(self.arrays, self._field, self._place, lidar, ranges, measured, at, unsure, scans)
 
     def cells(self, least: int | None = None) -> NDArray[np.int64]:
-        """Return the things' cells, int64 [n, 2], row and column: those with enough evidence."""
+        """Return the cells of things, with evidence of ``least``: int64 [n, 2], row and column."""
         least = self.config.enough if least is None else least
         listed = self.arrays.listed[: int(self.arrays.layer["count"][0])]
         standing = np.sort(listed[self.arrays.evidence[listed] >= least])
         return np.column_stack(np.divmod(standing, max(self._columns, 1)))
 
     def obstacles(self, least: int | None = None) -> list[RoundObstacle]:
-        """Return round things, one for each cell with so much evidence, m, map frame."""
+        """Return round things, one for each of these cells: x, y and radius, m, map frame."""
         cells = self.cells(least)
         spots = self.arrays.spots[cells[:, 0] * self._columns + cells[:, 1]]
         return [(x, y, self.config.spot_radius) for x, y in spots.tolist()]
@@ -97,7 +97,8 @@ class ThingLayer:
     ) -> float | None:
         """Return where along a path, [n, 2], a thing is nearer than ``radius``, m; None: nowhere.
 
-        Between ``first`` and ``last``, m along the path; ``stations`` [n] tells that of each point.
+        Only the part from ``first`` to ``last``, m along the path, is looked at; ``stations`` [n]
+        tells where along the path each point is.
         """
         at = first_blocked(self.arrays, points, stations, first, last, radius)
         return None if math.isnan(at) else float(at)

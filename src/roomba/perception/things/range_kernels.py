@@ -19,20 +19,20 @@ Ranges = NDArray[np.float32]
 Rows = NDArray[np.void]
 
 _STEP: Final = 0.5
-"""m; the noise of ranges is measured for each such stretch of them by itself."""
+"""m; the noise of ranges is measured for each interval of this length by itself."""
 _EVERY: Final = 5
-"""Scans from one whose noise is measured to the next."""
+"""The noise of every fifth scan is measured."""
 _UNKNOWN: Final = 0.02
-"""m; noise of ranges of which nothing is known, nor of farther ones: hardly a lidar has more."""
+"""m; noise of ranges if neither it nor that of farther ranges is known: hardly a lidar has more."""
 _STEEP: Final = 5.7
-"""Tangent of 80 degrees: what is met more aslant is hardly seen."""
+"""Tangent of 80 degrees: a surface that beams meet at a larger angle is hardly seen."""
 _OF_TWO: Final = math.sqrt(2.0)
 _OF_THREE: Final = math.sqrt(6.0)
-"""Times that of one range by which a difference of two is off, and what two say of a third."""
+"""Deviation, over that of one range, of the difference of two, and of a third range by two."""
 
 
 def unknown_noises(farthest: float) -> Rows:
-    """Return what is taken for the noise of ranges up to ``farthest``, m, before a scan came."""
+    """Return the noise that is assumed for ranges up to ``farthest``, m, before a scan came."""
     noises = np.concatenate([unknown_noise() for _ in range(math.ceil(farthest / _STEP))])
     noises["deviation"] = _UNKNOWN
     return noises
@@ -46,7 +46,7 @@ def measure_noises(noises: Rows, scan: int, ranges: Ranges, nearest: float) -> N
     for index in range(noises.size):
         first = max(nearest, index * _STEP)
         measure_noise(noises[index : index + 1], ranges, first, (index + 1) * _STEP)
-    # Of what is hardly ever met so near, the next farther ranges tell.
+    # Where too few ranges were measured, take the noise of the next farther ones.
     farther = _UNKNOWN
     for index in range(noises.size - 1, -1, -1):
         if noises[index]["total"] < LEAST_SAMPLES:
@@ -62,7 +62,7 @@ def noise_at(noises: Rows, away: float) -> float:
 
 @inner_part
 def is_mixed(ranges: Ranges, beam: int, step: float, around: int, slack: float) -> bool:
-    """Whether a range lies between what its neighbours met, and is of no surface with them.
+    """Whether a range lies between two things that its neighbours met, on no surface with these.
 
     ``step`` is the angle between beams, rad, of which ``around`` fill a turn; each range may be off
     by ``slack``, m.
@@ -75,7 +75,7 @@ def is_mixed(ranges: Ranges, beam: int, step: float, around: int, slack: float) 
     if abs(right - length) <= near or abs(left - length) <= near:
         return False
     if not (right <= length or left <= length):
-        # Something thin stands before what is behind it.
+        # The range is shorter than both neighbours: it is of something thin before them.
         return False
     is_between = abs(left - right) <= 2.0 * _STEEP * wide and _is_in_line(
         length, 0.5 * (1.0 / right + 1.0 / left), _OF_TWO * slack
@@ -89,12 +89,12 @@ def is_mixed(ranges: Ranges, beam: int, step: float, around: int, slack: float) 
 
 @part
 def _is_in_line(length: float, inverse: float, slack: float) -> bool:
-    """Whether a range is one of which neighbours say what 1/r is: it is even along a line."""
+    """Whether a range agrees with 1/r as its neighbours predict it: 1/r is even along a line."""
     return abs(inverse * length - 1.0) * length <= slack
 
 
 @part
 def _beside(ranges: Ranges, beam: int, way: int, around: int) -> float:
-    """Return the range of the beam so many to one side, m; nan if there is none."""
+    """Return the range, m, ``way`` beams to the left of a beam; nan if there is none."""
     other = (beam + way) % around
     return float(ranges[other]) if other < ranges.size else math.nan

@@ -28,7 +28,7 @@ LAYER: Final = np.dtype(
         ("next_to", "f8"),  # m
         ("count", "i8"),  # cells that are listed
         ("scan", "i8"),  # number of the newest scan, from 1
-        ("version", "i8"),  # another one when a thing came or went
+        ("version", "i8"),  # changes when a thing came or went
     ]
 )
 """The numbers of :class:`roomba.perception.things.layer.ThingConfig`, and what changes."""
@@ -37,12 +37,13 @@ LAYER: Final = np.dtype(
 class Things(NamedTuple):
     """A layer as kernels know it.
 
-    ``layer`` is LAYER [1]; ``evidence`` int16 and ``touched`` int64, the newest scan that ended in
-    a cell, are [cells], row by row as the map's; ``beams`` int16 [cells, 2] counts those of that
-    scan which ended in it, and just behind it; ``listed`` int64 [n] has the cells with evidence;
-    ``spots`` float32 [cells, 2] is where in its cell the beams end, m, map frame: their mean, in
-    which those of long ago count less; ``sums`` float32 [cells, 2] adds up how far those of that
-    scan are from it along x and y, m; ``noise`` is NOISE [n], that of ranges of each half metre.
+    ``layer`` is LAYER [1]. The following arrays have a row for each cell, row by row as the map's:
+    ``evidence`` int16 [cells]; ``touched`` int64 [cells], the number of the newest scan with beams
+    that ended in the cell or just behind it; ``beams`` int16 [cells, 2], how many beams of that
+    scan ended in the cell, and just behind it; ``spots`` float32 [cells, 2], the mean of the beams'
+    ends in the cell, m, map frame, in which old beams count less; ``sums`` float32 [cells, 2], the
+    offsets of that scan's ends from the spot, added up, along x and y, m. ``listed`` int64 [n] has
+    the cells with evidence; ``noise`` is NOISE [n], that of ranges of each half metre.
     """
 
     layer: NDArray[np.void]

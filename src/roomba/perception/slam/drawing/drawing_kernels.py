@@ -21,32 +21,34 @@ from roomba.perception.slam.scan_matching.surface_kernels import NORMAL_X, NORMA
 Counts = NDArray[np.uint16]
 
 _INTO: Final = 0.4
-"""cells; so far behind the surface that it met a beam is counted, to be inside the wall's cell."""
+"""cells; a beam is counted so far behind the surface that it met, to be inside the wall's cell."""
 INTO_EDGE: Final = 0.25
-"""cells; the same at edges and thin things, where the way that the surface faces is not known:
-farther along the beam, past a corner, is the next cell."""
+"""cells; the same at edges and thin things, whose surface normal is not known. It is smaller, as
+farther along the beam, past a corner, the next cell begins."""
 _BEFORE: Final = 0.5
-"""cells; so far before the surface a beam counts as through no more."""
+"""cells; from so far before the surface on a beam no longer counts as passing through."""
 _EDGE: Final = 0.15
-"""cells; a cell that beams met, in the mean, so near to its border, or beyond, may be but the edge
-of what stands in the next one. Two cells for the leg of a chair close the way past it."""
+"""cells; if beams met a cell, in the mean, this near to its border or beyond, the cell may be only
+the edge of a thing in the next cell. Drawn in two cells, the leg of a chair closes the way past."""
 _SURER: Final = 1.5
-"""Times the share of beams that ended: so much more of them ended in that one."""
+"""Factor on the share of beams that ended in the cell; that in the next cell must be as large."""
 _ROW_STEPS, _COLUMN_STEPS = (0, 1, 0, -1), (1, 0, -1, 0)
 _NOWHERE: Final = np.zeros((0, 0, 2), np.float32)
 _NO_COUNTS: Final = np.zeros((0, 0), np.uint16)
 MARGIN: Final = 1
-"""Cells of the unknown around what is known."""
+"""Unknown cells around the known ones."""
 _MOST: Final = 60000
-"""Counts are halved there: a cell never overflows."""
+"""The largest count; it is halved there, so that it never overflows."""
 
 
 class CountArrays(NamedTuple):
-    """The grid as kernels know it: counts, uint16 [rows, columns]; ``place`` is the lower left
-    corner x, y and the cell size, m; ``bounds`` int64 [4] the first and last row and column with
-    counts; ``offsets``, float32 [rows, columns, 2], sums of where the cell's beams met a surface, x
-    and y from its middle, cells: none unless :func:`occupancy` is called. ``opens``, uint16 [rows,
-    columns], are beams without an echo on ways that are open: as ``offsets``.
+    """The grid as kernels know it: ``hits`` and ``passes``, uint16 [rows, columns], are the counts.
+
+    ``place`` is the lower left corner x, y and the cell size, m; ``bounds`` int64 [4] the first and
+    last row and column with counts. ``offsets``, float32 [rows, columns, 2], sums up where the
+    cell's beams met a surface, x and y from the cell's middle, in cells; ``opens``, uint16 [rows,
+    columns], counts beams without an echo on open ways. Both are empty if :func:`occupancy` is
+    not used.
     """
 
     hits: Counts
@@ -68,9 +70,9 @@ def draw(
 ) -> None:
     """Count the beams of a scan taken at ``pose`` [3], x, y, m, theta, rad, map frame.
 
-    ``points`` is float32 [n, POINT], robot's frame; ``lidar`` is x, y, m, of the lidar in it.
+    ``points`` is float32 [n, POINT], robot's frame; ``lidar`` the lidar's x, y, m, in that frame.
     ``into_edge``, cells, is how far behind a point its beam ends where the normal is not known. A
-    scan counts ``times``; -1 takes it away again, but the bounds stay.
+    scan counts ``times`` times; -1 takes it away again, but the bounds stay.
     """
     per_metre = 1.0 / cells.place[2]
     rows, columns = cells.hits.shape
@@ -108,7 +110,7 @@ def draw_open(
 ) -> None:
     """Count the ways from the lidar to ``ends``, float32 [n, 2], robot's frame, as open.
 
-    The rest as of :func:`draw`. No cell becomes a wall by that, or stops to be one.
+    The other arguments are those of :func:`draw`. This makes no cell a wall, nor any wall free.
     """
     per_metre = 1.0 / cells.place[2]
     rows, columns = cells.hits.shape
@@ -156,7 +158,7 @@ def _pass(
     next_u = math.inf if along_u == 0.0 else per_u * (column + 1 - u if step_u > 0 else u - column)
     next_v = math.inf if along_v == 0.0 else per_v * (row + 1 - v if step_v > 0 else v - row)
     end_row, end_column = math.floor(v + length * along_v), math.floor(u + length * along_u)
-    # Of a straight way all cells lie between its ends, or next to them.
+    # All cells of a straight way lie between its ends, or next to these.
     if _is_in(shape, row, column, 1) and _is_in(shape, end_row, end_column, 1):
         at, side = row * columns + column, step_v * columns
         _walk(counts, at, step_u, side, per_u, per_v, next_u, next_v, length, times)
@@ -187,9 +189,9 @@ def _walk(
     length: float,
     times: int,
 ) -> None:
-    """Count the cells of a way of which all are on the grid: ``at``, and each after a step.
+    """Count the cells of a way that is all on the grid: ``at``, and the cell after each step.
 
-    The direction of a step is unpredictable, so nothing branches on it: that halves the time.
+    The direction of a step is unpredictable: the code does not branch on it, in half the time.
     """
     while True:
         _count(counts, at, times)
@@ -253,8 +255,9 @@ def _bound(cells: CountArrays, row: int, column: int) -> None:
 def occupancy(cells: CountArrays, share: float, least: int, values: NDArray[np.int8]) -> None:
     """Fill ``values`` from the counts, with a margin of unknown cells around all in the bounds.
 
-    Occupied where ``least`` beams or more, and ``share`` of all, ended, unless that is the edge of
-    what stands in the cell beside it; free where beams went through, or a way is open; else
+    A cell is occupied if beams ended in it and none went through. It is also occupied if ``least``
+    beams or more ended in it, and at least ``share`` of all, unless it is only the edge of a thing
+    in the cell beside it. Other cells are free if beams went through or a way is open, else
     unknown.
     """
     rows, columns = values.shape[0] - 2 * MARGIN, values.shape[1] - 2 * MARGIN
@@ -264,7 +267,7 @@ def occupancy(cells: CountArrays, share: float, least: int, values: NDArray[np.i
         line = values[MARGIN + row, MARGIN : MARGIN + columns]
         hits = cells.hits[first_row + row, first_column : first_column + columns]
         passes = cells.passes[first_row + row, first_column : first_column + columns]
-        # Most cells: without a branch several are done at once.
+        # Most cells are decided here; without a branch several are done at once.
         for column in range(columns):
             line[column] = FREE if passes[column] > 0 else UNKNOWN
         if cells.opens.shape[0] > 0:
@@ -290,7 +293,7 @@ def _is_met(ended: int, through: int, share: float, least: int) -> bool:
 
 @inner_part
 def _is_edge(cells: CountArrays, row: int, column: int, least: int) -> bool:
-    """Whether beams met a cell but at its border to one that is more surely occupied."""
+    """Whether beams met a cell only at its border to a cell that is more surely occupied."""
     rows, columns = cells.offsets.shape[:2]
     hits = int(cells.hits[row, column])
     surer = _SURER * hits / (hits + int(cells.passes[row, column]))

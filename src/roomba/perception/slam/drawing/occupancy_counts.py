@@ -25,8 +25,8 @@ Offsets = NDArray[np.float32]
 
 _STEP: Final = 5.0
 _SHARE: Final = 0.25
-"""m; it grows by so much at a time, and by this share of its size if that is more: copying a large
-one takes long."""
+"""m, and share of its size: the grid grows by the larger of both, as copying a large grid takes
+long."""
 _NO_WAYS: Final = np.zeros((0, 2), np.float32)
 _NONE: Final = 2**40
 """The first row and column with counts, as long as there are none."""
@@ -35,7 +35,7 @@ _NONE: Final = 2**40
 class OccupancyCounts:
     """Counts of beams in cells of ``resolution``, m.
 
-    The corners of cells lie at whole multiples of it, plus ``phase``, x and y in m.
+    The corners of cells lie at whole multiples of ``resolution``, plus ``phase``, x and y in m.
     """
 
     def __init__(self, resolution: float, phase: tuple[float, float] = (0.0, 0.0)) -> None:
@@ -55,8 +55,8 @@ class OccupancyCounts:
     ) -> None:
         """Add a scan, float32 [n, 4], robot's frame, seen from ``pose`` [3], map frame.
 
-        ``lidar`` is x, y in the robot's frame; ``open_ways`` where ways from it end on which no
-        beam met anything, float32 [m, 2].
+        ``lidar`` is x, y in the robot's frame; ``open_ways``, float32 [m, 2], are the ends of the
+        scan's open ways, on which no beam met anything.
         """
         ends = np.vstack((points[:, :2], open_ways, lidar))
         reach = float(np.hypot(ends[:, 0], ends[:, 1]).max())
@@ -79,8 +79,8 @@ class OccupancyCounts:
     def occupancy(self, share: float, least: int, least_floor: float = 0.0) -> OccupancyMap:
         """Return the map of what was drawn; see :func:`.drawing_kernels.occupancy`.
 
-        What lies behind surfaces is left out, as :func:`.seen_surfaces.only_seen` does. Raises
-        ValueError while nothing was drawn.
+        Cells behind surfaces are left out by :func:`.seen_surfaces.only_seen`, which takes
+        ``least_floor``, m2. Raises ValueError while nothing was drawn.
         """
         first_row, last_row, first_column, last_column = self._arrays.bounds.tolist()
         if last_row < first_row:
@@ -106,7 +106,7 @@ class OccupancyCounts:
         offsets: Offsets,
         bounds: NDArray[np.int64],
     ) -> None:
-        """Take other counts, as its first row and column are now."""
+        """Replace the counts by those of a grid with the new first row and column."""
         size = self._resolution
         corner = self._phase[0] + self._column * size, self._phase[1] + self._row * size
         place = np.array([*corner, size])

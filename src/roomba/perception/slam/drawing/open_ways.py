@@ -1,8 +1,8 @@
-"""Ways that beams without an echo show to be open, near the lidar.
+"""Ways near the lidar that are open, as beams without an echo show.
 
-Where a run of beams brings no echo, what they pass is too far, black, or met at too flat an angle.
-Farther off that tells nothing. But between two beams that met something, and nearer than what these
-met, as a rule nothing stands, at least where the lidar sees black things as well.
+A run of beams brings no echo if the surfaces ahead are too far, black, or met at too flat an angle.
+Farther off that tells nothing. But the run lies between two beams that met something. Nearer than
+these met it, as a rule nothing stands there, at least where the lidar sees black things as well.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ def open_ways(
 ) -> NDArray[np.float32]:
     """Return where the open ways of a scan, float32 [beams], m, end: float32 [n, 2], robot's frame.
 
-    Each leads from the lidar along a beam without an echo: ``farthest`` m, or ``margin`` m less
-    than the nearer one of the beams beside that met something.
+    Each way leads from the lidar along a beam without an echo. It is ``farthest`` m long, but ends
+    ``margin`` m before the nearer range of the two beams beside the run that met something.
     """
     ends = np.empty((len(ranges), 2), np.float32)
     return ends[: _find(ranges, beams, farthest, margin, ends)].copy()
@@ -49,7 +49,7 @@ def _find(
         step += 1
         if not _has_met(ranges[index], beams):
             continue
-        # Of a lidar that does not look all around the first and the last beam bound each other.
+        # If the lidar does not look all around, the first and the last beam count as neighbours.
         length = min(farthest, min(ranges[last], ranges[index]) - margin)
         between = (last + 1) % count
         while between != index:
@@ -70,6 +70,6 @@ def _has_met(length: float, beams: LidarBeams) -> bool:
 
 @inner_part
 def _is_near(length: float, beams: LidarBeams) -> bool:
-    """Whether a beam met something nearer than the lidar measures: it is no open way."""
+    """Whether a beam met something nearer than the lidar measures, so that its way is not open."""
     is_near: bool = length < beams.nearest and length != 0.0
     return is_near

@@ -1,7 +1,7 @@
-"""What of a drawn map was seen: floor that hangs together, and what borders on it.
+"""The part of a drawn map that was really seen: connected floor, and the cells beside it.
 
-A range that is told too long draws a cell behind the wall that it met, and floor before that cell.
-No beam that is right ends there, and none passes through.
+A range that is measured too long draws a cell behind the wall that its beam met, and floor before
+that cell. No correct beam ends there or passes through.
 """
 
 from __future__ import annotations
@@ -14,14 +14,15 @@ from roomba.grid import FREE, UNKNOWN, OccupancyMap
 from roomba.raster.regions import dilated, large_regions
 
 _AROUND: Final = np.ones((3, 3), np.bool_)
-"""A cell, and those that meet it at a side or a corner."""
+"""A cell, and those that touch it at a side or a corner."""
 
 
 def only_seen(map: OccupancyMap, least_floor: float) -> OccupancyMap:
-    """Return a map without what lies behind surfaces: it is unknown there.
+    """Return a map in which all that lies behind surfaces is unknown.
 
-    Free cells stay that hang together, over sides or corners, with ``least_floor`` m2 or more, as
-    the cells of a beam do, and occupied ones beside such floor. Without any of it all stays.
+    Kept are free cells that are connected, over sides or corners, to ``least_floor`` m2 or more,
+    and occupied cells beside such floor. (The cells of one beam are connected in this way.) If
+    there is no such floor, the map is returned as it is.
     """
     floor = large_regions(map.values == FREE, map.frame.resolution, least_floor, by_corners=True)
     if not floor.any():

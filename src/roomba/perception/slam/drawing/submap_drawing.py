@@ -18,15 +18,14 @@ from roomba.perception.slam.submaps.submap import Keyframe
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
 
 _REDRAWN_TURN: Final = 0.002
-"""rad; a submap that turned more is drawn anew."""
+"""rad; a submap that turned by more than this is drawn anew."""
 
 
 class SubmapDrawing:
-    """Occupancy counts of all keyframes, each drawn where its submap lay then, map frame.
+    """Occupancy counts of all keyframes, map frame, each drawn where its submap was placed then.
 
-    Beams that pass a mirror are drawn as ending on it.
-    ``phase``, x and y, m, is where walls lie between the cells of the grid. The lidar must be told
-    before anything is drawn: see :meth:`use`.
+    Beams that pass a mirror are drawn as ending on it. ``phase``, x and y, m, is where walls lie
+    between the cells of the grid. Call :meth:`use` with the lidar before anything is drawn.
     """
 
     def __init__(self, config: MappingConfig, graph: SubmapGraph, mirrors: Mirrors) -> None:
@@ -41,7 +40,7 @@ class SubmapDrawing:
         self._mount = lidar.mount[:2]
 
     def begin_submap(self) -> None:
-        """Draw what comes in the newest submap, which has no keyframe yet."""
+        """Draw the following keyframes in the newest submap, which has none yet."""
         self._drawn = np.vstack((self._drawn, self._graph.poses[-1]))
 
     def add(self, frame: Keyframe) -> None:
@@ -50,7 +49,7 @@ class SubmapDrawing:
 
     @property
     def has_moved(self) -> bool:
-        """Whether submaps lie elsewhere than they are drawn."""
+        """Whether submaps are placed elsewhere than they are drawn."""
         return bool(self._moved())
 
     def occupancy(self) -> OccupancyMap:
@@ -63,7 +62,7 @@ class SubmapDrawing:
         )
 
     def redraw(self) -> None:
-        """Draw all keyframes into new occupancy counts, where they are thought to be now."""
+        """Draw all keyframes into new occupancy counts, where the graph places them now."""
         self._counts = OccupancyCounts(self._config.resolution, self.phase)
         self._drawn_mirrors = self._mirrors.ends
         for frame, pose in self._graph.keyframes():
@@ -83,23 +82,23 @@ class SubmapDrawing:
         return cut_at(self._drawn_mirrors, pose, self._mount, frame.points, frame.open)
 
     def _have_mirrors_changed(self) -> bool:
-        """Whether there are other mirrors than are drawn, or they lie elsewhere."""
+        """Whether the mirrors differ from those that are drawn, in number or place."""
         now, drawn = self._mirrors.ends, self._drawn_mirrors
         if now.shape != drawn.shape:
             return True
         return bool((np.abs(now - drawn) > self._config.redrawn_shift).any())
 
     def _moved(self) -> list[int]:
-        """Return the numbers of the submaps that lie elsewhere than they are drawn."""
+        """Return the numbers of the submaps that are placed elsewhere than they are drawn."""
         shift = np.abs(relative_to(self._drawn, self._graph.poses))
         far = shift[:, :2].max(axis=1) > self._config.redrawn_shift
         numbers: list[int] = np.flatnonzero(far | (shift[:, 2] > _REDRAWN_TURN)).tolist()
         return numbers
 
     def _redraw_moved(self) -> None:
-        """Draw the keyframes of submaps that moved where they are thought to be now.
+        """Draw the keyframes of submaps that moved where the graph places them now.
 
-        Only when the map is asked for: on a long drive most of them move again and again.
+        This is done only when the map is asked for: on a long drive most submaps move repeatedly.
         """
         for number in self._moved():
             submap, pose = self._graph.submaps[number], self._graph.poses[number]

@@ -1,1 +1,1 @@
-"""What is done once a drive is over: keyframes agree, and walls lie along the axes."""
+"""Finishing a map after the drive: keyframes are made to agree, and walls laid along the axes."""

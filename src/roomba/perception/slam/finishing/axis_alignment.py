@@ -10,17 +10,17 @@ import numpy as np
 from roomba.arrays import Floats
 
 _ALONG: Final = 0.995
-"""Cosine; a wall that faces along an axis so well has one place on it."""
+"""Cosine; a wall that faces along an axis so well has one coordinate on that axis."""
 _LEAST_POINTS: Final = 200
 _LEAST_AGREEMENT: Final = 0.4
 """Length of the mean of directions; below it walls have no common direction."""
 
 
 def turn_of_walls(cloud: Floats, oblique: float) -> float:
-    """Return by how much the walls are turned from the axes, rad; 0 when most lie otherwise.
+    """Return by how much the walls are turned from the axes, rad; 0 if too few lie near the axes.
 
     ``cloud`` is float64 [n, 4], points with normals. Walls at a larger angle to the axes than
-    ``oblique``, rad, are so by design.
+    ``oblique``, rad, are taken to be built so.
     """
     # For strided columns numpy's last bit depends on their place in memory.
     angles = np.arctan2(np.ascontiguousarray(cloud[:, 3]), np.ascontiguousarray(cloud[:, 2]))
@@ -31,7 +31,7 @@ def turn_of_walls(cloud: Floats, oblique: float) -> float:
         return 0.0
     for _ in range(5):
         middle = float(np.median(near))
-        # Of all: noise reaches beyond what is near, and half of it would pull.
+        # Choose from all points anew: a fixed choice would cut noise off on one side, and pull.
         near = off[np.abs(off - middle) < 0.5 * oblique]
     return float(near.mean())
 
@@ -39,7 +39,7 @@ def turn_of_walls(cloud: Floats, oblique: float) -> float:
 def phase_of_walls(cloud: Floats, resolution: float) -> tuple[float, float]:
     """Return where, from 0 to ``resolution``, m, walls lie between the cells of a grid, x and y.
 
-    A grid whose cells begin there shows walls without steps. 0 where walls lie anyhow.
+    A grid whose cells begin there shows walls without steps. It is 0 if walls agree on no place.
     """
     phases = []
     for axis in (0, 1):

@@ -25,9 +25,9 @@ def finish(graph: SubmapGraph, config: MappingConfig) -> tuple[float, float]:
 
 
 def refine_keyframes(graph: SubmapGraph, point_deviation: float) -> None:
-    """Let each keyframe for itself agree with all others that show the same.
+    """Move each keyframe by itself, so that it agrees with all others that show the same walls.
 
-    ``point_deviation``, m, is what a point is taken to be off by.
+    ``point_deviation``, m, is the standard deviation of a point.
     """
     frames, poses = zip(*graph.keyframes(), strict=True)
     after = refined(

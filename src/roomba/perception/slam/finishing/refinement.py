@@ -34,17 +34,16 @@ from roomba.perception.slam.submaps.pose_graph import (
 from roomba.perception.slam.submaps.submap import Keyframe
 
 _STRIDE: Final = 5
-"""Keyframes from the first of a group to the first of the next."""
+"""Keyframes from the first one of a group to the first one of the next group."""
 _MOST_VISITS: Final = 5
 """Groups of other visits that a keyframe is matched to, at most."""
 _ROUNDS: Final = 2
 _SETTLED: Final = np.array([0.002, 0.002, 0.002])
-"""m, m, rad; a group of which no keyframe moved farther, as seen from its middle one, is as it
-was."""
+"""m, m, rad; a group is unchanged if no keyframe moved farther than this against its middle one."""
 _SCALES: Final = (0.1, 0.05)
-"""m; of the first rounds of a match."""
+"""m; scales of the first rounds of a match."""
 _DRIVEN: Final = np.diag([0.02**-2, 0.02**-2, 0.02**-2])
-"""1/m2, 1/rad2; of a step between two keyframes of one submap, if nothing else is known."""
+"""1/m2, 1/rad2; information of a step between two keyframes of one submap."""
 
 
 def refined(
@@ -57,8 +56,8 @@ def refined(
 ) -> Floats:
     """Return better poses of all keyframes, float64 [n, 3], m and rad, map frame.
 
-    ``poses``, [n, 3], are the present ones; the first one stays. ``steps`` are the links from one
-    keyframe to the next where that is of another submap, by the number of the latter.
+    ``poses``, [n, 3], are the present ones; the first one stays. ``steps`` are the links from a
+    keyframe to the next one if that is of another submap, by the number of the latter keyframe.
     ``half_width``, m, is how far the points of a group reach. The deviations, m, are the standard
     deviations of a range and of a point in a match.
     """
@@ -75,7 +74,7 @@ def refined(
 
 
 def _steps(poses: Floats, steps: dict[int, Link]) -> Measurements:
-    """Return the measurements from each keyframe to the next one, as the drive was followed."""
+    """Return the measurements from each keyframe to the next one, as they were tracked."""
     parents = np.arange(len(poses) - 1)
     information = np.broadcast_to(_DRIVEN, (len(parents), 3, 3)).copy()
     for later, step in steps.items():
@@ -123,7 +122,7 @@ class _GroupMatcher:
         return bool(is_due.any())
 
     def measurements(self) -> Measurements:
-        """Return what the matches tell of the keyframes."""
+        """Return the matches as measurements of the keyframes."""
         asked, is_found = self._asked, np.isfinite(self._found[:, 0])
         middles = np.repeat(asked.middles, np.diff(asked.starts))
         return Measurements(

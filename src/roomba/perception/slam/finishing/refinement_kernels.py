@@ -32,25 +32,25 @@ SIZE: Final = 10
 _NEARBY: Final = 2.0
 """m; from a keyframe to the middle of a group that it is matched to."""
 _APART: Final = 25
-"""Keyframes; groups that are farther away in time are of another visit."""
+"""Keyframes; a group farther away than this in time is of another visit."""
 _BETWEEN: Final = 12
-"""Keyframes; groups that are nearer to each other in time say the same."""
+"""Keyframes; of groups nearer to each other than this in time one is enough."""
 _ROUNDS: Final = 5
 _REACH: Final = 1
 """Cells of surfels."""
 _POINTS: Final = 120
-"""Of a keyframe, about so many are matched: neighbouring beams err alike."""
+"""About so many points of a keyframe are matched: neighbouring beams err alike."""
 _LOOSE: Final = (0.2**2, 0.2**2, 0.1**2)
-"""m2, rad2; how unsure the present poses are taken to be."""
+"""m2, rad2; assumed variances of the present poses."""
 _LEAST_POINTS: Final = 25
 _LEAST_MET: Final = 0.5
 _LEAST_CLOSE: Final = 0.75
 _FARTHEST: Final = 0.3
-"""m; a match that corrects more is of another place."""
+"""m; a match that corrects by more than this found another place."""
 _LEAST: Final = (0.004**2, 0.004**2, 0.0015**2)
-"""m2, rad2; no match is surer: neighbouring beams err alike."""
+"""m2, rad2; least variances of a match, as neighbouring beams err alike."""
 _NEXT_TO_NOTHING: Final = 1e-3
-"""1/m2, 1/rad2; what is known of a direction in which nothing holds a match."""
+"""1/m2, 1/rad2; information along a direction in which nothing holds a match."""
 
 
 class Scans(NamedTuple):
@@ -79,7 +79,7 @@ def nearby_visits(poses: Floats, middles: Numbers, visits: Numbers) -> None:
     """Fill ``visits`` [keyframes, n] with the groups of other visits nearest to each keyframe.
 
     ``poses`` is float64 [keyframes, 3], map frame; ``middles`` [groups] are the middle keyframes of
-    groups. Nearest come first; -1 where there are no more.
+    groups. The nearest groups come first; the rest of a row is -1.
     """
     visits[:] = -1
     near, away = np.empty(middles.size, np.int64), np.empty(middles.size)
@@ -119,9 +119,9 @@ def match_to_groups(
 ) -> None:
     """Match keyframes to the groups for which they are ``asked``, where a group ``is_due``.
 
-    Fills of these ``found`` [n, 3] with the keyframes' poses as seen from the middle keyframe of
-    the group, nan where there is none to tell, and ``information`` [n, 3, 3] with how sure these
-    are. Of ``surfels`` nothing stays.
+    For these matches it fills ``found`` [n, 3] with the keyframe's pose as seen from the middle
+    keyframe of the group, nan if no pose was found, and ``information`` [n, 3, 3] with that of the
+    pose. ``surfels`` is used as a work array.
     """
     work, pose = np.empty((ALIGN_WORK, 3)), np.empty(3)
     for group in range(is_due.size):
@@ -153,7 +153,7 @@ def _match(
     information: Floats,
     work: Floats,
 ) -> bool:
-    """Find the pose at which points fit near that where they are ``thought`` to be seen from."""
+    """Find the pose near ``thought`` [3] from which the points fit; tell if there is one."""
     covariance, gained, counts = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros(COUNTS)
     for axis in range(3):
         covariance[axis, axis] = _LOOSE[axis]

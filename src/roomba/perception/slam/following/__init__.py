@@ -1,1 +1,1 @@
-"""The robot is followed from scan to scan, and found back where scans stop to fit."""
+"""Following the robot from scan to scan, and finding it again when scans no longer fit."""

@@ -1,7 +1,7 @@
-"""When scans stop to fit: how far around the robot is looked for then, and where it is found.
+"""The search for the robot when scans no longer fit: when it is due, how wide, and its result.
 
-Scans may stop to fit because dead reckoning is wrong (wheels that slip, odometry that stands still
-or leaps), because the robot was moved, or because what is in sight is new.
+Scans may no longer fit because dead reckoning is wrong (wheels that slip, odometry that stands
+still or leaps), because the robot was moved, or because the surroundings are new.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from roomba.perception.slam.following.scan_follower import ScanFollower
 from roomba.perception.slam.scan_matching.correlative import CorrelativeMatcher, is_in_reach
 
 _STRIDE: Final = 2
-"""Each such point of the keyframes is looked at: neighbours say the same."""
+"""Stride over the points of keyframes: neighbours say the same."""
 
 
 class FindingBack:
     """Keeps how well scans agree with what was seen before, and how fast the robot drives.
 
-    All of it is in ``state``, FINDING [1], that kernels go on with.
+    Its state is in ``state``, FINDING [1], with which kernels may go on.
     """
 
     def __init__(self, config: MappingConfig) -> None:
-        """Begin where nothing was seen."""
+        """Begin with nothing seen."""
         self._config, self._reach = config.following, config.search_reach
         self.state = np.zeros(1, FINDING)
         self._row = self.state[0]
@@ -39,18 +39,18 @@ class FindingBack:
         self._row["well_since"] = np.nan
 
     def begin_again(self) -> None:
-        """The map goes on in a piece that the next scan is the first of."""
+        """Begin anew, as the map goes on in a new piece that begins with the next scan."""
         self._row["misses"] = self._row["doubts"] = 0
         self._row["well_since"] = np.nan
 
     @property
     def is_due(self) -> bool:
-        """Whether the newest scan is to be searched for."""
+        """Whether to search for where the newest scan fits."""
         return bool(is_due(self.state))
 
     @property
     def shows_carried(self) -> bool:
-        """Whether scans stopped to fit from one to the next, though it hardly moved."""
+        """Whether scans no longer fitted from one to the next, though the wheels hardly moved."""
         row, config = self._row, self._config
         hardly_drove = row["lost_way"] < config.carried_way
         return bool(hardly_drove and row["lost_turn"] < config.carried_turn)
@@ -58,7 +58,7 @@ class FindingBack:
     def is_without_hold(self, follower: ScanFollower) -> bool:
         """Whether scans have failed to fit for so long that the map must go on in a new piece.
 
-        That begins at the dead-reckoned pose.
+        The new piece begins at the dead-reckoned pose.
         """
         config = self._config
         is_searched = self._row["misses"] >= config.given_up_after
@@ -67,15 +67,16 @@ class FindingBack:
         return follower.unsure_way > config.piece_way or follower.unsure_turn > config.piece_turn
 
     def search(self, follower: ScanFollower, clouds: list[Floats]) -> bool:
-        """Look for where the newest scan fits on ``clouds``, [m, 4] each, around it.
+        """Search around the robot for where the newest scan fits on ``clouds``, [m, 4] each.
 
-        They are in the frame of the newest submap, as the surfels are that confirm what is found.
-        Returns whether that is farther off than wheels slip: then one scan alone may be wrong.
+        The clouds are in the frame of the newest submap, and so are the surfels that confirm a
+        match. Returns whether the match is farther off than wheels slip, so that this one scan may
+        be wrong.
         """
         points, config = follower.points, self._config
         if not clouds or not follower.shows_enough:
             return False
-        # As seen from where it is thought to be: what is far from there is left out.
+        # Relative to where the robot is thought to be: the matcher drops points far from there.
         here = follower.here
         seen = np.concatenate(clouds)[::_STRIDE] - (here[0], here[1], 0.0, 0.0)
         if not is_in_reach(seen, self._reach):
@@ -98,9 +99,9 @@ class FindingBack:
         return bool(is_apart(follower.here, here, far, far_turn))
 
     def _is_far_apart(self, follower: ScanFollower) -> bool:
-        """Whether so much was driven from scan to scan that each shows much that none before did.
+        """Whether scans are so far apart on the way that each shows much that none before showed.
 
-        Then the right pose is less likely, and is taken from near where it is thought to be alone.
+        Then even the right pose has a low likelihood, and is only accepted near the expected one.
         """
         misses = max(int(self._row["misses"]), 1)
         return follower.unsure_way >= self._config.far_apart * misses
@@ -113,7 +114,7 @@ class FindingBack:
         return way, min(turn, math.pi)
 
     def _unseen(self, follower: ScanFollower) -> float:
-        """Return how far it may have driven, m, while odometry stood still."""
+        """Return how far the robot may have driven, m, while odometry stood still."""
         row = self._row
         since = float(row["stamp"] - row["well_since"])
         driven = float(row["pace"]) * since if since > 0.0 else 0.0

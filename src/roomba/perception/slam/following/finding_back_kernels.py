@@ -13,14 +13,14 @@ from roomba.perception.matching.pose_kernels import is_apart
 
 FINDING: Final = np.dtype(
     [
-        ("usual", "f8"),  # share of points that scans usually agree in
-        ("pace", "f8"),  # m/s; the fastest one of late
+        ("usual", "f8"),  # share of points that usually agree
+        ("pace", "f8"),  # m/s; the fastest of late
         ("stamp", "f8"),  # s; of the newest scan
         ("way", "f8"),  # m; driven by then
-        ("well_since", "f8"),  # s; stamp of the newest scan that agreed well; nan: none yet
+        ("well_since", "f8"),  # s; stamp of the newest scan that agreed as usual; nan: none
         ("well_at", "f8", (3,)),  # where dead reckoning had the robot then
         ("misses", "i8"),  # scans in a row that show enough and confirm nothing
-        ("doubts", "i8"),  # scans in a row that confirm less than is usual
+        ("doubts", "i8"),  # scans in a row that agree less than usual
         ("lost_way", "f8"),  # m; driven from the last scan that fitted to the first that did not
         ("lost_turn", "f8"),  # rad; turned meanwhile
         # what does not change: see FollowingConfig
@@ -30,20 +30,20 @@ FINDING: Final = np.dtype(
     ],
     align=True,
 )
-"""How well scans fit of late, and the numbers of that, one row."""
+"""How well scans fit of late, and the parameters of that, one row."""
 
 _AT_ONCE: Final = 2
 _EVERY: Final = 3
-"""Of scans in a row that do not fit, the first ones are searched for, and then each such one."""
+"""Of scans in a row that do not fit, the first few are searched for, and then every third one."""
 _LEARNING: Final = 0.05
-"""Share of the newest scan in how well scans usually agree."""
+"""Share of the newest scan in the usual agreement."""
 _STANDS: Final = 0.03
 """m and rad; less than this is no motion of the wheels."""
 
 
 @inner_part
 def saw(findings: Rows, followers: Rows, stamp: float) -> None:
-    """Take how well the newest scan fits, and its stamp, s."""
+    """Note how well the newest scan fits, and its ``stamp``, s."""
     finding, follower = findings[0], followers[0]
     _count(findings, follower, stamp)
     elapsed = stamp - finding.stamp
@@ -55,7 +55,7 @@ def saw(findings: Rows, followers: Rows, stamp: float) -> None:
 
 @entry
 def is_due(findings: Rows) -> bool:
-    """Whether the newest scan is to be searched for."""
+    """Whether to search for where the newest scan fits."""
     finding = findings[0]
     count: int = finding.misses if finding.misses > 0 else finding.doubts
     return 0 < count <= _AT_ONCE or (count > 0 and count % _EVERY == 0)
@@ -63,7 +63,7 @@ def is_due(findings: Rows) -> bool:
 
 @entry
 def least_usual(findings: Rows) -> float:
-    """Return the share of points that a scan agrees in at least, if it agrees as usual."""
+    """Return the least share of points that agree in a scan that agrees as usual."""
     finding = findings[0]
     share: float = finding.doubtful * finding.usual
     return share
@@ -71,7 +71,7 @@ def least_usual(findings: Rows) -> float:
 
 @inner_part
 def _count(findings: Rows, follower: Row, stamp: float) -> None:
-    """Count the scans in a row that confirm nothing, or less than is usual."""
+    """Count the scans in a row that confirm nothing, or agree less than usual."""
     finding = findings[0]
     if not follower.is_sure:
         if follower.points >= follower.least_points:
@@ -83,7 +83,7 @@ def _count(findings: Rows, follower: Row, stamp: float) -> None:
     finding.misses = 0
     agreement = follower.met * follower.close
     stands = not is_apart(follower.reckoned, finding.well_at, _STANDS, _STANDS)
-    # On the way new things come into sight; but scans that are far apart may fit at a wrong place.
+    # A driving robot sees new things, which is no doubt; but scans far apart may fit wrongly.
     is_doubted = stands or follower.way - finding.way >= finding.far_apart
     if agreement < least_usual(findings) and is_doubted:
         if finding.doubts == 0:

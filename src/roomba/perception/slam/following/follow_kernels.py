@@ -30,17 +30,17 @@ FOLLOWER: Final = np.dtype(
         ("spread", "f8", (3, 3)),  # since a scan confirmed it, m2 and rad2, submap's axes
         ("way", "f8"),  # m; driven in all
         ("met", "f8"),  # of the newest scan: share of points that met a known surface
-        ("close", "f8"),  # and of those that lie in it
-        ("is_sure", "?"),  # whether it confirmed the pose
-        ("misses", "i8"),  # scans since one did
-        ("unsure_way", "f8"),  # m; driven since one did
-        ("unsure_turn", "f8"),  # rad; turned since one did
-        ("odometry_scale", "f8", (3,)),  # how many times its variances dead reckoning is off by
+        ("close", "f8"),  # and share of these that lie in its plane
+        ("is_sure", "?"),  # whether the newest scan confirmed the pose
+        ("misses", "i8"),  # scans since the last one that confirmed the pose
+        ("unsure_way", "f8"),  # m; driven since then
+        ("unsure_turn", "f8"),  # rad; turned since then
+        ("odometry_scale", "f8", (3,)),  # factors on dead reckoning's variances, learned
         ("range_deviation", "f8"),  # m; of a range, as measured
         ("scanned_at", "f8", (3,)),  # by dead reckoning, where the newest scan was taken
-        ("points", "i8"),  # that it shows
+        ("points", "i8"),  # that the newest scan shows
         ("heading_before", "f8"),  # rad; at the scan before, nan if that did not confirm it
-        ("keyframe", "f8", (3,)),  # where the newest one was kept, in its submap
+        ("keyframe", "f8", (3,)),  # pose of the newest keyframe, in its submap
         ("pace", "f8", (3,)),  # m/s, rad/s; ahead, aside and turning, between the newest two scans
         # what does not change
         ("variance", "f8"),  # m2; of a point
@@ -50,46 +50,46 @@ FOLLOWER: Final = np.dtype(
         ("least_close", "f8"),
         ("keyframe_way", "f8"),  # m; a scan is kept that is so far from the newest keyframe,
         ("keyframe_turn", "f8"),  # rad; or turned by so much
-        ("standing", "f8", (3,)),  # m2, rad2; variances of a step that is told to be none
+        ("standing", "f8", (3,)),  # m2, rad2; variances even of a step that odometry reports as 0
         ("work", "f8", (18 + ALIGN_WORK, 3)),  # what the kernel works in; means nothing between
     ],
     align=True,
 )
-"""State and numbers of a follower, one row."""
+"""State and parameters of a follower, one row."""
 
 COVARIANCE: Final = 4
-"""The first of three rows of ``work`` with that of the newest pose, once it was matched.
+"""The first of three rows of ``work`` with the covariance of the newest matched pose.
 
-The next three are the information of the points that it was matched by."""
+The next three rows are the information of the points by which it was matched."""
 _FIRST_SCALES: Final = (0.1, 0.05)
-"""m; of the first rounds of a match."""
+"""m; scales of the first rounds of a match."""
 _LEARNING: Final = 0.02
-"""Share of the newest scan in how far off dead reckoning is thought to be."""
+"""Share of the newest scan in the factors on dead reckoning's variances."""
 _MARGIN: Final = 4.0
-"""What was seen of its errors is taken times this: they are not the same all the time."""
+"""Factor on the squared errors that were seen, as errors are larger at times."""
 _DOUBTED_MORE: Final = 1.2
-"""Times that it is thought to be off by more after a scan that confirms nothing."""
+"""Factor by which these factors grow after a scan that confirms nothing."""
 _MOST_OFF: Final = 200.0
-"""Times its variance that one scan makes it off at most: a jump says nothing of the usual."""
+"""Limit of the factor that one scan shows: a jump says nothing of the usual errors."""
 _FARTHER_SCALES: Final = (0.3, 0.1)
 _FARTHER_SPREAD: Final = (0.1**2, 0.1**2, 0.15**2)
-"""m; m2, rad2: of a match from farther away, of a scan that agrees less than is usual."""
+"""m; m2, rad2: scales and variances of a match in a wide window, if a scan hardly agrees."""
 _CLEARLY: Final = 1.15
-"""Times that a scan must agree better there."""
+"""Factor by which a scan must agree better after such a match."""
 _HARDEST: Final = (1.5, 1.5, 8.0)
-"""m/s2, rad/s2; so fast the pace changes at most: beyond that a match jumped along a corridor, and
-the next one would jump back."""
+"""m/s2, rad/s2; the pace changes by no more: otherwise a match jumped along a corridor, and the
+next one would jump back."""
 _NO_LEAP: Final = 0.03
-"""m; a match may be off so much more."""
+"""m; tolerance for the error of a match."""
 _LONGEST: Final = 1.0
-"""s; over a longer time nothing is known of how fast it moves."""
+"""s; over a longer time the pace of the robot is not known."""
 _ROUNDS: Final = 5
 _STRIDE: Final = 2
-"""Each such point follows the robot, if there are many; keyframes have all of them."""
+"""Stride over the points that are matched, if there are many; keyframes have all points."""
 _MANY: Final = 200
-"""Points; of fewer all follow it."""
+"""Points; if there are fewer, all are matched."""
 _FAR_REACH: Final = 3
-"""Cells of surfels; so far a scan is matched after many misses."""
+"""Cells of surfels; reach of a match in a wide window, or after many misses."""
 
 
 @entry
@@ -105,8 +105,8 @@ def follow(
 ) -> None:
     """Move on to ``reckoned`` [3], and correct that by a scan, points [n, 4] seen from there.
 
-    It is taken ``elapsed``, s, after the one before it. One that comes soon, and agrees in a
-    smaller share of its points than ``expected``, is matched again from farther away.
+    The scan was taken ``elapsed``, s, after the one before it. If that is soon, and a smaller share
+    of its points than ``expected`` agrees, the scan is matched again in a wider window.
     """
     follower = followers[0]
     prior, pose, by_pace = follower.work[0], follower.work[1], follower.work[2]
@@ -136,7 +136,7 @@ def follow(
     if not follower.is_sure:
         follower.misses += 1
         for axis in range(3 if shows_enough else 0):
-            # It may be dead reckoning that is off by more than is thought.
+            # Perhaps dead reckoning is off by more than its variances say.
             follower.odometry_scale[axis] = min(
                 _DOUBTED_MORE * follower.odometry_scale[axis], _MOST_OFF
             )
@@ -151,7 +151,7 @@ def follow(
 
 @inner_part
 def _go_at_pace(follower: Row, elapsed: float, pose: Floats) -> bool:
-    """Fill ``pose`` [3] with where it is if it moves on as it did before; tell if that is known."""
+    """Fill ``pose`` [3] with where the robot is at its pace so far; tell if that is known."""
     if not follower.is_sure or not 0.0 < elapsed < _LONGEST:
         return False
     pace = follower.pace
@@ -164,7 +164,7 @@ def _go_at_pace(follower: Row, elapsed: float, pose: Floats) -> bool:
 
 @inner_part
 def _learn_pace(follower: Row, x: float, y: float, theta: float, elapsed: float) -> None:
-    """Keep how fast it moved from a pose, which may be none of a scan that was sure, to here."""
+    """Learn the robot's pace since a pose before, even if no scan had confirmed that pose."""
     if not 0.0 < elapsed < _LONGEST:
         follower.pace[:] = 0.0
         return
@@ -193,8 +193,8 @@ def _look_farther(
 ) -> None:
     """Match a scan in a wide window about ``guess`` [3].
 
-    The result is kept only if it agrees as ``expected``, and clearly better than before, and is no
-    leap of more than ``farthest``, m.
+    The result is kept only if it agrees as ``expected``, agrees clearly better than before, and is
+    no leap of ``farthest``, m, or more.
     """
     pose, matrices = follower.work[1], follower.work[COVARIANCE : COVARIANCE + 6]
     sure, before = follower.work[10], follower.work[11:17]
@@ -221,7 +221,7 @@ def _look_farther(
 def _is_leap(follower: Row, farthest: float) -> bool:
     """Whether a match is ``farthest``, m, or more from where odometry and pace both have the robot.
 
-    Things that move along with it fit best if it stands.
+    Things that move along with the robot fit best if it is taken to stand.
     """
     prior, pose, by_pace = follower.work[0], follower.work[1], follower.work[2]
     off = math.hypot(pose[0] - prior[0], pose[1] - prior[1])
@@ -239,7 +239,7 @@ def _match(
     reach: int,
     first_scales: tuple[float, float],
 ) -> bool:
-    """Match a scan about ``prior`` [3]: ``met``, ``close``, and pose and covariance in ``work``.
+    """Match a scan about ``prior`` [3]; set ``met``, ``close``, and in ``work`` pose and covariance.
 
     Returns whether the scan shows enough to say anything.
     """
@@ -267,10 +267,10 @@ def _match(
 
 @inner_part
 def _learn_scale(follower: Row, prior: Floats, pose: Floats) -> None:
-    """Learn from a match how far off dead reckoning was, by its own variances: 1 or more.
+    """Learn the factors on dead reckoning's variances from a match; they are 1 or more.
 
-    A match differs from dead reckoning by errors of both. Those of matches have a variance that
-    follows from the noise of ranges, and is taken off. The larger it is, the less a match tells.
+    A match differs from dead reckoning by errors of both. The variance of the match follows from
+    the noise of ranges, and is subtracted. The larger it is, the less the match teaches.
     """
     cosine, sine = math.cos(prior[2]), math.sin(prior[2])
     off_x, off_y, turn = pose[0] - prior[0], pose[1] - prior[1], wrapped(pose[2] - prior[2])
@@ -288,7 +288,7 @@ def _learn_scale(follower: Row, prior: Floats, pose: Floats) -> None:
     for axis in range(3):
         if not thought[axis] > 0.0:
             continue
-        # Both matches err, this one and the one that it went on from.
+        # Both matches err: this one, and the one before, from which dead reckoning went on.
         of_matches = 2.0 * by_noise[axis]
         share = thought[axis] / (thought[axis] + of_matches)
         of_odometry = off[axis] * off[axis] - of_matches
@@ -300,7 +300,7 @@ def _learn_scale(follower: Row, prior: Floats, pose: Floats) -> None:
 def _of_noise(follower: Row, x: float, y: float, turn: float) -> float:
     """Return the variance, m2 or rad2, that noise of ranges gives the newest match along an axis.
 
-    That is x and y, m, in the submap's frame, and the turn, rad; the other ones are 0.
+    The axis is a unit vector ``x``, ``y`` in the submap's frame, or the ``turn``.
     """
     covariance, information = follower.work[COVARIANCE : COVARIANCE + 3], follower.work[7:10]
     told = follower.work[18]
@@ -317,7 +317,7 @@ def _of_noise(follower: Row, x: float, y: float, turn: float) -> float:
 
 @inner_part
 def _move_on(follower: Row, belief: Row, reckoned: Floats) -> None:
-    """Go by dead reckoning, and be as unsure as that became since the last scan."""
+    """Move on by dead reckoning, and add its variances since the last scan."""
     ahead, aside, turn = seen_from(follower.reckoned, reckoned)
     driven = math.hypot(ahead, aside)
     follower.way += driven
@@ -341,6 +341,6 @@ def _move_on(follower: Row, belief: Row, reckoned: Floats) -> None:
 def moved_since(
     followers: Rows, beliefs: Rows, x: float, y: float, theta: float
 ) -> tuple[float, float, float]:
-    """Return where a robot is now, x, y, theta, that was at a pose when the newest scan came."""
+    """Return where the robot is now, x, y, theta, if it was at a pose at the newest scan."""
     ahead, aside, turn = seen_from(followers[0].reckoned, beliefs[0].reckoned)
     return beyond(x, y, theta, ahead, aside, turn)

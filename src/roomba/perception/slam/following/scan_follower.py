@@ -29,27 +29,27 @@ from roomba.perception.slam.scan_matching.surface_kernels import POINT, room_for
 from roomba.perception.slam.scan_matching.surfels import SurfelGrid
 
 _TAKEN_UP_SPREAD: Final = np.diag([0.1**2, 0.1**2, 0.05**2])
-"""m2, rad2; of a pose by the wheels alone, after the mapping process was away."""
+"""m2, rad2; covariance of a pose by the wheels alone, after a restart of the mapping process."""
 _FOUND_SPREAD: Final = np.diag([0.1**2, 0.1**2, 0.05**2])
-"""m2, rad2; of a pose that a search found."""
+"""m2, rad2; covariance of a pose that a search found."""
 
 
 class ScanFollower:
     """Keeps ``here``, float64 [3], the pose at the newest scan; ``way`` is what was driven, m.
 
-    Of that scan ``met`` is the share of points that met a known surface, ``close`` the share of
-    those that lie in it. While it ``is_sure`` they confirm the pose, else it goes by the wheels.
-    All of it is in ``state``, FOLLOWER [1], that kernels go on with. Scans can be followed as soon
-    as their lidar is known: see :meth:`use`.
+    ``met`` is the share of that scan's points that met a known surface, ``close`` the share of
+    these that lie in its plane. While the follower ``is_sure`` scans confirm the pose, otherwise it
+    goes by the wheels. Its state is in ``state``, FOLLOWER [1], with which kernels may go on. Call
+    :meth:`use` with the lidar before a scan is followed.
     """
 
     def __init__(self, config: MappingConfig, reckoning: DeadReckoning, finding: Rows) -> None:
-        """Begin at the origin of the first submap; ``finding``, FINDING [1], is told of scans."""
+        """Begin at the origin of the first submap; ``finding``, FINDING [1], notes scans' fits."""
         self._reckoning, self._finding = reckoning, finding
         self.state = np.zeros(1, FOLLOWER)
         self._noise, self._latency = unknown_noise(), no_latency()
         self._late: Rows | None = None
-        """What was learned of latency, while dead reckoning is guessed."""
+        """The latency learned before, kept while dead reckoning is guessed; else None."""
         self._row = row = self.state[0]
         row["variance"] = config.point_deviation**2
         self._config = config.following
@@ -83,9 +83,9 @@ class ScanFollower:
         )
 
     def begin_guessing(self, config: FollowingConfig) -> None:
-        """Go on with dead reckoning that is guessed, of which nothing was learned yet.
+        """Go on with guessed dead reckoning, of which nothing was learned yet.
 
-        It is guessed from scans, which are not late against it.
+        It is guessed from the scans, so that scans are not late against it.
         """
         self._late = self._latency.copy()
         self._latency[:] = no_latency()
@@ -102,7 +102,7 @@ class ScanFollower:
         self._use_standing(config)
 
     def find_reckoned(self, stamp: float) -> bool:
-        """Look up where dead reckoning had the robot at a scan, and tell whether that is known."""
+        """Look up where dead reckoning had the robot at a scan; tell whether that is known."""
         return pose_at(self._reckoning.path, stamp - self.latency, self._row["scanned_at"])
 
     def see(self, stamp: float, ranges: NDArray[np.float32]) -> Floats:
@@ -116,7 +116,7 @@ class ScanFollower:
         return self.following.points[: int(self._row["points"])]
 
     def follow(self, stamp: float) -> None:
-        """Move on to where dead reckoning had the robot at a scan, and correct that by it."""
+        """Move on to where dead reckoning had the robot at a scan, and correct that by the scan."""
         follow_points(self.following, stamp)
 
     def compare_turns(self, stamp: float) -> None:
@@ -136,7 +136,7 @@ class ScanFollower:
 
     @property
     def here(self) -> Floats:
-        """A copy, as it is now."""
+        """A copy of the pose at the newest scan, float64 [3], newest submap's frame."""
         here: Floats = self._row["here"].copy()
         return here
 
@@ -147,7 +147,7 @@ class ScanFollower:
 
     @property
     def pace(self) -> Floats:
-        """How fast it moved between the newest two scans: ahead, aside, m/s, turning, rad/s."""
+        """The robot's pace between the newest two scans: ahead, aside, m/s, turning, rad/s."""
         pace: Floats = self._row["pace"].copy()
         return pace
 
@@ -158,7 +158,7 @@ class ScanFollower:
 
     @property
     def close(self) -> float:
-        """Share of those that lie in it."""
+        """Share of these that lie in the surface's plane."""
         return float(self._row["close"])
 
     @property
@@ -168,12 +168,12 @@ class ScanFollower:
 
     @property
     def unsure_turn(self) -> float:
-        """What was turned since then, rad."""
+        """What was turned since a scan confirmed the pose, rad."""
         return float(self._row["unsure_turn"])
 
     @property
     def shows_enough(self) -> bool:
-        """Whether the newest scan has so many points that it counts."""
+        """Whether the newest scan has enough points to count."""
         return bool(self._row["points"] >= self._row["least_points"])
 
     @property
@@ -182,7 +182,7 @@ class ScanFollower:
         return bool(self._row["is_sure"])
 
     def since(self, then: Pose) -> Pose:
-        """Return where the robot is now, by the wheels, that was there at the newest scan."""
+        """Return where the robot is now by the wheels, if it was at ``then`` at the newest scan."""
         moved = moved_since(self.state, self._reckoning.belief, then.x, then.y, then.theta)
         return Pose(*moved)
 
@@ -202,16 +202,16 @@ class ScanFollower:
         self._go_on_from(np.zeros(3))
 
     def take_up(self, here: Floats, way: float) -> None:
-        """Go on about ``here``, [3], after what another process did; ``way`` was driven by then."""
+        """Go on about ``here``, [3], where another process stopped after ``way``, m, in all."""
         self._go_on_from(here)
         self._row["way"], self._row["spread"] = way, _TAKEN_UP_SPREAD
 
     def keep(self) -> None:
-        """The newest scan is kept as a keyframe."""
+        """Note that the newest scan is kept as a keyframe."""
         self.keep_at(self._row["here"])
 
     def keep_at(self, pose: Floats) -> None:
-        """The newest keyframe was taken at ``pose`` [3], newest submap's frame."""
+        """Note that the newest keyframe was taken at ``pose`` [3], newest submap's frame."""
         self._row["keyframe"] = pose
 
     @property
@@ -221,7 +221,7 @@ class ScanFollower:
 
     @property
     def misses(self) -> int:
-        """Scans since one confirmed the pose."""
+        """Scans since the last one that confirmed the pose."""
         return int(self._row["misses"])
 
     def try_at(self, pose: Floats, better: float = 1.0) -> None:
@@ -239,11 +239,11 @@ class ScanFollower:
             self.state[:] = before
 
     def _drop_window(self) -> None:
-        """Measure the robot's errors anew: poses are told in another frame from now on."""
+        """Drop the window of the calibration, as poses are in another frame from now on."""
         self._reckoning.belief[0]["calibration"]["is_open"] = False
 
     def _use_standing(self, config: FollowingConfig) -> None:
-        """Take how unsure a step is of which dead reckoning says that it is none."""
+        """Set the variances of a step that dead reckoning reports as 0."""
         way, turn = config.standing_deviation**2, config.standing_heading**2
         self._row["standing"] = way, way, turn
 
@@ -255,5 +255,5 @@ class ScanFollower:
 
 
 def least_points(beams: int, config: FollowingConfig) -> int:
-    """Return how many points a scan of so many beams must have to count."""
+    """Return how many points a scan of ``beams`` beams must have to count."""
     return min(config.least_points, max(config.fewest_points, beams // 4))

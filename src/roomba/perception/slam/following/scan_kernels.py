@@ -1,4 +1,4 @@
-"""Compiled: what a mapper does with a scan that needs no more than being followed."""
+"""Compiled: the mapper's work on a scan that only has to be followed."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ Ranges = NDArray[np.float32]
 IS_LEFT: Final = 0
 IS_FOLLOWED: Final = 1
 IS_DONE: Final = 2
-"""Results of :func:`take_scan`: all of the scan is left to the classes; what follows a scan that
-does not fit, or that is to be kept, is; nothing is."""
+"""Results of :func:`take_scan`: all work on the scan is left to the classes; the scan was followed,
+but it does not fit or is to be kept, and that is left; all is done."""
 
 
 class Following(NamedTuple):
-    """What scans are followed with.
+    """All arrays that are needed to follow scans.
 
-    Of one row each are ``follower``, FOLLOWER, ``belief``, BELIEF, ``noise``, NOISE, ``latency``,
-    LATENCY, and ``finding``, FINDING. Scans of ``beams`` are matched to ``surfels``; ``points`` is
-    float64 [beams, POINT], those of the newest scan; in ``sums``, ``still`` and ``work`` kernels
-    work.
+    ``follower``, FOLLOWER, ``belief``, BELIEF, ``noise``, NOISE, ``latency``, LATENCY, and
+    ``finding``, FINDING, have one row each. Scans of ``beams`` are matched to ``surfels``;
+    ``points`` is float64 [beams, POINT], those of the newest scan. ``sums``, ``still`` and ``work``
+    are work arrays.
     """
 
     follower: Rows
@@ -61,7 +61,7 @@ class Following(NamedTuple):
 def take_scan(following: Following, stamp: float, ranges: Ranges) -> int:
     """Follow the robot by a scan, float32 [beams], m, that was taken at ``stamp``, s.
 
-    Of one that only confirms where the robot is nothing is left. Returns what is left.
+    Returns what is left to do: nothing, if the scan only confirms where the robot is.
     """
     follower = following.follower[0]
     if not find_reckoned(following, stamp):
@@ -85,7 +85,7 @@ def is_apart_from_keyframe(followers: Rows) -> bool:
 
 @inner_part
 def find_reckoned(following: Following, stamp: float) -> bool:
-    """Look up where dead reckoning had the robot at a scan, if it is known: into ``scanned_at``."""
+    """Fill ``scanned_at`` with where dead reckoning had the robot at a scan, if it is known."""
     lateness = following.latency[0].seconds
     return pose_at(following.path, stamp - lateness, following.follower[0].scanned_at)
 
@@ -106,7 +106,7 @@ def see_points(following: Following, stamp: float, ranges: Ranges) -> None:
 
 @inner_part
 def _find_points(following: Following, ranges: Ranges) -> None:
-    """Find the points that a scan shows that was measured at once."""
+    """Find the points of a scan whose beams were all measured at once."""
     follower = following.follower[0]
     follower.points = surface_points(
         ranges, following.beams, follower.range_deviation, following.points, following.sums
