@@ -195,7 +195,7 @@ class Mapper:
             self._map.feel(Touch(here.x, here.y, radius, *turned), newest)
 
     def go_by_lidar(self) -> None:
-        """Do nothing: the map is what the lidar saw, so that its mount must not change meanwhile."""
+        """Do nothing: the map is what the lidar saw, so that its mount must not change."""
 
     def set_down(self) -> None:
         """Go on where the robot was set down, which is unknown: the map goes on in a new piece.

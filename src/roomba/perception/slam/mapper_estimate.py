@@ -1,4 +1,4 @@
-"""What a mapper says of the robot's pose: how sure it is, and why it is not."""
+"""The estimate of the robot's pose by a mapper: how sure it is, and why it is unsure."""
 
 from __future__ import annotations
 
@@ -37,5 +37,5 @@ def lost_estimate(pose: Pose) -> Estimate:
 
 @cache
 def _spread(deviation: float, heading: float) -> NDArray[np.float64]:
-    """Return the covariance of a pose that is unsure by so much, m and rad."""
+    """Return the covariance of a pose by its standard deviations, m and rad."""
     return np.diag([deviation**2, deviation**2, heading**2])

@@ -27,7 +27,7 @@ class LidarNumbers:
 
     @staticmethod
     def of(lidar: LidarModel) -> LidarNumbers:
-        """Return those of a lidar."""
+        """Return the numbers of a lidar."""
         arrays = lidar.arrays()
         return LidarNumbers(
             lidar.beams,
@@ -49,10 +49,10 @@ class LidarNumbers:
 class MapperState:
     """A map that is being made, at one moment.
 
-    ``poses``, float64 [n, 3], are those of the ``submaps`` on the map, as the ``links`` have them;
+    ``poses``, float64 [n, 3], are those of the ``submaps`` on the map, as the ``links`` place them;
     the newest is the last. ``way`` was driven in all, m. Walls lie ``phase``, m, off whole cells.
-    ``version`` is that of the :class:`roomba.perception.slam.mapper.Mapper`. A robot that was
-    carried ``is_lost``. ``mirrors`` are in the frames of submaps.
+    ``version`` is that of the :class:`roomba.perception.slam.mapper.Mapper`. ``is_lost``: the robot
+    was carried, and not found again yet. ``mirrors`` are in the frames of submaps.
     """
 
     submaps: tuple[KeptSubmap, ...]

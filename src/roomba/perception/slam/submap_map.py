@@ -27,9 +27,9 @@ from roomba.perception.slam.submaps.submap_graph import SubmapGraph
 class SubmapMap:
     """Submaps in their ``graph``, the ``mirrors`` among them, and how all is ``drawn``.
 
-    Scans are matched to ``surfels``, frame of the newest submap: those of it and of the submaps
-    ``beside`` it, by their numbers. ``version`` changes whenever the map does. The lidar must be
-    told before a scan is kept: see :meth:`use`.
+    Scans are matched to ``surfels``, in the frame of the newest submap: those of this submap and of
+    the submaps ``beside`` it, by their numbers. ``version`` changes whenever the map does. Call
+    :meth:`use` with the lidar before a scan is kept.
     """
 
     def __init__(
@@ -43,14 +43,13 @@ class SubmapMap:
         self.surfels = SurfelGrid(0.0)
         self.beside: list[int] = []
         self._last_kept: tuple[int, Floats] | None = None
-        """In which submap the last keyframe is, and where; None if the robot may have leapt since.
-        """
+        """Submap and pose of the last keyframe; None if the robot's pose may have leapt since."""
         self.version = 0
 
     def take_over(self, state: MapperState, here: Floats) -> None:
         """Go on with what another mapper knew; the robot is about ``here`` [3], map frame.
 
-        It is whole once the lidar is told, and all is drawn anew: :meth:`use`, :meth:`redraw`.
+        It is complete after :meth:`use`, with the lidar, and :meth:`redraw`.
         """
         self.graph.take_over(state.submaps, state.poses, state.links)
         self.mirrors.take_over(state.mirrors)
@@ -58,7 +57,7 @@ class SubmapMap:
         self.beside = self.graph.near(here)
 
     def state(self, lidar: LidarNumbers, way: float, *, is_lost: bool) -> MapperState:
-        """Return all of it, with what the mapper knows beside it."""
+        """Return the whole map as a state, with what the mapper knows besides."""
         graph = self.graph
         submaps = tuple(KeptSubmap(each.way, tuple(each.keyframes)) for each in graph.submaps)
         return MapperState(
@@ -74,7 +73,7 @@ class SubmapMap:
         )
 
     def use(self, lidar: LidarBeams) -> None:
-        """Take the scans of a lidar from now on: makes ``surfels`` anew."""
+        """Take the scans of a lidar from now on; make ``surfels`` anew for it."""
         reach = min(lidar.farthest, self._config.farthest) + self._config.spare
         self.graph.use_reach(reach)
         self.drawn.use(lidar)
@@ -85,8 +84,8 @@ class SubmapMap:
     def keep(self, points: Floats, ranges: NDArray[np.float32], here: Floats) -> None:
         """Keep a scan, taken at ``here`` [3], newest submap's frame.
 
-        ``points`` [n, 4], robot's frame, are what it shows; ``ranges`` float32 [beams], m, as if
-        all were measured at once.
+        ``points`` [n, 4], robot's frame, are those of the scan; ``ranges`` float32 [beams], m, are
+        as if all were measured at once.
         """
         config = self._config.open_ways
         ways = open_ways(ranges, self._lidar, config.farthest, config.margin)
@@ -98,15 +97,15 @@ class SubmapMap:
         self.version += 1
 
     def feel(self, touch: Touch, newest: PlacedPoints) -> None:
-        """Take a touch of the robot's body, map frame: of a mirror, if what was seen says so.
+        """Take a touch of the robot's body, map frame, which may be of a mirror.
 
-        ``newest`` is the scan before it.
+        ``newest`` is the scan before the touch.
         """
         if self.mirrors.feel(touch, newest, self._lidar.mount, self.drawn.occupancy()):
             self.version += 1
 
     def is_newest_whole(self, here: Floats) -> bool:
-        """Whether a keyframe at ``here`` [3], newest submap's frame, belongs to another submap."""
+        """Whether a keyframe at ``here`` [3], newest submap's frame, is to begin another submap."""
         is_far = math.hypot(here[0], here[1]) >= self._config.submap_way
         return is_far or len(self.graph.newest.keyframes) >= self._config.submap_keyframes
 
@@ -125,10 +124,10 @@ class SubmapMap:
         *,
         carried: Carried | None,
     ) -> None:
-        """Begin a submap that scans are matched to, though none tells where it lies.
+        """Begin a submap of which no scan tells where it lies; scans are matched to it alone.
 
-        As :meth:`begin`; ``unsure`` is what was driven, m, and turned, rad, unconfirmed. It may
-        lie anywhere if the robot was ``carried``.
+        The arguments are as of :meth:`begin`; ``unsure`` is what was driven, m, and turned, rad,
+        unconfirmed. The submap may lie anywhere if the robot was ``carried``.
         """
         self.close(range_noise)
         self.graph.begin_piece(here, way, *unsure, carried=carried)
@@ -136,7 +135,7 @@ class SubmapMap:
         self._enter_newest([])
 
     def begin_at(self, pose: Floats, way: float, range_noise: float) -> None:
-        """Begin a submap at a reported pose [3], map frame, beside those that lie near."""
+        """Begin a submap at a reported pose [3], map frame; match scans to submaps near by, too."""
         self.close(range_noise)
         beside = self.graph.near(pose)
         self.graph.begin_at(pose, way)
@@ -144,7 +143,7 @@ class SubmapMap:
         self._enter_newest(beside)
 
     def close(self, range_noise: float) -> None:
-        """Link the newest submap: others may move thereby, and the map with them; look at mirrors.
+        """Link the newest submap, by which others may move, and look at mirrors.
 
         ``range_noise`` is the standard deviation of a range, m.
         """
@@ -154,33 +153,33 @@ class SubmapMap:
         self._look_at_mirrors()
 
     def finish(self, range_noise: float) -> None:
-        """Bring all that was kept to agree, and draw it anew with walls along the axes."""
+        """Make all keyframes agree, and draw the map anew with walls along the axes."""
         self.close(range_noise)
         self.drawn.phase = finish(self.graph, self._config)
         self.redraw()
         self.version += self.mirrors.see_all(self._lidar.mount, self.drawn.occupancy)
 
     def redraw(self) -> None:
-        """Draw all anew where it is thought to be now."""
+        """Draw the whole map anew."""
         self.drawn.redraw()
         self.version += 1
 
     def clouds(self) -> list[Floats]:
-        """Return the points of each keyframe that scans are matched to, [n, 4].
+        """Return the points, [n, 4], of each keyframe that scans are matched to.
 
-        Newest submap's frame.
+        They are in the newest submap's frame.
         """
         frames = self.graph.keyframes_beside([*self.beside, self._newest])
         return [moved(frame.points, pose) for frame, pose in frames]
 
     def _look_at_mirrors(self) -> None:
-        """Let the newest submap, which is closed, tell of mirrors, and how far they go."""
+        """Update the mirrors by the newest submap, which is closed."""
         if self.graph.newest.keyframes:
             mount = self._lidar.mount
             self.version += self.mirrors.see(self._newest, mount, self.drawn.occupancy)
 
     def _leave_mirrors_behind(self, frame: Keyframe) -> None:
-        """Forget mirrors that the robot drove through since the last keyframe, if it drove."""
+        """Drop mirrors that the robot drove through since the last keyframe, if it drove."""
         here = self.graph.placed(frame.pose)
         if self._last_kept is not None and len(self.mirrors):
             number, pose = self._last_kept
@@ -193,7 +192,7 @@ class SubmapMap:
         return len(self.graph.submaps) - 1
 
     def _enter_newest(self, beside: list[int]) -> None:
-        """Let scans be matched to these submaps, as seen from the newest one."""
+        """Begin to draw the newest submap, and match scans to it and the submaps ``beside`` it."""
         self.drawn.begin_submap()
         self.beside = beside
         self._fill_surfels(beside)

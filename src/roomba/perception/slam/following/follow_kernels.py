@@ -239,7 +239,7 @@ def _match(
     reach: int,
     first_scales: tuple[float, float],
 ) -> bool:
-    """Match a scan about ``prior`` [3]; set ``met``, ``close``, and in ``work`` pose and covariance.
+    """Match a scan about ``prior`` [3]; set ``met``, ``close``, and pose and covariance (``work``).
 
     Returns whether the scan shows enough to say anything.
     """

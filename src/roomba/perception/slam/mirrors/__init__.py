@@ -1,1 +1,1 @@
-"""Mirrors found while a map is made: by the robot's own image, or a touch, and what they show."""
+"""Mirrors, found while a map is made: by the robot's own image or a touch, and by their images."""

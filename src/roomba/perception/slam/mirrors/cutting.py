@@ -1,4 +1,4 @@
-"""Beams that a mirror sent on, ended where they met it."""
+"""Beams that a mirror reflected, cut off where they met the mirror."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from roomba.arrays import Floats, Floats32
 from roomba.perception.slam.submaps.pose_graph import relative_to
 
 _BESIDE: Final = 0.1
-"""m; beams that pass so near beside a mirror's end may have met it: places are not exact."""
+"""m; a beam that passes so near beside a mirror's end may have met it, as poses are not exact."""
 
 
 def cut_at(
     mirrors: Floats, pose: Floats, lidar: Floats, points: Floats32, open_ways: Floats32
 ) -> tuple[Floats32, Floats32]:
-    """Return a scan's points, [n, 4], and the ends of its open ways, [m, 2], robot's frame, as they
-    are with nothing behind the mirrors.
+    """Return a scan's ``points``, [n, 4], and ``open_ways``, [m, 2], with nothing behind mirrors.
 
-    ``mirrors`` are the two ends of each, float64 [k, 2, 2], m, map frame; ``pose``, [3], is the
-    robot's there, ``lidar`` x and y in its frame. A beam that passes a mirror ends on it, and its
-    point faces the lidar; one that passes just beside it is left out, for it may have met it. The
-    arrays are those that were given if there is no such beam.
+    ``open_ways`` are the ends of the scan's open ways; both are in the robot's frame. ``mirrors``
+    are the two ends of each, float64 [k, 2, 2], m, map frame; ``pose``, [3], is the robot's in that
+    frame, and ``lidar`` x and y in the robot's. A beam that passes a mirror is cut off on it, and
+    its point faces the lidar. A beam that passes just beside a mirror is left out, for it may have
+    met it. If there is no such beam the given arrays are returned.
     """
     if not len(mirrors):
         return points, open_ways

@@ -1,8 +1,9 @@
-"""What beams show behind a plane, turned over to its front: the image that a mirror makes.
+"""Ends of beams behind a plane, reflected to its front: a test whether the plane is a mirror.
 
-A mirror sends a beam on, and the lidar takes what that meets for something behind the mirror, as
-far as it is before it. Turned over, the ends of such beams lie on surfaces that the map has before
-the mirror. Of a door, a window, or a wall of glass they lie anywhere: many where floor is free.
+A mirror reflects a beam. The lidar takes the thing that the reflected beam meets for one behind the
+mirror, as far behind it as the thing is before it. Reflected back, the ends of such beams lie on
+surfaces that the map has before the mirror. If the plane is a door, a window, or a wall of glass,
+they lie anywhere, and many on free floor.
 """
 
 from __future__ import annotations
@@ -19,23 +20,24 @@ from roomba.raster.regions import dilated
 Flags = NDArray[np.bool_]
 
 _BEHIND: Final = 0.05
-"""m; a beam that ends nearer behind a plane may have met what is on it."""
+"""m; a beam that ends nearer than this behind a plane may have met the plane itself."""
 _BESIDE: Final = 0.08
-"""m; what is so near to a plane may be a wall on which the mirror hangs."""
+"""m; a surface so near to a plane may be a wall on which the mirror hangs."""
 _OWN: Final = 0.25
 """m; an image so near to the lidar is that of the robot itself."""
 _PLACE: Final = 0.1
-"""m; side of the squares that count as a place each."""
+"""m; side of the squares of which each counts as one place."""
 _AT_RIGHT_ANGLES: Final = 0.25
-"""Cosine between what was met and the plane, below which its image lies on itself."""
+"""Cosine of the angle between surface normal and plane normal; below it the image of the surface
+lies on the surface itself."""
 _AROUND: Final = np.ones((3, 3), np.bool_)
 """Cells around an occupied one in which its surface may be."""
 
 
 class Beams(NamedTuple):
-    """Beams where they were taken: ``starts``, ``ends`` and the ``normals`` of what they met.
+    """Beams: their ``starts``, ``ends`` and the ``normals`` of the surfaces that they met.
 
-    Each float64 [n, 2], m, map frame; a normal is 0 where it is not known.
+    Each is float64 [n, 2], m, map frame; a normal is 0 if it is not known.
     """
 
     starts: Floats
@@ -43,12 +45,12 @@ class Beams(NamedTuple):
     normals: Floats
 
     def chosen(self, which: Flags | NDArray[np.int64] | slice) -> Beams:
-        """Return some of them."""
+        """Return some of the beams."""
         return Beams(self.starts[which], self.ends[which], self.normals[which])
 
 
 class Plane(NamedTuple):
-    """A vertical plane: ``x``, ``y``, m, on it, and ``facing``, rad, into what is behind it."""
+    """A vertical plane: a point ``x``, ``y``, m, on it, and ``facing``, rad, the way behind it."""
 
     x: float
     y: float
@@ -56,34 +58,34 @@ class Plane(NamedTuple):
 
     @property
     def middle(self) -> Floats:
-        """The point on it, float64 [2]."""
+        """The given point on the plane, float64 [2]."""
         return np.array([self.x, self.y])
 
     @property
     def normal(self) -> Floats:
-        """The direction into what is behind it, float64 [2]."""
+        """The direction to behind the plane, float64 [2], of length 1."""
         return np.array([np.cos(self.facing), np.sin(self.facing)])
 
     def moved(self, turn: float, shift: float) -> Plane:
-        """Return it turned about its middle, rad, and then ``shift`` m farther off."""
+        """Return the plane turned about its middle, rad, and then shifted ``shift`` m backwards."""
         facing = self.facing + turn
         x, y = self.x + shift * np.cos(facing), self.y + shift * np.sin(facing)
         return Plane(float(x), float(y), facing)
 
     def turned_over(self, points: Floats) -> Floats:
-        """Return where points, [n, 2], m, are that it shows as those."""
+        """Return the mirror images of points, [n, 2], m, in the plane."""
         behind = (points - self.middle) @ self.normal
         over: Floats = points - 2.0 * behind[:, None] * self.normal
         return over
 
     @property
     def along(self) -> Floats:
-        """The direction along it, to the left of one who looks at it, float64 [2]."""
+        """The direction along the plane, to the left for a viewer before it, float64 [2]."""
         return np.array([-np.sin(self.facing), np.cos(self.facing)])
 
 
 class MappedFloor(NamedTuple):
-    """What the map has: cells ``beside`` surfaces, and floor that is ``free`` of them."""
+    """Cells of the map: those ``beside`` surfaces, and ``free`` floor away from surfaces."""
 
     frame: GridFrame
     beside: Flags
@@ -91,18 +93,18 @@ class MappedFloor(NamedTuple):
 
     @staticmethod
     def of(occupancy: OccupancyMap) -> MappedFloor:
-        """Return that of a map."""
+        """Return the cells of a map."""
         beside = dilated(occupancy.values == OCCUPIED, _AROUND)
         return MappedFloor(occupancy.frame, beside, (occupancy.values == FREE) & ~beside)
 
 
 class Images(NamedTuple):
-    """Beams that pass a plane: ``places``, m, along it from its middle, where they do.
+    """Beams that pass a plane; ``places`` are where, m along the plane from its middle.
 
-    ``fits``: turned over, they end beside a surface, or on the robot itself; ``contradicts``: on
-    free floor. Neither where the map knows nothing. ``informs``: what was met is not at right
-    angles to the plane, as a wall is that goes on behind it and has itself for an image. Each bool
-    [n].
+    The others are bool [n]. ``fits``: reflected, the beam ends beside a surface, or on the robot
+    itself. ``contradicts``: it ends on free floor. Where the map is unknown neither holds.
+    ``informs``: the surface that was met is not at right angles to the plane. A wall at right
+    angles that goes on behind the plane has itself for an image.
     """
 
     places: Floats
@@ -112,14 +114,14 @@ class Images(NamedTuple):
 
 
 def places_of_ends(beams: Beams, plane: Plane) -> Floats:
-    """Return where along a plane, m from its middle, beams end that met something on it."""
+    """Return where along a plane, m from its middle, those beams ended that met it."""
     off = beams.ends - plane.middle
     places: Floats = (off @ plane.along)[np.abs(off @ plane.normal) < _BESIDE]
     return places
 
 
 def count_of_places(starts: Floats) -> int:
-    """Return from how many places beams were taken that begin at ``starts``, [n, 2], m.
+    """Return the number of places from which beams begin, at ``starts``, [n, 2], m.
 
     A robot that turns on the spot is at one place.
     """
@@ -127,7 +129,7 @@ def count_of_places(starts: Floats) -> int:
 
 
 def own_images(beams: Beams, plane: Plane) -> Flags:
-    """Return which beams end behind a plane where it would show the robot itself, bool [n]."""
+    """Return which beams end behind a plane where a mirror would show the robot, bool [n]."""
     behind = (beams.ends - plane.middle) @ plane.normal
     return (behind > _BEHIND) & _is_own(beams, plane.turned_over(beams.ends))
 
@@ -138,7 +140,7 @@ def _is_own(beams: Beams, image: Floats) -> Flags:
 
 
 def images(beams: Beams, plane: Plane, floor: MappedFloor) -> Images:
-    """Return what the beams show that pass a plane from its front."""
+    """Return the images of the beams that pass a plane from its front."""
     normal = plane.normal
     before = (beams.starts - plane.middle) @ normal
     behind = (beams.ends - plane.middle) @ normal

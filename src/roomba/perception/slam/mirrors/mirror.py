@@ -13,17 +13,17 @@ from roomba.perception.slam.mirrors.images import Beams, MappedFloor, Plane, ima
 from roomba.perception.slam.submaps.pose_graph import composed
 
 _BIN: Final = 0.05
-"""m along a mirror in which beams are counted together."""
+"""m; length of a bin along a mirror."""
 _BINS: Final = 61
-"""Bins to either side of where it was found: 3 m."""
+"""Bins to either side of where a mirror was found: 3 m."""
 _GAP: Final = 3
-"""Bins without images that fit over which a mirror goes on."""
+"""Bins without fitting images over which a mirror still goes on."""
 _TO_SURFACE: Final = 6
-"""Bins over which it goes on to a surface that is seen: no robot fits through there."""
+"""Bins over which a mirror goes on to a surface beside it: no robot fits through such a gap."""
 _LEAST: Final = 3
-"""Images that fit in a bin and those beside it, for the mirror to be there."""
+"""Images that must fit, in a bin and the two beside it, for the mirror to be there."""
 _FOUND: Final = 1
-"""Bins to either side of where it was found that are mirror in any case."""
+"""Bins to either side of where a mirror was found that are mirror in any case."""
 _LEAST_REACH: Final = ((_FOUND + 0.5) * _BIN, (_FOUND + 0.5) * _BIN)
 """m to the right and to the left that are mirror in any case."""
 
@@ -32,11 +32,11 @@ _LEAST_REACH: Final = ((_FOUND + 0.5) * _BIN, (_FOUND + 0.5) * _BIN)
 class Mirror:
     """A mirror in the frame of a submap, with whose keyframes it moves.
 
-    ``plane`` is that of the mirror, its middle where it was found; it goes on from there by
-    ``least``, m, to the right and to the left, in any case. ``fits`` and ``contradicts`` count
-    beams by where they passed, ``met`` those that met something beside it on its plane. Of the
-    map's keyframes so many, from the first on, are ``counted``. The robot saw itself in it from
-    ``seen_from`` m away on; 0: it touched it.
+    ``plane`` is that of the mirror, its middle where the mirror was found. From there the mirror
+    reaches at least ``least``, m, to the right and to the left. ``fits`` and ``contradicts`` count
+    beams by where they passed the plane, ``met`` those that met a surface on it. The first
+    ``counted`` keyframes of the map are counted. The robot saw itself in the mirror from
+    ``seen_from`` m away on; 0 means that it touched the mirror.
     """
 
     submap: int
@@ -50,7 +50,7 @@ class Mirror:
 
     @staticmethod
     def found(submap: int, plane: Plane, seen_from: float = 0.0) -> Mirror:
-        """Return one of which no more is known than a point."""
+        """Return a mirror of which only one point on its plane is known."""
         fits, contradicts, met = np.zeros((3, 2 * _BINS + 1), np.int64)
         return Mirror(
             submap, plane, _LEAST_REACH, fits, contradicts, met, counted=0, seen_from=seen_from
@@ -58,34 +58,34 @@ class Mirror:
 
     @staticmethod
     def of(kept: KeptMirror) -> Mirror:
-        """Return one that was kept; it goes on as far as it did until its beams are counted."""
+        """Return a mirror that was saved; it keeps its reach until its beams are counted."""
         right, left = kept.reach.tolist()
         mirror = Mirror.found(kept.submap, Plane(*kept.plane.tolist()), kept.seen_from)
         return replace(mirror, least=(right, left))
 
     @property
     def kept(self) -> KeptMirror:
-        """What must be remembered of it."""
+        """The part of the mirror that is saved."""
         return KeptMirror(self.submap, np.array(self.plane), np.array(self.reach), self.seen_from)
 
     @property
     def reach(self) -> tuple[float, float]:
-        """How far it goes to the right and to the left from its plane's middle, m."""
+        """How far the mirror reaches to the right and to the left of its plane's middle, m."""
         return max(self.least[0], self._reach(-1)), max(self.least[1], self._reach(1))
 
     def ends(self, pose: Floats) -> Floats:
-        """Return its right and left end, float64 [2, 2], m, its submap being at ``pose`` [3]."""
+        """Return the mirror's right and left end, float64 [2, 2], m; its submap is at ``pose``."""
         plane, (right, left) = placed(self.plane, pose), self.reach
         return plane.middle + np.outer((-right, left), plane.along)
 
     def forget(self) -> None:
-        """Forget what beams showed of it, to count it anew."""
+        """Forget all counts of beams, to count them anew."""
         self.least = _LEAST_REACH
         for counts in (self.fits, self.contradicts, self.met):
             counts[:] = 0
 
     def count(self, beams: Beams, floor: MappedFloor, pose: Floats) -> None:
-        """Count what beams show of it, its submap being at ``pose``."""
+        """Count beams at the mirror; its submap is at ``pose`` [3]."""
         plane = placed(self.plane, pose)
         seen = images(beams, plane, floor)
         _count(self.fits, seen.places[seen.informs & seen.fits])
@@ -93,7 +93,7 @@ class Mirror:
         _count(self.met, places_of_ends(beams, plane))
 
     def _reach(self, step: int) -> float:
-        """Return how far images fit to one side of its middle, m, or to a surface there."""
+        """Return how far images fit to one side of the middle, m, or how far a surface is there."""
         fits, contradicts = _with_beside(self.fits), _with_beside(self.contradicts)
         last = 0
         for at in range(1, _BINS + 1):
@@ -120,7 +120,7 @@ class KeptMirror(NamedTuple):
 
 
 def placed(plane: Plane, pose: Floats) -> Plane:
-    """Return a plane of a frame that lies at ``pose``, float64 [3]."""
+    """Return where a plane lies, given in a frame that is at ``pose``, float64 [3]."""
     return Plane(*composed(pose[None], np.array(plane)[None])[0].tolist())
 
 

@@ -1,10 +1,10 @@
 """The mirrors of a map that is being made.
 
-A lidar takes what a mirror shows for a room behind it. The robot sees itself there, and at the
-latest it drives against it: something was touched that beams pass. If what they show behind it is
-the image of what is before it, it is a mirror, and goes as far to both sides as that holds (compare
-Yang and Wang, "On solving mirror reflection in LIDAR sensing", IEEE/ASME T-Mech 2011, who look for
-mirrors in gaps of walls).
+A lidar takes what a mirror shows for a room behind it. The robot may see itself there. At the
+latest it drives against the mirror, and so touches a thing that beams pass. If the beams show
+behind that thing the image of what is before it, the thing is a mirror, and reaches to both sides
+as far as that holds (compare Yang and Wang, "On solving mirror reflection in LIDAR sensing",
+IEEE/ASME T-Mech 2011, who look for mirrors in gaps of walls).
 """
 
 from __future__ import annotations
@@ -34,20 +34,19 @@ from roomba.perception.slam.submaps.submap import moved
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
 
 _NEAR: Final = 6.0
-"""m; keyframes from nearer to a touch tell what was touched."""
+"""m; keyframes from nearer than this to a touch or a mirror are looked at."""
 _MOST: Final = 400
-"""Keyframes that are looked at then."""
+"""Keyframes that are looked at, at most."""
 _RECENT: Final = 120
-"""Keyframes, the newest ones, in which the robot may have seen itself before it touched a mirror.
-"""
+"""Newest keyframes in which the robot's own image is searched for, when a submap ends."""
 _SAME_TURN: Final = 0.1
 _SAME_PLACE: Final = 0.08
 _SAME_GAP: Final = 0.3
-"""rad, m, m; mirrors that lie so alike, so near to one plane and to each other, are one."""
+"""rad, m, m; mirrors are one if they differ less than this in angle, in plane, and in place."""
 
 
 class PlacedPoints(NamedTuple):
-    """What a scan met: ``points`` [n, 4], robot's frame, of a robot at ``pose`` [3], map frame."""
+    """A scan's ``points`` [n, 4], robot's frame, and the robot's ``pose`` [3], map frame."""
 
     points: NDArray[np.float32] | Floats
     pose: Floats
@@ -57,26 +56,26 @@ class Mirrors:
     """Mirrors in the frames of the graph's submaps."""
 
     def __init__(self, graph: SubmapGraph) -> None:
-        """Begin with none."""
+        """Begin without a mirror."""
         self._graph = graph
         self._mirrors: list[Mirror] = []
 
     def take_over(self, kept: Iterable[KeptMirror]) -> None:
-        """Go on with those that another process had found."""
+        """Go on with the mirrors that another process had found."""
         self._mirrors = [Mirror.of(each) for each in kept]
 
     def __len__(self) -> int:
-        """Return how many there are."""
+        """Return the number of mirrors."""
         return len(self._mirrors)
 
     @property
     def kept(self) -> tuple[KeptMirror, ...]:
-        """What must be remembered of them."""
+        """The parts of the mirrors that are saved."""
         return tuple(mirror.kept for mirror in self._mirrors)
 
     @property
     def ends(self) -> Floats:
-        """Their ends where the graph has them, float64 [n, 2, 2], m, map frame."""
+        """Ends of the mirrors where the graph places them, float64 [n, 2, 2], m, map frame."""
         poses = self._graph.poses
         return np.array([mirror.ends(poses[mirror.submap]) for mirror in self._mirrors]).reshape(
             -1, 2, 2
@@ -85,10 +84,10 @@ class Mirrors:
     def feel(
         self, touch: Touch, newest: PlacedPoints, mount: Floats, occupancy: OccupancyMap
     ) -> bool:
-        """Find out whether a mirror was touched; tell whether there is more of one now.
+        """Find out whether a mirror was touched; tell whether a mirror is new or changed by that.
 
-        ``newest`` is the scan before the touch, which need not be kept; ``mount``, x and y, m, is
-        that of the lidar; ``occupancy`` the map as it is known.
+        ``newest`` is the scan before the touch, which need not be a keyframe; ``mount``, x and y,
+        m, is that of the lidar; ``occupancy`` the map as it is known.
         """
         scans = self._scans_near(touch.x, touch.y)
         beams, floor = _beams_of([*scans, newest], mount), MappedFloor.of(occupancy)
@@ -105,10 +104,10 @@ class Mirrors:
         return not np.array_equal(self.ends, before)
 
     def see(self, number: int, mount: Floats, occupancy: Callable[[], OccupancyMap]) -> bool:
-        """Look how far mirrors go, and for others, as a submap ends; tell whether one changed.
+        """Update the reach of mirrors, and search for new ones, as a submap ends.
 
-        ``occupancy`` makes the map as it is known, if that is needed. Keyframes that were counted
-        before say nothing new of a mirror.
+        Returns whether a mirror changed. ``occupancy`` makes the map as it is known, if that is
+        needed. Keyframes that were counted before are not counted again.
         """
         poses, before, scans = self._graph.poses, self.ends, self._scans_of(number)
         if not scans:
@@ -128,9 +127,9 @@ class Mirrors:
         return not np.array_equal(self.ends, before)
 
     def see_all(self, mount: Floats, occupancy: Callable[[], OccupancyMap]) -> bool:
-        """Look for mirrors by all keyframes, once the drive is over; tell whether one changed.
+        """Search for mirrors by all keyframes, once the drive is over; tell whether one changed.
 
-        Those that are known are counted anew, as keyframes have moved since.
+        Known mirrors are counted anew, as keyframes have moved since.
         """
         before = self.ends
         self._take_back(mount)
@@ -144,7 +143,7 @@ class Mirrors:
     def _look_for_itself(
         self, scans: list[PlacedPoints], mount: Floats, occupancy: Callable[[], OccupancyMap]
     ) -> None:
-        """Take planes in which the robot saw itself for mirrors, if their images fit."""
+        """Add mirrors on planes in which the robot saw itself, if the images of beams fit."""
         beams = _beams_of(scans, mount)
         for facing in ways_that_surfaces_face(beams):
             for plane, farthest in own_image_planes(beams, facing):
@@ -158,7 +157,7 @@ class Mirrors:
                     self._add(mirror, around, floor)
 
     def _take_back(self, mount: Floats) -> None:
-        """Take away mirrors that were not touched and do not show the robot as they did."""
+        """Drop mirrors that were never touched, if scans no longer show the robot in them."""
 
         def is_left(mirror: Mirror) -> bool:
             plane = self._placed(mirror)
@@ -169,9 +168,9 @@ class Mirrors:
         self._mirrors = [mirror for mirror in self._mirrors if is_left(mirror)]
 
     def pass_through(self, start: Floats, end: Floats) -> bool:
-        """Take away the mirrors between two places of the robot, [2], m, map frame: they are none.
+        """Drop the mirrors between two places of the robot, [2], m, map frame: it drove through.
 
-        Tell whether there were any.
+        Return whether there were any.
         """
         known = len(self._mirrors)
         poses = self._graph.poses
@@ -183,7 +182,7 @@ class Mirrors:
         return len(self._mirrors) < known
 
     def _scans_of(self, number: int) -> list[PlacedPoints]:
-        """Return those of a submap's keyframes."""
+        """Return the scans of a submap's keyframes."""
         submap = self._graph.submaps[number]
         frames = zip(submap.keyframes, submap.poses(self._graph.poses[number]), strict=True)
         return [PlacedPoints(frame.points, pose) for frame, pose in frames]
@@ -197,14 +196,14 @@ class Mirrors:
         return scans[-_RECENT:]
 
     def _scans(self) -> list[PlacedPoints]:
-        """Return those of all keyframes, in the order of time."""
+        """Return the scans of all keyframes, in the order of time."""
         return [PlacedPoints(frame.points, pose) for frame, pose in self._graph.keyframes()]
 
     def _scans_near(self, x: float, y: float) -> list[PlacedPoints]:
         return _some([s for s in self._scans() if math.dist(s.pose[:2], (x, y)) < _NEAR])
 
     def _beams_about(self, plane: Plane, mount: Floats) -> Beams:
-        """Return the beams of scans from near the middle of a plane, map frame."""
+        """Return the beams of scans that were taken near the middle of a plane, map frame."""
         return _beams_of(self._scans_near(plane.x, plane.y), mount)
 
     def _placed(self, mirror: Mirror) -> Plane:
@@ -212,11 +211,11 @@ class Mirrors:
         return placed(mirror.plane, self._graph.poses[mirror.submap])
 
     def _framed(self, submap: int, plane: Plane, seen_from: float = 0.0) -> Mirror:
-        """Return a mirror on a plane of the map's frame, with a submap by its number."""
+        """Return a mirror on a plane, map frame, in the frame of the submap with a number."""
         return Mirror.found(submap, placed(plane, inverse(self._graph.poses[submap])), seen_from)
 
     def _nearest_before(self, plane: Plane) -> int:
-        """Return the number of the submap with the keyframe that is nearest before a plane."""
+        """Return the number of the submap whose keyframe is the nearest one before a plane."""
         nearest, away = len(self._graph.submaps) - 1, math.inf
         for number in range(len(self._graph.submaps)):
             for scan in self._scans_of(number):
@@ -234,13 +233,13 @@ class Mirrors:
             self._mirrors.append(mirror)
 
     def _count_anew(self, mirror: Mirror, beams: Beams, floor: MappedFloor) -> None:
-        """Count what all keyframes from near a mirror show of it."""
+        """Count a mirror anew, by the beams of all keyframes that were taken near it."""
         mirror.forget()
         mirror.count(beams, floor, self._graph.poses[mirror.submap])
         mirror.counted = sum(len(submap.keyframes) for submap in self._graph.submaps)
 
     def _is_of(self, plane: Plane, mirror: Mirror) -> bool:
-        """Whether a plane is that of a mirror, and its middle near to it."""
+        """Whether a plane is a mirror's, and the plane's middle on the mirror, or near it."""
         other = self._placed(mirror)
         turn = float(np.cos(plane.facing - other.facing))
         off = abs(float((plane.middle - other.middle) @ other.normal))
@@ -248,14 +247,14 @@ class Mirrors:
         return is_alike and self._reaches(mirror, plane, _SAME_GAP)
 
     def _reaches(self, mirror: Mirror, plane: Plane, spare: float = 0.0) -> bool:
-        """Whether a mirror goes as far as to the middle of a plane, or to ``spare`` m before it."""
+        """Whether a mirror reaches to the middle of a plane, or to ``spare`` m before that."""
         other, (right, left) = self._placed(mirror), mirror.reach
         place = float((plane.middle - other.middle) @ other.along)
         return -right - spare <= place <= left + spare
 
 
 def _some(scans: list[PlacedPoints]) -> list[PlacedPoints]:
-    """Return all of them, or so many, evenly, that it does not take long."""
+    """Return all scans, or :data:`_MOST` at most, evenly chosen, as more take long."""
     return scans[:: -(-len(scans) // _MOST) or 1]
 
 

@@ -1,10 +1,10 @@
-"""Planes in which a robot that drives about may have seen itself, before it touched any.
+"""Planes in which a driving robot may have seen itself, before it touched a mirror.
 
-Its own image is as far behind a mirror as the robot is before it. Straight ahead of the mirror a
-beam is twice as long as the way to it, from wherever it is taken: half of it ends on one plane.
-What stands still is as far from one place as it is near to another, and half of the way to it ends
-on a plane from one distance alone. What comes towards the robot as fast as it drives looks like its
-image for that once: such a plane is asked again as long as the map is made.
+The robot's own image is as far behind a mirror as the robot is before it. So a beam straight into
+the mirror is twice as long as the way to the mirror, from each place of the robot: half of the beam
+always ends on one plane. For a thing that stands still, half of the beam ends on that plane from
+one distance only. A thing that comes towards the robot as fast as it drives looks like the robot's
+image that one time. Such a plane is checked again as long as the map is made.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _AHEAD: Final = 0.03
 _FARTHEST: Final = 4.0
 """m; from farther off hardly a beam meets its own image."""
 _BODY: Final = 0.04
-"""m; half of the way ends so far before a mirror: the image is of the robot's near side."""
+"""m; half of the beam ends so far before a mirror, as the image is of the robot's near side."""
 _OFF: Final = 0.05
 """m; images that are taken together are less than this off one plane."""
 _ASIDE: Final = 0.4
@@ -33,7 +33,7 @@ _LEAST: Final = 6
 _LEAST_SPREAD: Final = 1.2
 """m; the least by which the farthest of these images is farther off than the nearest."""
 _MOST: Final = 3
-"""Planes that are told for one direction."""
+"""Planes that are returned for one direction, at most."""
 
 
 class OwnImage(NamedTuple):
@@ -46,7 +46,7 @@ class OwnImage(NamedTuple):
 def own_image_planes(beams: Beams, facing: float) -> list[OwnImage]:
     """Return planes that face about one way, rad, in which the robot may have seen itself.
 
-    Those that it saw from most places come first.
+    The planes with the most images come first.
     """
     ways = beams.ends - beams.starts
     off = wrap_angles(np.arctan2(ways[:, 1], ways[:, 0]) - facing)
@@ -69,7 +69,7 @@ def own_image_planes(beams: Beams, facing: float) -> list[OwnImage]:
 
 
 def _most_together(distance: Floats, place: Floats, left: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return which of those that are ``left`` end near one point of a plane: the most that do."""
+    """Return the largest group of beams that are ``left`` and end near one point of a plane."""
     best, most = left & False, 0
     bins = np.round(np.column_stack((distance / _OFF, place / _ASIDE))[left])
     centres, counts = np.unique(bins, axis=0, return_counts=True)

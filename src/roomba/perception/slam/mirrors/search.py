@@ -1,4 +1,4 @@
-"""The plane of a mirror near one that was touched, or seen, found by what it shows."""
+"""The search for a mirror's plane, near a plane that was touched or seen, by the beams' images."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from roomba.perception.slam.mirrors.images import (
 
 _TURNS: Final = np.radians(np.arange(-3.0, 3.01, 0.5))
 _SHIFTS: Final = np.arange(-0.06, 0.061, 0.01)
-"""rad and m; planes that are tried around where the touch, and the way that walls lie, put it."""
+"""rad and m; turns and shifts that are tried about the expected plane."""
 _SPARE: Final = 0.1
-"""rad; what was touched may be so far beyond the pressed part of the bumper."""
+"""rad; the touched plane may face so far beyond the pressed part of the bumper."""
 _ASIDE: Final = 0.12
-"""m; so far beside the touched point a beam passed what was touched."""
+"""m; a beam passed the plane's middle if it went by less than this beside it,"""
 _BEYOND: Final = 0.25
-"""m; it did pass it if it ended so much farther."""
+"""m; and ended more than this behind it."""
 _LEAST: Final = 25
-"""The fewest beams that passed, for what they show to count."""
+"""The fewest beams that passed the plane; fewer show nothing."""
 _LEAST_INFORMING: Final = 10
 """The fewest beams whose images fit a mirror and tell something."""
 _LEAST_FITTING: Final = 0.4
@@ -41,16 +41,16 @@ _BEFORE: Final = 1.0
 _BEFORE_ASIDE: Final = 0.3
 """m; so near before a mirror, and so near beside its middle, a robot sees itself."""
 _LEAST_STOOD: Final = 2
-"""The fewest places so near to a mirror where the robot stood, if it touched it."""
+"""The fewest places so near to a mirror where the robot was, if it touched the mirror."""
 _LEAST_STOOD_AWAY: Final = 3
-"""The fewest places so near to a mirror where the robot stood, if it did not touch it."""
+"""The fewest places so near to a mirror where the robot was, if it did not touch the mirror."""
 _LEAST_SHOWN: Final = 0.6
-"""The least share of scans so near to a mirror that show the robot: of true mirrors all do, of
-glass a tenth at most."""
+"""The least share of scans from there that show the robot: at true mirrors all do, at glass a tenth
+at most."""
 _ALIKE: Final = 0.02
-"""Share of the beams by which planes differ that fit alike."""
+"""Share of the beams; planes fit alike if their numbers of fitting images differ by no more."""
 _MOST: Final = 1500
-"""Beams that are looked at."""
+"""Beams that are looked at, at most."""
 
 
 class FoundMirror(NamedTuple):
@@ -61,10 +61,9 @@ class FoundMirror(NamedTuple):
 
 
 class Touch(NamedTuple):
-    """A touch of a round body: where its middle was, ``x`` and ``y``, and its ``radius``, m, and
-    the bearings of the part of its rim that was pressed, from ``first`` to ``last``, rad.
+    """A touch of a round body, map frame: its middle ``x``, ``y`` and its ``radius``, m.
 
-    Map frame.
+    The part of its rim that was pressed has the bearings from ``first`` to ``last``, rad.
     """
 
     x: float
@@ -74,11 +73,11 @@ class Touch(NamedTuple):
     last: float
 
     def plane(self, facing: float) -> Plane:
-        """Return the plane that touches the body there and faces away from it."""
+        """Return the plane that touches the body on the side ``facing``, rad, and faces away."""
         return Plane(self.x, self.y, facing).moved(0.0, self.radius)
 
     def has_pressed(self, facing: float) -> bool:
-        """Whether such a plane may have pressed that part."""
+        """Whether that plane may have pressed the pressed part of the rim."""
         off = wrap_angle(facing - 0.5 * (self.first + self.last))
         return abs(off) <= 0.5 * (self.last - self.first) + _SPARE
 
@@ -86,9 +85,9 @@ class Touch(NamedTuple):
 def touched_mirror(beams: Beams, floor: MappedFloor, touch: Touch) -> Plane | None:
     """Return the plane of the mirror that was touched; None if it seems to be none.
 
-    Mirrors hang on walls, or are the sides of furniture: others than such as lie as most surfaces
-    do, or at right angles to them, are not looked for. Of a plane that lies anyhow a corner of two
-    walls would often be its own image.
+    Mirrors hang on walls, or are the sides of furniture. So only planes parallel or at right angles
+    to most surfaces are tried. In an oblique plane a corner of two walls would often be its own
+    image.
     """
     found = [
         _mirror_about(beams, floor, touch.plane(facing), _BEFORE, _LEAST_STOOD)
@@ -102,23 +101,23 @@ def touched_mirror(beams: Beams, floor: MappedFloor, touch: Touch) -> Plane | No
 def seen_mirror(beams: Beams, floor: MappedFloor, about: Plane, farthest: float) -> Plane | None:
     """Return the plane of a mirror in which the robot saw itself, from ``farthest`` m away on.
 
-    None if there seems to be none near that plane.
+    Return None if there seems to be no mirror near the plane ``about``.
     """
     found = _mirror_about(beams, floor, about, farthest, _LEAST_STOOD_AWAY)
     return None if found is None else found.plane
 
 
 def still_shows_itself(beams: Beams, plane: Plane, farthest: float) -> bool:
-    """Whether what was taken for a mirror from ``farthest`` m away on still shows the robot.
+    """Whether a supposed mirror still shows the robot, which saw itself from ``farthest`` m on.
 
-    All scans from before it count: where something came towards the robot, most of them do not
-    once it has driven there again.
+    All scans from before the plane count. If it was only a thing that came towards the robot, most
+    scans do not show the robot any more once it has driven there again.
     """
     return _shows_itself(beams, plane, farthest, _LEAST_STOOD_AWAY)
 
 
 def ways_that_surfaces_face(beams: Beams) -> list[float]:
-    """Return the four directions, rad, that most of what the beams met faces."""
+    """Return the four directions, rad, at right angles, that most surfaces face."""
     angles = np.arctan2(beams.normals[:, 1], beams.normals[:, 0])[_is_known(beams.normals)]
     turn = float(np.angle(np.exp(4.0j * angles).sum())) / 4.0
     return [turn + quarter * math.pi / 2.0 for quarter in range(4)]
@@ -129,7 +128,8 @@ def _mirror_about(
 ) -> FoundMirror | None:
     """Return the mirror near a plane; None if there seems to be none.
 
-    The robot must have seen itself in it from less than ``before`` m away, from so many places.
+    The robot must have seen itself in the mirror from less than ``before`` m away, from ``stood``
+    places or more.
     """
     near = _that_passed(beams, about)
     count = len(near.starts)
@@ -137,7 +137,7 @@ def _mirror_about(
         return None
     tried = [(turn, shift) for turn in _TURNS for shift in _SHIFTS]
     net = np.array([_net(near, floor, about.moved(turn, shift)) for turn, shift in tried])
-    # Cells are coarse: planes in between fit as well.
+    # Cells are coarse, so that several planes fit alike: take their mean.
     alike = net >= net.max() - _ALIKE * count
     turn, shift = np.array(tried)[alike].mean(axis=0).tolist()
     plane = about.moved(turn, shift)
@@ -146,7 +146,7 @@ def _mirror_about(
 
 
 def _net(beams: Beams, floor: MappedFloor, plane: Plane) -> int:
-    """Return how many images fit more than contradict."""
+    """Return the number of images that fit, less those that contradict."""
     seen = images(beams, plane, floor)
     return int(seen.fits.sum()) - int(seen.contradicts.sum())
 
@@ -163,10 +163,10 @@ def _is_mirror(beams: Beams, floor: MappedFloor, plane: Plane) -> bool:
 
 
 def _shows_itself(beams: Beams, plane: Plane, before: float, least: int) -> bool:
-    """Whether the robot saw itself in a plane when it stood before its middle.
+    """Whether the robot saw itself in a plane when it was before the plane's middle.
 
-    ``before`` is how far off at most, m; there must be ``least`` places or more. Without that the
-    middle of a room with two walls alike would be a mirror.
+    It must have been at ``least`` places, up to ``before`` m off. Without this test the middle of a
+    symmetric room, with two walls alike, would be a mirror.
     """
     off = beams.starts - plane.middle
     away, aside = -off @ plane.normal, np.abs(off @ plane.along)
@@ -177,7 +177,7 @@ def _shows_itself(beams: Beams, plane: Plane, before: float, least: int) -> bool
 
 
 def _that_passed(beams: Beams, plane: Plane) -> Beams:
-    """Return beams, a part of them if there are many, that passed the middle of a plane."""
+    """Return the beams that passed the middle of a plane, or a part of them if there are many."""
     ways = beams.ends - beams.starts
     lengths = np.hypot(ways[:, 0], ways[:, 1])
     to_middle = plane.middle - beams.starts

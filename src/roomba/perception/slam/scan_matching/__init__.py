@@ -1,1 +1,1 @@
-"""Points on surfaces of a scan, and where they fit: on surfels nearby, or in a wide window."""
+"""Surface points of a scan, and matching: to surfels nearby, or in a wide window."""

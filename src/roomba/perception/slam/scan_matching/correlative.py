@@ -19,15 +19,15 @@ from roomba.perception.slam.scan_matching.window_search import search
 _TURN_STEP: Final = 0.012
 """rad; a cell and a bit at the usual range of 5 m."""
 _MOST_POINTS: Final = 250
-"""More make the search no surer."""
+"""Points that are used, at most: more make the search no surer."""
 _ANOTHER: Final = 0.8
-"""m; a pose that is farther from a match is of another place."""
+"""m; a pose farther than this from a match is another place."""
 _NEARLY: Final = 0.8
-"""Share of a match's score with which another place is not to be told from it."""
+"""Share of a match's score from which on another place cannot be told apart from it."""
 
 
 def is_in_reach(points: Floats, reach: float) -> bool:
-    """Whether some of the points of a place, [n, 2 or more], are within ``reach``, m, of it."""
+    """Whether some points, [n, 2 or more], are within ``reach``, m, of the origin."""
     return len(_within(points, reach)) > 0
 
 
@@ -40,13 +40,13 @@ class CorrelativeMatch:
 
 
 class CorrelativeMatcher:
-    """Finds points on those of one place, float64 [n, 4], x, y, m, and normal, in its frame."""
+    """Matches points to those of one place, float64 [n, 4], x, y, m, and normal, in its frame."""
 
     def __init__(self, points: Floats, reach: float) -> None:
         """Make the grids; raises ValueError without a point within ``reach``, m, of the origin.
 
-        Farther points are left out, of the place and of what is found on it: their bearing is less
-        sure.
+        Farther points are left out, both of the place and of the points that are matched: their
+        bearing is less sure.
         """
         self._reach = reach
         near = np.ascontiguousarray(_within(points, reach))
@@ -59,8 +59,8 @@ class CorrelativeMatcher:
     ) -> CorrelativeMatch | None:
         """Return the best pose within ``window``, m, and ``turn``, rad, of a pose [3].
 
-        ``points`` are float64 [n, 2 or more], x, y, m, about where they were seen from. None if no
-        pose has a mean likelihood of more than ``least``, 0..1.
+        ``points`` are float64 [n, 2 or more], x, y, m, relative to where they were seen from.
+        Return None if no pose has a mean likelihood of more than ``least``, 0..1.
         """
         return self._best(points, around, window, turn, least, np.zeros(3))
 
@@ -74,7 +74,7 @@ class CorrelativeMatcher:
     ) -> bool:
         """Whether no other place in a window, as in :meth:`best`, fits nearly as well as a match.
 
-        In a corridor that looks alike all along one does.
+        In a corridor that looks alike all along, another place does.
         """
         beside = np.array([*(match.pose[:2] - around[:2]), _ANOTHER])
         return self._best(points, around, window, turn, _NEARLY * match.score, beside) is None

@@ -1,4 +1,4 @@
-"""How likely a surface is where: a grid over one place, and coarser ones that bound it.
+"""The likelihood of a surface in each cell of a grid over one place, and coarser grids of bounds.
 
 The points of a place, and the lines between neighbours on one plane surface, are spread out over
 the cells around them. So few or far beams show a place as well as many. Each coarser grid holds the
@@ -20,7 +20,7 @@ from roomba.compilation import entry, inner_part
 Likelihoods = NDArray[np.uint8]
 
 FULL: Final = 255
-"""What stands for certain."""
+"""The value that stands for a likelihood of 1."""
 _CELL: Final = 0.05
 """m; of the finest grid."""
 _LEVELS: Final = 6
@@ -35,7 +35,8 @@ _WIDEST_GAP: Final = 0.6
 class LikelihoodField(NamedTuple):
     """The grids ``levels``, uint8 [levels, rows, columns], the finest one first.
 
-    The lower left ``corner`` of all, float64 [2], m, and the side of a ``cell`` of the finest, m.
+    ``corner``, float64 [2], m, is the lower left corner of all grids; ``cell``, m, the side of a
+    cell of the finest one.
     """
 
     levels: Likelihoods
@@ -46,7 +47,7 @@ class LikelihoodField(NamedTuple):
 def likelihood_field(points: Floats) -> LikelihoodField:
     """Return how likely surfaces are around the points of a place, float64 [n, 4], n > 0.
 
-    They are x, y, m, and normal; neighbours of a scan come one after the other.
+    Points are x, y, m, and normal; neighbours in a scan come one after the other.
     """
     room = 1 << (_LEVELS - 1)
     first = np.floor(points[:, :2].min(axis=0) / _CELL).astype(np.int64) - 4 - room
@@ -65,7 +66,7 @@ def _spread_out(
 ) -> None:
     """Fill a grid, uint8 [rows, columns], with how likely a surface is in each cell.
 
-    Where neighbours among ``points`` [n, 4] lie on one plane surface, so does what is between them.
+    If neighbours among ``points`` [n, 4] lie on one plane surface, the line between them does, too.
     """
     for index in range(points.shape[0]):
         x, y = points[index, 0], points[index, 1]
@@ -108,7 +109,7 @@ def _mark(x: float, y: float, corner: Floats, cell: float, blur: float, grid: Li
 
 @entry
 def _heighten(levels: Likelihoods) -> None:
-    """Fill each grid with the greatest of blocks of 2^level cells that begin at the cell."""
+    """Fill each coarser grid with maxima over blocks of 2^level cells a side, from each cell on."""
     rows, columns = levels.shape[1], levels.shape[2]
     for level in range(1, levels.shape[0]):
         half = 1 << (level - 1)

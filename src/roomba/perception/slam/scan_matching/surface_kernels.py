@@ -22,27 +22,27 @@ Y: Final = 1
 NORMAL_X: Final = 2
 NORMAL_Y: Final = 3
 POINT: Final = 4
-"""Columns of a point: x, y, m, and its surface's unit normal towards the lidar; 0, 0: not known."""
+"""Columns of a point: x, y, m, and its surface's unit normal towards the lidar; 0, 0: unknown."""
 
 _HALF_SPAN: Final = 0.07
-"""m; so far to each side a surface is looked at, at least, to know how it faces."""
+"""m; a normal is fitted over at least so much of the surface to each side."""
 _SPAN_IN_DEVIATIONS: Final = 10.0
-"""The same, in deviations of a range: a noisy lidar needs more of a surface."""
+"""The same, in standard deviations of a range: a noisy lidar needs more of a surface."""
 _MOST_BESIDE: Final = 10
 _LEAST_BESIDE: Final = 2
 _LEAST_POINTS: Final = 3
 _SUMS: Final = 6
 _STRAIGHT: Final = 0.009
-"""m; root mean square off a line, above which points are not of one plane surface."""
+"""m; root mean square distance from a line, above which points are not on one plane surface."""
 _STRAIGHT_IN_DEVIATIONS: Final = 1.8
-"""The same, in deviations of a range; the larger one counts."""
+"""The same, in standard deviations of a range; the larger one counts."""
 _GRAZING: Final = 0.12
 """Cosine between a beam and a normal; below it the two points lie on different things."""
 
 
 @allocating_entry
 def room_for_sums(beams: int) -> Floats:
-    """Return the room that :func:`surface_points` works in."""
+    """Return the work array of :func:`surface_points`."""
     return np.empty((beams + 2 * _MOST_BESIDE + 1, _SUMS))
 
 
@@ -52,8 +52,8 @@ def surface_points(
 ) -> int:
     """Fill ``points`` [beams, POINT] from the beams that met something; return how many.
 
-    Robot's frame, m. ``ranges`` is float32 [beams], m, ``deviation`` the standard deviation of one,
-    m. The kernel works in ``sums``, which is :func:`room_for_sums`.
+    Points are in the robot's frame, m. ``ranges`` is float32 [beams], m, ``deviation`` the standard
+    deviation of a range, m. ``sums`` is a work array from :func:`room_for_sums`.
     """
     beams, directions, mount = ranges.size, lidar.directions, lidar.mount
     half_span = max(_HALF_SPAN, _SPAN_IN_DEVIATIONS * deviation)
@@ -102,11 +102,11 @@ def _angle_between(directions: Floats, beams: int) -> float:
 
 @inner_part
 def _add_up(ranges: NDArray[np.float32], lidar: LidarBeams, step: float, sums: Floats) -> None:
-    """Fill ``sums`` [beams + 2 * _MOST_BESIDE + 1, _SUMS], all around and on to both sides.
+    """Fill ``sums`` [beams + 2 * _MOST_BESIDE + 1, _SUMS] with running sums over the beams.
 
-    Of the ends of all beams before one, the first of which is ``_MOST_BESIDE`` before beam 0: how
-    many there are, and the sums of x, y, and of their squares and product, lidar's frame. Beyond
-    the ends of a fan that is not all around there are no beams.
+    The sums begin ``_MOST_BESIDE`` beams before beam 0. A row is for the beams before one: how many
+    ended, and the sums of the ends' x, y, squares and product, lidar's frame. A scan that goes all
+    around continues at its other end; beyond the ends of any other scan there are no beams.
     """
     beams, directions = ranges.size, lidar.directions
     is_around = is_all_around(beams, step)
@@ -135,7 +135,7 @@ def _add_up(ranges: NDArray[np.float32], lidar: LidarBeams, step: float, sums: F
 def _normal(sums: Floats, first: int, last: int, straight: float) -> tuple[bool, float, float]:
     """Return whether beams ``first`` to ``last`` met one plane, and its normal, lidar's frame.
 
-    Points that are off a line by more than ``straight``, m, root mean square, are of no plane.
+    If the root mean square distance from a line is more than ``straight``, m, there is no plane.
     """
     before, after = sums[first + _MOST_BESIDE], sums[last + _MOST_BESIDE + 1]
     count = after[0] - before[0]

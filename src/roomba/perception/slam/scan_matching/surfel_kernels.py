@@ -1,10 +1,10 @@
 """Compiled: surfels, little pieces of surface in a grid, and matching a scan to them.
 
-A cell keeps apart what faces left, right, up and down, so that both sides of a thin wall are two
-surfaces. A pose is found by Gauss and Newton's method: each point of the scan should lie in the
-plane of the surfel next to it (point to plane, Chen and Medioni, "Object modelling by registration
-of multiple range images", 1992); points that lie off by much more than a scale lose weight (Geman
-and McClure).
+A cell has separate surfels for surfaces that face left, right, up and down, so that the two sides
+of a thin wall are two surfaces. A pose is found by the Gauss-Newton method: each point of the scan
+should lie in the plane of the surfel next to it (point to plane, Chen and Medioni, "Object
+modelling by registration of multiple range images", 1992). Points much farther off than a scale
+lose weight (Geman and McClure).
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ from roomba.perception.slam.scan_matching.tolerances import Tolerances
 
 FACINGS: Final = 4
 SUMS: Final = 5
-"""Of each surfel: how many points, the sums of their x, y from the cell's middle, of normals."""
+"""Numbers of a surfel: points, sums of their x, y from the cell's middle, and sums of normals."""
 MATCHED: Final = 0
 CLOSE: Final = 1
 ASKED: Final = 2
 COUNTS: Final = 3
-"""Of a match: points that met a surfel, those that lie in its plane, those with a normal."""
+"""Numbers of a match: points that met a surfel, those in its plane, and points with a normal."""
 ALIGN_WORK: Final = 10
-"""Rows of what :func:`align` works in."""
+"""Rows of the work array of :func:`align`."""
 
 _SAME_WAY: Final = 0.8
-"""Cosine; surfaces that face farther apart are not the same."""
+"""Cosine; surfaces at a larger angle to each other are not the same."""
 
 
 class Surfels(NamedTuple):
     """The grid as kernels know it.
 
     ``sums`` is float32 [rows, columns, FACINGS, SUMS]; ``place`` the lower left corner x, y and the
-    cell size, m; ``touched`` int32 [n], numbers of the cells with surfels, ``used`` [1] of them.
+    cell size, m. The first ``used`` [1] of ``touched``, int32 [n], are the cells with surfels.
     """
 
     sums: NDArray[np.float32]
@@ -110,9 +110,9 @@ def align(
     """Move ``pose`` [3] to where every ``stride``-th point fits best, near ``prior`` [3].
 
     Poses are in the grid's frame. Surfels are looked for up to ``reach`` cells away. ``covariance``
-    [3, 3] is the prior's, and becomes that of the pose; ``information`` [3, 3] is what the points
-    alone say, ``counts`` [COUNTS] how well they fit. ``work`` is [ALIGN_WORK, 3]. Returns whether
-    there was anything to solve.
+    [3, 3] is the prior's, and becomes that of the pose; ``information`` [3, 3] gets that of the
+    points alone, ``counts`` [COUNTS] how well they fit. ``work`` is [ALIGN_WORK, 3]. Returns
+    whether there was anything to solve.
     """
     scales = tolerances.scales
     of_prior, solved, total, gradient = work[0:3], work[3:6], work[6:9], work[9]
@@ -132,7 +132,7 @@ def align(
                 gradient[row] += of_prior[row, column] * (pose[column] - prior[column])
         if not invert(total, solved):
             return False
-        # No earlier end: it would make 0.1 mm of a difference in the last bit.
+        # The rounds do not end early: a difference in the last bit could become one of 0.1 mm.
         for row in range(3):
             for column in range(3):
                 pose[row] -= solved[row, column] * gradient[column]
@@ -156,7 +156,7 @@ def _add_matches(
     gradient: Floats,
     counts: Floats,
 ) -> None:
-    """Add what the points say to ``information`` and ``gradient``, and count how they fit."""
+    """Add the points' terms to ``information`` and ``gradient``, and count how they fit."""
     cosine, sine = math.cos(pose[2]), math.sin(pose[2])
     certainty, inverse = 1.0 / tolerances.variance, 1.0 / scale
     counts[:] = 0.0
@@ -200,8 +200,10 @@ def _add_matches(
 def _plane_near(
     surfels: Surfels, x: float, y: float, facing_x: float, facing_y: float, reach: int
 ) -> tuple[float, float, float, float]:
-    """Return of the nearest surfel that faces the same way its squared distance, m2, how far a
-    point is off its plane, m, positive before it, and the plane's normal; infinite: there is none.
+    """Find the nearest surfel that faces the same way as a point.
+
+    Return its squared distance, m2, infinite if there is none, how far the point is off its plane,
+    m, positive before it, and the plane's normal.
     """
     rows, columns = surfels.sums.shape[0], surfels.sums.shape[1]
     size = surfels.place[2]

@@ -30,7 +30,7 @@ _MOST_TOUCHED: Final = 40_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Match:
-    """Where points fit: ``pose`` and its ``covariance``, and what the points alone say of it.
+    """Where points fit: ``pose``, its ``covariance``, and the ``information`` of the points alone.
 
     ``asked`` is the number of points with a normal, ``met`` the share of them that met a surfel,
     ``close`` the share of those that lie in its plane.
@@ -84,8 +84,8 @@ class SurfelGrid:
         """Return where ``points`` [n, 4] fit best near ``prior`` [3], unsure by ``covariance``.
 
         ``prior`` and ``covariance`` [3, 3] are in the grid's frame, m and rad; ``rounds``,
-        ``reach`` and ``stride`` are those of :func:`.surfel_kernels.align`. None when it cannot be
-        told.
+        ``reach`` and ``stride`` are those of :func:`.surfel_kernels.align`. Return None if the
+        points tell no pose.
         """
         pose, spread = prior.copy(), covariance.copy()
         information, counts = np.zeros((3, 3)), np.zeros(COUNTS)

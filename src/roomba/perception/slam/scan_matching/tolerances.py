@@ -11,18 +11,19 @@ from roomba.compilation import entry
 
 _LAST_SCALE: Final = 0.03
 _SCALE_IN_DEVIATIONS: Final = 3.0
-"""m, and in deviations of a range: scale of a match's last rounds, the larger one."""
+"""m, and in standard deviations of a range: scale of a match's last rounds, the larger of both."""
 _IN_PLANE: Final = 0.03
 _IN_PLANE_IN_DEVIATIONS: Final = 3.0
 _MAP_ERROR: Final = 0.01
-"""m; a point that is off a plane by less lies in it: so much, or so many deviations of a range and
-what the map itself may be off."""
+"""m; a point less than this off a plane lies in it: the larger of the first number, and the second
+times the standard deviation of a range plus the third, the map's own error."""
 
 
 class Tolerances(NamedTuple):
-    """Of a match: ``scales``, float64 [n], m, are those of the first rounds, the last one that of
-    the rest; ``variance``, m2, is that of a point; one less than ``close``, m, off a plane lies in
-    it.
+    """Tolerances of a match.
+
+    ``scales``, float64 [n], m, are those of the first rounds, the last one also that of the rest;
+    ``variance``, m2, is that of a point; a point less than ``close``, m, off a plane lies in it.
     """
 
     scales: NDArray[np.float64]
@@ -45,6 +46,6 @@ def in_plane(deviation: float) -> float:
 def tolerances_of(
     first_scales: tuple[float, ...], range_deviation: float, point_deviation: float
 ) -> Tolerances:
-    """Return those of a match that begins with ``first_scales``, m; both deviations are in m."""
+    """Return the tolerances of a match that begins with ``first_scales``, m; deviations in m."""
     scales = np.array([*first_scales, last_scale(range_deviation)])
     return Tolerances(scales, point_deviation**2, in_plane(range_deviation))

@@ -116,8 +116,8 @@ def _refine(
 ) -> None:
     """Look through a block for a better shift than the ``best``: score, angle, right and up.
 
-    The block, (level, angle, right, up), and its bound are the first of ``pending`` [n, 4] and
-    ``bounds`` [n], which hold those that wait. ``beside`` is as in :func:`search`, in cells.
+    The block, (level, angle, right, up), and its bound are the first rows of ``pending`` [n, 4] and
+    ``bounds`` [n], the stack of waiting blocks. ``beside`` is as in :func:`search`, in cells.
     """
     waiting = 1
     while waiting > 0:
@@ -147,9 +147,9 @@ def _refine(
 
 @part
 def _is_near(right: int, up: int, size: int, beside: Floats) -> bool:
-    """Whether no shift of a block, ``size`` cells a side, counts: all are near ``beside[:2]``.
+    """Whether all shifts of a block, ``size`` cells a side, are near ``beside[:2]``: none counts.
 
-    From ``beside[2]``, cells, on a shift counts. The corner of the block that is farthest off
+    A shift counts if it is ``beside[2]``, cells, or more away. So the farthest corner of the block
     decides.
     """
     far_x = max(abs(right - beside[0]), abs(right + size - 1 - beside[0]))
@@ -169,7 +169,7 @@ def _insert(
 ) -> None:
     """Put a block, (level, angle, right, up), on the stack of ``waiting`` ones.
 
-    From ``first`` on the stack stays in the order of bounds: the best is taken next.
+    From ``first`` on the stack is kept in the order of bounds, so that the best is taken next.
     """
     place = waiting
     while place > first and bounds[place - 1] > bound:

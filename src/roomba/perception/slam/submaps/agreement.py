@@ -1,7 +1,7 @@
-"""Loops that others must back: links that would move a part of the map far.
+"""Loop closures that need backing by others: links that would move a part of the map far.
 
-In a building of rooms and corridors that look alike, one match says little about where it is. The
-next submap, seen from elsewhere, must be found in a place that agrees with it.
+In a building of rooms and corridors that look alike, one match says little about where a submap is.
+The next submap, seen from elsewhere, must be found in a place that agrees with it.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from roomba.perception.slam.submaps.pose_graph import Link, composed, relative_t
 
 
 def is_far(link: Link, poses: Floats, config: BackingConfig) -> bool:
-    """Whether a link would move its child far, the submaps lying at ``poses``, [n, 3]."""
+    """Whether a link would move its child far; the submaps are at ``poses``, [n, 3]."""
     here = _told(link, poses)
     return math.hypot(*(here[:2] - poses[link.child, :2])) > config.far
 
 
 def is_backed(link: Link, others: list[Link], poses: Floats, config: BackingConfig) -> bool:
-    """Whether another child nearby was found where this link says that it must lie, too."""
+    """Whether another submap, near in time, was found where it must lie if this link is right."""
     moved = _told(link, poses)
     for other in others:
         if not 0 < abs(other.child - link.child) <= config.neighbours:

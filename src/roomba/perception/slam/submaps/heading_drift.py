@@ -1,9 +1,9 @@
-"""How far a map may be turned against its own beginning: what the submaps' headings are sure to.
+"""How far a map may be turned against its own beginning: the deviations of submaps' headings.
 
 From one submap to the next the heading drifts, as a random walk over the way: neighbouring scans
 err alike, so that matches between neighbours say little. A match with a submap of long ago takes
-the drift back. The variance of each heading against the first one is that of a chain, or of a net,
-of such steps: it adds up as resistances do.
+the drift back. Submaps form a chain, or a net, of such steps; the variance of a heading against the
+first one adds up in it as resistances do.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from roomba.perception.slam.submaps.parts import part_labels
 from roomba.perception.slam.submaps.pose_graph import Link, LinkKind
 
 _LEAST_DRIFT: Final = math.radians(0.25)
-"""rad per square root of m: of drives with good lidars, as their loops show it."""
+"""rad per square root of m; least drift, as loop closures of drives with good lidars show it."""
 _LONG_AGO: Final = 10.0
-"""m; of submaps with less way between them matches say little."""
+"""m; matches between submaps with a shorter way between them say little of the heading."""
 _SHORTEST: Final = 0.1
-"""m; over no shorter way the heading drifts less."""
+"""m; a shorter way counts as this: the heading drifts on it no less."""
 
 
 class HeadingDrift(NamedTuple):
@@ -38,9 +38,9 @@ class HeadingDrift(NamedTuple):
 
 
 def heading_drift(poses: Floats, ways: Sequence[float], links: Sequence[Link]) -> HeadingDrift:
-    """Return that of submaps at ``poses``, float64 [n, 3], before which ``ways``, m, were driven.
+    """Return the drift of submaps at ``poses``, float64 [n, 3], with ``ways``, m, driven before.
 
-    What hangs on the first submap by guesses alone does not count.
+    Submaps that only guesses link to the first one do not count.
     """
     steps = [link for link in links if link.kind is LinkKind.DRIVEN]
     drift = max(_LEAST_DRIFT, _shown_drift(poses, ways, steps))
@@ -64,7 +64,7 @@ def _way_of(link: Link, ways: Sequence[float]) -> float:
 
 
 def _holds(link: Link, ways: Sequence[float], pieces: NDArray[np.int64]) -> bool:
-    """Whether a link says something of a heading that other ones do not: see ``_LONG_AGO``."""
+    """Whether a link says something of a heading that others do not: see ``_LONG_AGO``."""
     if link.kind is not LinkKind.MATCHED:
         return link.kind is not LinkKind.GUESSED
     is_of_one_piece = bool(pieces[link.parent] == pieces[link.child])
@@ -72,7 +72,7 @@ def _holds(link: Link, ways: Sequence[float], pieces: NDArray[np.int64]) -> bool
 
 
 def _shown_drift(poses: Floats, ways: Sequence[float], steps: Sequence[Link]) -> float:
-    """Return by how much followed steps are off the map: rad per square root of m."""
+    """Return how far the tracked steps deviate from the map: rad per square root of m."""
     if not steps:
         return 0.0
     parents = np.array([step.parent for step in steps])
@@ -84,7 +84,7 @@ def _shown_drift(poses: Floats, ways: Sequence[float], steps: Sequence[Link]) ->
 def _variances(count: int, links: Sequence[Link], variances: Floats) -> Floats:
     """Return the variance of each heading against the first one, rad2, [count].
 
-    It is 0 where no link leads to.
+    It is 0 for submaps to which no link leads.
     """
     laplacian = np.zeros((count, count))
     for link, weight in zip(links, (1.0 / variances).tolist(), strict=True):

@@ -21,23 +21,23 @@ from roomba.perception.slam.submaps.submap import Submap
 
 _COARSE: Final = np.array([0.3, 0.2, 0.1])
 _FINE: Final = (0.05,)
-"""m; scales of a match, far off and near; that follow from the lidar's noise at last."""
+"""m; scales of the coarse and of the fine match; the last ones follow from the lidar's noise."""
 _ROUNDS: Final = 8
 _COARSE_REACH: Final = 3
-"""Cells of surfels; so far off a link is found at first."""
+"""Cells of surfels; reach of the coarse match."""
 _COARSE_STRIDE: Final = 3
 _SAME: Final = 0.005
 _SAME_TURN: Final = 0.002
-"""m, rad; a link that is off by less is not looked for again."""
+"""m, rad; a link that agrees with the present poses to less than this is not searched for again."""
 _KEPT: Final = 40
-"""Submaps whose grids of likelihoods are kept: some 2 MB each."""
+"""Submaps whose likelihood fields are cached: some 2 MB each."""
 
 
 class Linker:
     """Matches submaps, one to another."""
 
     def __init__(self, config: MappingConfig, half_width: float) -> None:
-        """Take the numbers, and how far the points of a submap reach, m."""
+        """Take the configuration, and how far the points of a submap reach, m."""
         self._config = config
         self._grid = SurfelGrid(half_width)
         self._matchers: dict[int, CorrelativeMatcher] = {}
@@ -49,15 +49,16 @@ class Linker:
         self._coarse = Tolerances(_COARSE, self._fine.variance, self._fine.close)
 
     def forget(self, submap: int) -> None:
-        """Drop what is kept of a submap whose points changed."""
+        """Drop the cached field of a submap, as its points changed."""
         self._matchers.pop(submap, None)
 
     def links_to(
         self, child: int, last: int, submaps: list[Submap], poses: Floats, links: list[Link]
     ) -> list[Link]:
-        """Return the links of a submap to those before ``last`` that lie near.
+        """Return the links of a submap to submaps before ``last`` that lie near.
 
-        One of ``links`` that tells where the submaps lie by now would be found again: it is kept.
+        A link among ``links`` that agrees with the present poses would only be found again: it is
+        kept.
         """
         found = []
         windows, turns = self._windows(child, poses, links)
@@ -78,7 +79,7 @@ class Linker:
         return self._link(parent, child, submaps, poses, windows.narrow, windows.turn)
 
     def _windows(self, child: int, poses: Floats, links: list[Link]) -> tuple[Floats, Floats]:
-        """Return by how much each submap may lie off as seen from one, m and rad, [n] each."""
+        """Return how far each submap may be off as seen from ``child``, m and rad, [n] each."""
         drift, config = self._config.drift, self._config.windows
         ways, unsure = _ways(child, poses, links, drift, config.hardly)
         away = np.hypot(*(poses[:, :2] - poses[child, :2]).T)
@@ -87,7 +88,7 @@ class Linker:
         return windows, config.turn + turns + unsure
 
     def _candidates(self, child: int, last: int, poses: Floats, windows: Floats) -> list[int]:
-        """Return the submaps before ``last`` that lie near one, and some of those that may."""
+        """Return the submaps before ``last`` that lie near ``child``, and some that may do so."""
         radius, config = self._config.link_radius, self._config.windows
         away = np.hypot(*(poses[:last, :2] - poses[child, :2]).T)
         near = [index for index in np.flatnonzero(away <= radius).tolist() if index != child]
@@ -111,7 +112,7 @@ class Linker:
     ) -> Link | None:
         """Return the link between two submaps, or None where they do not match well enough.
 
-        They may lie off by ``window``, m, and ``turn``, rad, from where they are thought to be.
+        They may be off by ``window``, m, and ``turn``, rad, from where they are thought to be.
         """
         cloud = submaps[child].cloud
         if len(cloud) < self._config.link_points or not len(submaps[parent].cloud):
@@ -141,7 +142,7 @@ class Linker:
         window: float,
         turn: float,
     ) -> Floats | None:
-        """Return roughly the pose [3] of points in a submap, found in a wide window, or None."""
+        """Return the rough pose [3] of ``cloud`` in a submap, found in a wide window, or None."""
         reach, config = self._config.search_reach, self._config.windows
         if not is_in_reach(there, reach):
             return None
@@ -183,7 +184,7 @@ class Linker:
 
 
 def _is_so(link: Link, poses: Floats) -> bool:
-    """Whether submaps lie as a link tells."""
+    """Whether the submaps of a link lie as the link measured."""
     off = relative_to(poses[link.parent][None], poses[link.child][None])[0] - link.relative
     return math.hypot(off[0], off[1]) < _SAME and abs(wrapped(off[2])) < _SAME_TURN
 
@@ -193,8 +194,8 @@ def _ways(
 ) -> tuple[Floats, Floats]:
     """Return how long the shortest chains of links are from one submap to each other one, m.
 
-    A link with a larger standard deviation than ``hardly_known``, m, counts as the way over which
-    as much drift comes about; how unsure such ones leave the heading is returned as well, rad.
+    A link with a larger standard deviation than ``hardly_known``, m, counts as a way so long that
+    drift makes it as unsure. Also return the sum of such links' deviations of the heading, rad.
     """
     joined = np.array([(link.parent, link.child) for link in links], np.int64).reshape(-1, 2)
     away = poses[joined[:, 0], :2] - poses[joined[:, 1], :2]

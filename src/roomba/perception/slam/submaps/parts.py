@@ -1,9 +1,10 @@
 """Parts of a map that no scan joined to the others, and where they lie on these.
 
-When scans stop to fit, the map goes on in a piece where dead reckoning puts it. A robot that was
-carried is elsewhere, and what it sees is seen through walls as it is thought to lie. Samples of
-such a part, some keyframes each, are then looked for on all that is before it, at any heading. The
-part lies where most of them are found, each by itself, if clearly fewer are found elsewhere.
+When scans no longer fit, the map goes on in a new piece, where dead reckoning puts it. If the robot
+was carried, it is elsewhere, and in the wrong place the beams of the piece go through known walls.
+Samples of such a part, some keyframes each, are then searched for on the parts before it, at any
+heading. The part is laid where most samples are found, each by itself, if clearly fewer are found
+elsewhere.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from roomba.perception.slam.submaps.submap import Keyframe, Submap, cloud_of, mo
 Labels = NDArray[np.int64]
 
 _SHARES: Final = np.linspace(0.2, 0.8, 13)
-"""Of a beam's length, where it is looked at: not beside the robot, nor beside what it met."""
+"""Shares of a beam's length at which it is tested: not beside the robot, nor beside its end."""
 _ROW: Final = 1 << 31
 """More cells than any map has in a row."""
 
@@ -39,9 +40,9 @@ class Carried(Enum):
 
 
 class FoundPart(NamedTuple):
-    """Where a part lies: ``moved`` [3], the pose on the map of what was its map frame.
+    """Where a part lies: ``moved`` [3], the pose on the map of the part's former map frame.
 
-    ``parents`` are submaps that show the same as submaps of the part, by the numbers of these.
+    ``parents`` has, by number of a submap of the part, a submap before it that shows the same.
     """
 
     moved: Floats
@@ -49,7 +50,7 @@ class FoundPart(NamedTuple):
 
 
 class _Found(NamedTuple):
-    """A sample that was found: the number of its submap, and where that lies then."""
+    """A sample that was found: the number of its submap, and where that submap lies then."""
 
     submap: int
     place: ClearPlace
@@ -69,7 +70,7 @@ def part_labels(count: int, links: Sequence[Link]) -> Labels:
 
 
 def hanging_on(part: int, labels: Labels, links: Sequence[Link]) -> NDArray[np.bool_]:
-    """Return the submaps of a part, and of the parts that lie where they do by guesses from it."""
+    """Return the submaps of a part, and of later parts that are placed by guesses from it."""
     hanging: NDArray[np.bool_] = labels == part
     for link in sorted(links, key=lambda link: link.child):
         # Parts before it stay where they are.
@@ -81,14 +82,14 @@ def hanging_on(part: int, labels: Labels, links: Sequence[Link]) -> NDArray[np.b
 def is_contradicted(
     part: int, labels: Labels, submaps: Sequence[Submap], poses: Floats, config: MappingConfig
 ) -> bool:
-    """Whether a part cannot lie where it is thought to: it was seen through what stands there."""
+    """Whether a part cannot lie where it is placed, as its beams go through surfaces there."""
     return seen_through(part, labels, submaps, poses, config) > config.parts.seen_through
 
 
 def seen_through(
     part: int, labels: Labels, submaps: Sequence[Submap], poses: Floats, config: MappingConfig
 ) -> float:
-    """Return the share of a part's beams, 0..1, that go through surfaces seen before it."""
+    """Return the share of a part's beams, 0..1, that go through surfaces of earlier parts."""
     cell, before = config.parts.cell, np.flatnonzero(labels < part).tolist()
     clouds = [moved(submaps[number].cloud, poses[number])[:, :2] for number in before]
     surfaces = np.unique(_cells(np.concatenate(clouds), cell))
@@ -106,7 +107,7 @@ def seen_through(
 def _go_through(
     frame: Keyframe, pose: Floats, surfaces: NDArray[np.int64], cell: float
 ) -> NDArray[np.bool_]:
-    """Return which beams of a keyframe go through cells in which something stands, bool [n]."""
+    """Return which beams of a keyframe go through cells with surfaces, bool [n]."""
     ends = moved(frame.points, pose)[:, :2]
     along = pose[:2] + _SHARES[:, None, None] * (ends - pose[:2])
     met: NDArray[np.bool_] = np.isin(_cells(along, cell), surfaces).any(axis=0)
@@ -122,7 +123,7 @@ def _cells(points: Floats, cell: float) -> NDArray[np.int64]:
 def found_part(
     part: int, labels: Labels, submaps: Sequence[Submap], poses: Floats, config: MappingConfig
 ) -> FoundPart | None:
-    """Return where a part, by its label, lies on those before it; None if that is not clear."""
+    """Return where a part, by its label, lies on the parts before it; None if that is not clear."""
     before: list[int] = np.flatnonzero(labels < part).tolist()
     samples = _samples(np.flatnonzero(labels == part).tolist(), submaps, config)
     if len(samples) < config.parts.backed:
@@ -160,12 +161,12 @@ def _samples(
 
 
 def _most_agreed(found: list[_Found], poses: Floats, config: MappingConfig) -> FoundPart | None:
-    """Return where most samples say that their part lies, if clearly fewer say otherwise."""
+    """Return where most samples place their part, if clearly fewer agree on another place."""
     agrees = np.array(
         [[_agree(one, other, poses, config) for other in found] for one in found], np.bool_
     ).reshape(len(found), len(found))
     best = _largest_group(agrees)
-    # Of the samples that are not in it:
+    # The largest group of the other samples:
     rival = _largest_group(agrees & ~best & ~best[:, None])
     if best.sum() < max(config.parts.backed, config.parts.clearer * rival.sum()):
         return None
@@ -176,7 +177,7 @@ def _most_agreed(found: list[_Found], poses: Floats, config: MappingConfig) -> F
 
 
 def _largest_group(agrees: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return those that agree with the one with which most do, bool [n], of a table [n, n]."""
+    """Return the samples that agree with the one that most agree with, bool [n]; table [n, n]."""
     if not len(agrees):
         return np.zeros(0, np.bool_)
     group: NDArray[np.bool_] = agrees[int(np.argmax(agrees.sum(axis=1)))]
@@ -184,7 +185,7 @@ def _largest_group(agrees: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def _agree(one: _Found, other: _Found, poses: Floats, config: MappingConfig) -> bool:
-    """Whether two were found as they lie to each other, but for how far the part drifts."""
+    """Whether two samples were found as they lie to each other, but for the drift in the part."""
     step = relative_to(poses[one.submap][None], poses[other.submap][None])
     expected = composed(one.place.pose[None], step)[0]
     backing, drifted = config.backing, config.drift * math.hypot(step[0, 0], step[0, 1])

@@ -31,10 +31,10 @@ def clearly_best(
     mapping: MappingConfig,
     least: float,
 ) -> list[ClearPlace | None]:
-    """Return for each of some clouds, [n, 4], where it fits clearly better than in other places.
+    """Return for each cloud, [n, 4], the place where it fits clearly better than in all others.
 
-    ``poses`` [m, 3] are those of the submaps. None for a cloud that has a mean likelihood of more
-    than ``least``, 0..1, nowhere, or in several places.
+    ``poses`` [m, 3] are those of the submaps. The place is None if the cloud's mean likelihood is
+    nowhere more than ``least``, 0..1, or if another place is nearly as good.
     """
     config, reach = mapping.relocation, mapping.search_reach
     found: list[list[ClearPlace]] = [[] for _ in clouds]

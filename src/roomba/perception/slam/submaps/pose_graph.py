@@ -22,29 +22,29 @@ Indices = NDArray[np.int64]
 
 _ROUNDS: Final = 30
 _SETTLED: Final = 1e-5
-"""m and rad; corrections that are smaller end the search."""
+"""m and rad; smaller corrections end the iteration."""
 _DOUBTED: Final = 9.0
-"""Squared error, in deviations, of which a link loses three quarters of its weight."""
+"""Tolerance at last: squared error, in variances, at which a link loses 3/4 of its weight."""
 _LAST_ROUNDS: Final = 8
-"""Rounds, at most, once that error is as small as it becomes."""
+"""Rounds, at most, once the tolerance is down to this last one."""
 _STRICTER: Final = 0.1
-"""That error is larger at first, so that links can pull far off poses together, and becomes so many
-times less each round (graduated non-convexity: Yang et al., RA-L 2020)."""
+"""Factor on the tolerance in each round. It is larger at first, so that links can pull poses
+together that are far off (graduated non-convexity: Yang et al., RA-L 2020)."""
 _DENSE: Final = 600
-"""Numbers to solve for; with more a sparse matrix is quicker."""
+"""Unknowns; for more of them a sparse matrix is quicker."""
 _HELD: Final = 1e-6
-"""1/m2; a pose that no link holds stays where it is."""
+"""1/m2; information that keeps a pose in place that no link holds."""
 
 
 class LinkKind(Enum):
-    """What a link between two submaps was measured with."""
+    """How a link between two submaps was measured."""
 
     MATCHED = "matched"
-    """Their scans, which show the same walls. It may be wrong, as places look alike."""
+    """By matching their scans, which show the same walls. It may be wrong, as places look alike."""
     DRIVEN = "driven"
-    """The robot was followed from one to the next."""
+    """By following the robot from one submap to the next."""
     GUESSED = "guessed"
-    """Dead reckoning, or less, from one to the next: no scan confirmed the way."""
+    """By dead reckoning, or less, from one submap to the next: no scan confirmed the way."""
     TOLD = "told"
     """A reported pose: that of the child on the map, seen from the submap nearest to it."""
 
@@ -65,7 +65,7 @@ class Link:
 
     @property
     def may_be_wrong(self) -> bool:
-        """Whether it loses weight when all others contradict it."""
+        """Whether the link loses weight if the others contradict it."""
         return self.kind is LinkKind.MATCHED
 
 
@@ -81,7 +81,7 @@ class Measurements(NamedTuple):
     doubted: NDArray[np.bool_]
 
     def beside(self, others: Measurements) -> Measurements:
-        """Return these links, and then others."""
+        """Return these links, followed by others."""
         return Measurements(*(np.concatenate(both) for both in zip(self, others, strict=True)))
 
     @staticmethod
@@ -118,7 +118,7 @@ def composed(parents: Floats, relative: Floats) -> Floats:
 
 
 def inverse(pose: Floats) -> Floats:
-    """Return the pose [3] that undoes one, [3]."""
+    """Return the inverse of a pose [3]."""
     undone: Floats = relative_to(pose[None], np.zeros((1, 3)))[0]
     return undone
 
@@ -126,8 +126,8 @@ def inverse(pose: Floats) -> Floats:
 def optimised(poses: Floats, links: list[Link], known: int = 0) -> Floats:
     """Return ``poses``, float64 [n, 3], moved so that they agree best with the links.
 
-    For the first ``known`` links they were optimised before. Raises ValueError for a link between
-    poses that do not exist.
+    The poses were optimised before for the first ``known`` links. Raises ValueError for a link
+    between poses that do not exist.
     """
     if len(links) <= known:
         return poses.copy()
@@ -135,7 +135,7 @@ def optimised(poses: Floats, links: list[Link], known: int = 0) -> Floats:
 
 
 def brought_to_agree(poses: Floats, measured: Measurements, known: int = 0) -> Floats:
-    """Return what :func:`optimised` does, for links as arrays; there must be some."""
+    """Return the same as :func:`optimised`, for links as arrays; there must be at least one."""
     ends = measured.parents, measured.children
     if min(end.min() for end in ends) < 0 or max(end.max() for end in ends) >= len(poses):
         raise ValueError(f"expected links between poses 0 to {len(poses) - 1}, got others")
@@ -157,8 +157,8 @@ def brought_to_agree(poses: Floats, measured: Measurements, known: int = 0) -> F
 
 
 class _Errors(NamedTuple):
-    """By how much each link is off, [m, 3], what the poses ``predicted`` that it measures, [m, 3],
-    and the ``square`` of the error in deviations, [m].
+    """The ``error`` of each link, [m, 3], the measurement ``predicted`` by the poses, [m, 3], and
+    the ``square`` of the error, in variances, [m].
     """
 
     error: Floats
@@ -183,7 +183,7 @@ def _errors(poses: Floats, measured: Measurements) -> _Errors:
 
 
 def _weighted(measured: Measurements, errors: _Errors, tolerance: float) -> Floats:
-    """Return the information [m, 3, 3] of the links, less of those that others contradict."""
+    """Return the information [m, 3, 3] of the links, reduced for links that others contradict."""
     trust = (tolerance / (tolerance + errors.square)) ** 2
     weighted: Floats = measured.information * np.where(measured.doubted, trust, 1.0)[:, None, None]
     return weighted
@@ -228,7 +228,7 @@ def _solved(sums: _Matrix, right: Floats) -> Floats:
         left[np.diag_indices(size - 3)] += _HELD
         solution[3:] = np.linalg.solve(left, right[3:])
         return solution
-    # Here, for only large maps need it, and it takes 40 MB.
+    # Imported only here: it takes 40 MB, and only large maps need it.
     from scipy.sparse import csc_matrix, identity
     from scipy.sparse.linalg import spsolve
 

@@ -17,11 +17,12 @@ from roomba.perception.slam.submaps.submap import Submap
 class MapRelocation:
     """Keeps whether the robot is carried, and where the scan before was found.
 
-    ``is_lifted`` while its wheels hang in the air, ``is_lost`` from then on until it is placed.
+    The robot ``is_lifted`` while its wheels hang in the air. It ``is_lost`` from when it is set
+    down until its place is known again.
     """
 
     def __init__(self, config: MappingConfig) -> None:
-        """Begin on the floor, where the map begins."""
+        """Begin with the robot on the floor, where the map begins."""
         self._config = config
         self.is_lifted = self.is_lost = False
         self._searched_at: Floats | None = None
@@ -29,24 +30,24 @@ class MapRelocation:
 
     @property
     def is_placed(self) -> bool:
-        """Whether the robot's place on the map is known from where it came along."""
+        """Whether the robot's place on the map is known, as it was followed all the way."""
         return not (self.is_lifted or self.is_lost)
 
     def lift(self, is_lifted: bool) -> None:
-        """Tell whether the wheels hang in the air; what was found before it is set down is old."""
+        """Tell whether the wheels hang in the air; once set down, the robot is lost."""
         if self.is_lifted and not is_lifted:
             self.is_lost = True
             self._searched_at = self._found = None
         self.is_lifted = is_lifted
 
     def set_down(self) -> None:
-        """Let the robot be on the floor again, wherever that is, without being lost."""
+        """Take the robot as on the floor, at an unknown place, but not as lost."""
         self.is_lifted = self.is_lost = False
 
     def find(
         self, points: Floats, reckoned: Floats, submaps: list[Submap], poses: Floats
     ) -> Floats | None:
-        """Return where the robot is, [3], map frame, or None as long as that is not sure.
+        """Return where the robot is, [3], map frame, or None while that is not sure.
 
         ``points`` [n, 4] are those of a scan, ``reckoned`` [3] its pose by dead reckoning,
         ``poses`` [m, 3] those of the submaps.

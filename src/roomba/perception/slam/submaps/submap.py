@@ -16,8 +16,8 @@ from roomba.perception.slam.submaps.pose_graph import composed
 class Keyframe:
     """A scan that is kept: float32 [n, 4], robot's frame, and its pose [3] in its submap.
 
-    ``open`` is where ways end that its beams without an echo show to be open, float32 [m, 2],
-    robot's frame: see :mod:`roomba.perception.slam.drawing.open_ways`.
+    ``open``, float32 [m, 2], robot's frame, are the ends of open ways, along beams without an echo:
+    see :mod:`roomba.perception.slam.drawing.open_ways`.
     """
 
     points: NDArray[np.float32]
@@ -27,7 +27,7 @@ class Keyframe:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KeptSubmap:
-    """A submap: ``way`` is what was driven before it, m; ``keyframes`` are those it has by now."""
+    """A saved submap: ``way`` is what was driven before it, m; ``keyframes`` those so far."""
 
     way: float
     keyframes: tuple[Keyframe, ...]
@@ -49,7 +49,7 @@ class Submap:
         self.cloud = np.ascontiguousarray(points[::stride])
 
     def poses(self, pose: Floats) -> Floats:
-        """Return where its keyframes were taken, float64 [n, 3], the submap being at ``pose``."""
+        """Return where the keyframes were taken, float64 [n, 3], if the submap is at ``pose``."""
         relative = np.array([frame.pose for frame in self.keyframes]).reshape(-1, 3)
         return composed(np.broadcast_to(pose, relative.shape), relative)
 
@@ -63,7 +63,7 @@ def cloud_of(keyframes: Sequence[Keyframe]) -> Floats:
 
 
 def moved(points: NDArray[np.float32] | Floats, pose: Floats) -> Floats:
-    """Return points with normals, [n, 4], moved by ``pose`` [3] into the frame it is given in."""
+    """Return points with normals, [n, 4], moved from the frame at ``pose`` [3] into its parent."""
     cosine, sine = np.cos(pose[2]), np.sin(pose[2])
     turn = np.array([[cosine, sine], [-sine, cosine]])
     wide = np.asarray(points, np.float64)

@@ -35,7 +35,7 @@ from roomba.perception.slam.submaps.pose_graph import (
 from roomba.perception.slam.submaps.submap import KeptSubmap, Keyframe, Submap, moved
 
 CLOUD: Final = 1500
-"""Points of a submap that are matched to others."""
+"""Points of a submap that are matched to other submaps, at most."""
 _RECENT: Final = 40
 """Links that may back a new one."""
 _REFINEMENTS: Final = 2
@@ -45,8 +45,8 @@ _REFINEMENTS: Final = 2
 class SubmapGraph:
     """``submaps`` and their ``poses``, float64 [n, 3], map frame; the newest is the last one.
 
-    ``links`` are what was measured between them. The points of a submap are within ``reach``, m, of
-    its origin; ``range_deviation``, m, is that of a range.
+    ``links`` are the measurements between submaps. The points of a submap are within ``reach``, m,
+    of its origin; ``range_deviation``, m, is the standard deviation of a range.
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class SubmapGraph:
         """Number of each submap that began after the robot was carried -> whether the lifted wheels
         told that. Not saved: lost at a restart."""
         self.laid = 0
-        """Parts that :meth:`join_parts` found."""
+        """Number of parts that :meth:`join_parts` found and laid."""
 
     def take_over(
         self, submaps: tuple[KeptSubmap, ...], poses: Floats, links: tuple[Link, ...]
@@ -76,17 +76,17 @@ class SubmapGraph:
         self.poses, self.links = poses.copy(), list(links)
 
     def use_reach(self, reach: float) -> None:
-        """Take how far the points of a submap are from its origin at most, m."""
+        """Set how far the points of a submap are from its origin at most, m."""
         self.reach = reach
         self._linker = Linker(self._config, reach)
         self._linker.use_noise(self.range_deviation)
 
     def use_odometry(self, localization: LocalizationConfig) -> None:
-        """Go by the noise of other odometry from here on."""
+        """Use the noise of other odometry from now on."""
         self._localization = localization
 
     def use_noise(self, deviation: float) -> None:
-        """Go by the standard deviation of a range, m."""
+        """Use the standard deviation of a range, m."""
         self.range_deviation = deviation
         if self._linker is not None:
             self._linker.use_noise(deviation)
@@ -97,7 +97,7 @@ class SubmapGraph:
         return self.submaps[-1]
 
     def placed(self, relative: Floats) -> Floats:
-        """Return a pose in the newest submap, [3], in the map's frame."""
+        """Return the pose, [3], map frame, of a pose in the newest submap's frame."""
         placed: Floats = composed(self.poses[-1:], relative[None])[0]
         return placed
 
@@ -119,8 +119,8 @@ class SubmapGraph:
     ) -> None:
         """Begin a submap at a pose of the newest one, [3].
 
-        No scan confirmed what was driven, m, and turned, rad, before it. It may lie anywhere if the
-        robot was ``carried``.
+        ``unsure_way``, m, and ``unsure_turn``, rad, were driven before it without a scan to confirm
+        them. The submap may lie anywhere if the robot was ``carried``.
         """
         count = len(self.submaps)
         if carried is not None:
@@ -142,7 +142,7 @@ class SubmapGraph:
         self._add(pose, way)
 
     def close(self) -> None:
-        """Link the newest submap to all that show the same walls, and let all agree."""
+        """Link the newest submap to all that show the same walls, and optimise all poses."""
         child = len(self.submaps) - 1
         self.newest.close(CLOUD)
         known = len(self.links)
@@ -166,10 +166,10 @@ class SubmapGraph:
         return heading_drift(self.poses, [submap.way for submap in self.submaps], self.links)
 
     def join_parts(self) -> None:
-        """Lay parts that begin where the robot was carried where they are found on the rest.
+        """Lay the parts that began after the robot was carried where they fit on the rest.
 
-        Other parts lie where dead reckoning says, however like another place they look; so do those
-        to which it only seems to have been carried, and that may well be there.
+        Other parts stay where dead reckoning puts them, even if they look like another place. So do
+        parts before which the robot only seemed to be carried, unless beams contradict their place.
         """
         labels = part_labels(len(self.submaps), self.links)
         for part in sorted(self._carried_to.keys() & set(labels.tolist())):
@@ -183,7 +183,7 @@ class SubmapGraph:
                 labels = part_labels(len(self.submaps), self.links)
 
     def _lay_part(self, found: FoundPart, moved: NDArray[np.bool_]) -> None:
-        """Move a part, and what hangs on it, where it was found, if links say so as well."""
+        """Move a part, and all that hangs on it, where it was found, if links confirm that."""
         poses = self.poses.copy()
         there = np.repeat(found.moved[None], int(np.count_nonzero(moved)), axis=0)
         poses[moved] = composed(there, poses[moved])
@@ -195,7 +195,7 @@ class SubmapGraph:
         good = [link for link in links if link is not None]
         if not good:
             return
-        # What was guessed of where it lies holds no more.
+        # The guessed links to the part hold no more: they become what they are now.
         known = [
             _as_lies(link, poses)
             if link.kind is LinkKind.GUESSED and moved[link.parent] != moved[link.child]
@@ -207,7 +207,7 @@ class SubmapGraph:
         self.laid += 1
 
     def link_anew(self) -> None:
-        """Look for all links anew, near where submaps lie by the present ones."""
+        """Search for all links anew, near where the present links place the submaps."""
         backing = self._config.backing
         for _ in range(_REFINEMENTS):
             known = self.links
@@ -223,7 +223,7 @@ class SubmapGraph:
             self.poses = optimised(self.poses, self.links)
 
     def lay(self, number: int, poses: Floats) -> None:
-        """Let a submap lie so that its keyframes are at ``poses``, float64 [n, 3], map frame."""
+        """Place a submap and its keyframes, so that these are at ``poses``, float64 [n, 3], map."""
         submap = self.submaps[number]
         origin = composed(poses[:1], inverse(submap.keyframes[0].pose)[None])
         self.poses[number] = origin[0]
@@ -244,7 +244,7 @@ class SubmapGraph:
     def driven_ways(self) -> list[list[Floats]]:
         """Return where the robot was, [2], m, map frame, at the keyframes of each way it drove.
 
-        A way ends where it was carried, or its place was lost.
+        A way ends where the robot was carried, or its place was lost.
         """
         followed = {link.child for link in self.links if link.kind is LinkKind.DRIVEN}
         ways = list[list[Floats]]()
@@ -255,7 +255,7 @@ class SubmapGraph:
         return ways
 
     def keyframes_beside(self, numbers: list[int]) -> Iterator[tuple[Keyframe, Floats]]:
-        """Go through the keyframes of some submaps; their poses, [3], are in the newest one."""
+        """Go through the keyframes of some submaps, with poses, [3], in the newest one's frame."""
         for number in numbers:
             relative = relative_to(self.poses[-1:], self.poses[number : number + 1])[0]
             submap = self.submaps[number]
@@ -294,7 +294,7 @@ class SubmapGraph:
         return self._linker.links_to(child, child, self.submaps, self.poses, known)
 
     def _agreeing(self, found: list[Link], child: int) -> list[Link]:
-        """Return those links that others back, if they must, and older ones that these back."""
+        """Return the new links that need no backing or have it, and older ones that get it now."""
         backing = self._config.backing
         agreeing = [link for link in found if not is_far(link, self.poses, backing)]
         waiting = self._waiting + [link for link in found if is_far(link, self.poses, backing)]
@@ -310,7 +310,7 @@ class SubmapGraph:
         return agreeing
 
     def _driven(self, way: float) -> Floats:
-        """Return the information of a link that follows from having driven so far, m."""
+        """Return the information of a link along which ``way``, m, was driven."""
         numbers = self._localization
         deviations = np.array([numbers.way_noise, numbers.way_noise, numbers.turn_noise])
         information: Floats = np.diag((deviations * math.sqrt(max(way, 0.1))) ** -2.0)
@@ -318,12 +318,12 @@ class SubmapGraph:
 
 
 def _as_lies(link: Link, poses: Floats) -> Link:
-    """Return a link that tells how its submaps lie now."""
+    """Return a link changed to how its submaps lie now."""
     relative = relative_to(poses[link.parent][None], poses[link.child][None])[0]
     return replace(link, relative=relative)
 
 
 def _information(deviation: float, heading_deviation: float) -> Floats:
-    """Return the information matrix of a pose that is known to so much, m and rad."""
+    """Return the information matrix of a pose by its standard deviations, m and rad."""
     information: Floats = np.diag([deviation**-2, deviation**-2, heading_deviation**-2])
     return information
