@@ -15,16 +15,16 @@ from roomba.planning.coverage.passes.sweep import unswept
 from roomba.planning.coverage.tour.net import Net, net_over
 
 _MARGIN = 2
-"""cells around what can be swept."""
+"""cells; margin of the window around the floor that can be swept."""
 
 
 @dataclass(frozen=True, eq=False)
 class Ground:
-    """A window of the floor: ``middles``, where the middle can get to, and ``coverable``, what is
-    swept from there, bool [rows, columns] both.
+    """A window of the floor: ``middles``, where the middle can get to, and ``coverable``, the floor
+    that is swept from there, bool [rows, columns] both.
 
-    Places on it are counted in cells: (x, y) is (column, row) of the window, whole numbers are the
-    cells' centres.
+    Places on the window are in cells: (x, y) is (column, row), whole numbers are the cells'
+    centres.
     """
 
     floor: CoverageFloor
@@ -34,7 +34,7 @@ class Ground:
 
     @classmethod
     def around(cls, floor: CoverageFloor, seed: tuple[int, int]) -> Ground:
-        """Return the ground that can be got to from a (row, column) of the floor's frame."""
+        """Return the ground that can be reached from a (row, column) of the floor's frame."""
         middles = floor.middles(floor.frame.centre_of(*seed))
         coverable = floor.swept_from(middles)
         rows, columns = (np.flatnonzero(coverable.any(axis=axis)) for axis in (1, 0))
@@ -97,7 +97,7 @@ class Ground:
 
     @cached_property
     def rounded_off(self) -> Mask:
-        """What could be swept and is left beside smooth ways along slanted walls: bool, window."""
+        """Floor that could be swept, but that smooth ways along slanted walls leave; a mask."""
         plain = rings(self.middles)
         if all(np.array_equal(one, other) for one, other in zip(plain, self.rings, strict=True)):
             return np.zeros_like(self.middles)

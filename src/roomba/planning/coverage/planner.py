@@ -1,4 +1,4 @@
-"""The coverage planner: one way for a round robot that sweeps all the floor it can get to.
+"""The coverage planner: one way for a round robot that sweeps all the floor it can reach.
 
 Its stages: :mod:`~roomba.planning.coverage.floor.floor` tells what floor can be swept,
 :mod:`~roomba.planning.coverage.passes.edges` goes along walls and furniture,
@@ -36,12 +36,12 @@ __all__ = ["CoverageFloor", "CoveragePlan", "CoveragePlanner"]
 
 
 _OFF_MIDDLES = 0.2
-"""cells; the tool is a whole number of cells wide, so that seams would lie on their middles, where
-it takes the least error of the drive to leave a whole row unswept."""
+"""cells; shift of a swath. The tool is a whole number of cells wide, so that seams would lie on the
+middles of cells, where the least error of the drive leaves a whole row unswept."""
 
 
 UNWATCHED: Final = contextlib.nullcontext()
-"""Around plans that are not counted."""
+"""The context of plans that nothing counts."""
 
 
 class CoveragePlanner:
@@ -57,7 +57,7 @@ class CoveragePlanner:
         stages: CoverageStages = OUR_STAGES,
         watch: AbstractContextManager[object] = UNWATCHED,
     ) -> None:
-        """Take the map, how far the middle keeps from all that is solid, and the tool's width.
+        """Take the map, the distance that the middle keeps from solid things, and the tool's width.
 
         At corners of more than ``sharp_corner``, rad, the robot turns on the spot. ``watch`` is
         entered for each plan, also one that fails, and may count them. Raises ValueError for
@@ -76,10 +76,10 @@ class CoveragePlanner:
         obstacles: Iterable[RoundObstacle] = (),
         edges_only: bool = False,
     ) -> CoveragePlan:
-        """Return a way from ``start``, to ``end`` if given, that sweeps what is to do.
+        """Return a way from ``start``, to ``end`` if given, that sweeps the floor to do.
 
-        ``todo``, bool on ``floor.frame``, marks the floor to sweep, all by default; what cannot be
-        reached does not count. ``obstacles`` are round things that the map does not show. With
+        ``todo``, bool on ``floor.frame``, marks the floor to sweep, all by default; floor that
+        cannot be reached is left out. ``obstacles`` are round things not on the map. With
         ``edges_only`` only the floor along walls and furniture is swept. Raises
         :class:`~roomba.planning.path.planner.NoPathError` when the robot cannot leave the start or
         reach the end, and ValueError for a ``todo`` of another shape or numbers that are not
@@ -126,9 +126,9 @@ class CoveragePlanner:
         )
 
     def rounded_off(self, start: Point, obstacles: Iterable[RoundObstacle] = ()) -> Mask:
-        """Return the floor that could be swept and that no plan from ``start`` does.
+        """Return the floor that could be swept, but that plans from ``start`` leave.
 
-        Bool on ``floor.frame``: in dips of slanted walls, past which plans go without a turn.
+        Bool on ``floor.frame``. It lies in dips of slanted walls, past which plans go smoothly.
         Raises :class:`~roomba.planning.path.planner.NoPathError` as :meth:`plan` does.
         """
         ground, _ = self._ground_from(start, obstacles)
@@ -141,7 +141,7 @@ class CoveragePlanner:
     ) -> tuple[Ground, Floats]:
         """Return the ground around a start, and the place on it where the way begins.
 
-        The last ground is kept, and serves again for the same obstacles from anywhere on it.
+        The last ground is cached: it is used again for the same obstacles and any start on it.
         """
         known = self._ground
         floor = (self.floor if known is None else known.floor).with_obstacles(obstacles)
@@ -159,8 +159,8 @@ class CoveragePlanner:
 def _off_middles(line: Polyline, middles: Mask) -> Polyline:
     """Return a swath shifted a little, so that no seam between two lies on centres of cells.
 
-    It is shifted to the side on which it fits, and not at all where there is none. Slanted ones
-    overlap instead.
+    It is shifted to a side on which it fits, or not at all if there is none. Slanted swaths are not
+    shifted: they overlap instead.
     """
     along = np.abs(line[-1] - line[0])
     if along.all():

@@ -1,7 +1,7 @@
 """The stages of planning coverage as functions, each of which a program may replace by its own.
 
 Places are in cells of the window, (x, y) as (column, row); whole numbers are the cells' centres.
-What each stage takes and gives is said where ours is.
+The docstrings of the default stages say what each stage takes and returns.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ sharp corners."""
 
 @dataclass(frozen=True, slots=True)
 class CoverageStages:
-    """The stages in the order in which they are called; each is ours by default."""
+    """The stages in the order in which they are called, each with its default."""
 
     edges: Edges = our_edges
     swaths: Swaths = our_swaths

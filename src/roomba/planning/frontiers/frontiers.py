@@ -22,12 +22,12 @@ from roomba.planning.frontiers.kernels import clusters, frontier_cells, seen_fro
 class FrontierChoice:
     """Which frontiers count, from where they are looked at, and which come first.
 
-    Patches of the unknown of less than ``least_unknown`` m2 are no frontiers, and neither are those
-    nearer than ``away`` m to one that is left out. A viewpoint is at most ``look_from`` m off its
-    frontier; one metre nearer to it is worth ``nearer_worth`` m of way. Frontiers shorter than
-    ``small`` m cost ``small_cost`` m of way more, so that large ones come first. One of fewer than
-    ``least_cells`` is none; about ``stride`` m apart are the places of one that are tried. A
-    viewpoint where the body has little room costs ``tight_cost`` m of way more.
+    Unknown patches of less than ``least_unknown`` m2 have no frontier. Frontiers of fewer than
+    ``least_cells`` cells do not count, nor do cells nearer than ``away`` m to a point that is left
+    out. Places of a frontier about ``stride`` m apart are tried. A viewpoint is at most
+    ``look_from`` m off its frontier; one metre nearer is worth ``nearer_worth`` m of way. A
+    viewpoint where the body has little room costs ``tight_cost`` m of way more. Frontiers shorter
+    than ``small`` m cost ``small_cost`` m of way more, so that large ones come first.
     """
 
     least_unknown: float
@@ -43,8 +43,10 @@ class FrontierChoice:
 
 @dataclass(frozen=True, slots=True)
 class Frontier:
-    """``middle`` is a cell of it, ``viewpoint`` where to look from, m; ``way`` how far that is, m;
-    ``length`` is about how long it is, m.
+    """A frontier; ``middle`` is the middle of one of its cells, m.
+
+    ``viewpoint`` is where to look from, m; ``way`` how far the robot has to drive there, m;
+    ``length`` about how long the frontier is, m.
     """
 
     middle: Point
@@ -53,7 +55,7 @@ class Frontier:
     length: float
 
     def moved(self, moved: Pose) -> Frontier:
-        """Return the same in another frame, in which this one lies at ``moved``."""
+        """Return the frontier in another frame, in which this one's frame lies at ``moved``."""
         middle, viewpoint = moved.place_of(*self.middle), moved.place_of(*self.viewpoint)
         return replace(self, middle=middle, viewpoint=viewpoint)
 
@@ -69,8 +71,8 @@ def frontiers(
     """Return the frontiers that can be looked at, the best to go to first.
 
     ``fits``, bool over the map's grid, tells where the robot's middle may be, ``roomy`` where it
-    has room; ``here`` is where it is, m. Those near a point ``left_out``, m, are left out. There
-    are none where it fits nowhere.
+    has much room; ``here`` is where the robot is, m. Frontiers near one of the points ``left_out``,
+    m, are left out. If the robot fits nowhere, the list is empty.
     """
     frame = occupancy.frame
     nearest = _nearest_that_fits(fits, frame, here)
@@ -106,8 +108,9 @@ def frontiers(
 def _nearest_that_fits(
     fits: NDArray[np.bool_], frame: GridFrame, here: Point
 ) -> tuple[int, int] | None:
-    """Return the cell from which ways begin: of a robot that touches something not always its own,
-    and off the map none. None where it fits nowhere.
+    """Return the cell from which ways begin: the robot's own, or the nearest one that fits.
+
+    They differ if the robot touches something, or is off the map. None if it fits nowhere.
     """
     row, column = frame.cell_of(*here)
     if frame.contains(*here) and fits[row, column]:
@@ -120,7 +123,7 @@ def _nearest_that_fits(
 
 
 def is_frontier(occupancy: OccupancyMap, point: Point, radius: float, least: int) -> bool:
-    """Whether the known ends in ``least`` cells nearer than ``radius`` to a point, m."""
+    """Whether ``least`` frontier cells or more lie within about ``radius``, m, of a point, m."""
     frame = occupancy.frame
     row, column = frame.cell_of(*point)
     reach = int(radius / frame.resolution)
@@ -138,8 +141,8 @@ def lengths_near(
 ) -> NDArray[np.float64]:
     """Return about how long the frontiers nearest to points are, m, float64 [n].
 
-    0 where none is nearer than ``radius`` m, and where it is that of a point before. Patches of the
-    unknown of less than ``least_unknown`` m2 have no frontier.
+    A length is 0 if no frontier is nearer than ``radius`` m, or if an earlier point has the same
+    one. Unknown patches of less than ``least_unknown`` m2 have no frontier.
     """
     frame = occupancy.frame
     labels = np.empty(frame.shape, np.int32)
@@ -176,9 +179,9 @@ def _cost(frontier: Frontier, choice: FrontierChoice) -> float:
 def _by_number(
     labels: NDArray[np.int32], count: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the cells of the numbers from 1 on, int64 [n, 2], row and column, one after another.
+    """Return the cells with labels, int64 [n, 2], row and column, sorted by their labels.
 
-    And where those of each number begin, int64 [count + 1]: the last is where they all end.
+    Also return where the cells of each label begin, int64 [count + 1]; the last is where all end.
     """
     found = np.flatnonzero(labels > 0)
     numbers = labels.ravel()[found]
@@ -188,9 +191,9 @@ def _by_number(
 
 
 def _from_middle(cells: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return how far each cell is from the mean of those of its number, in cells, down and aside.
+    """Return each cell's distance from the mean of its label's cells: rows plus columns.
 
-    ``cells`` and ``ends`` as :func:`_by_number` tells them.
+    ``cells`` and ``ends`` are as :func:`_by_number` returns them.
     """
     counts = np.diff(ends)
     means = np.add.reduceat(cells, ends[:-1]) / counts[:, None] if len(counts) else cells
@@ -199,9 +202,9 @@ def _from_middle(cells: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[n
 
 
 def _spaced(apart: NDArray[np.float64], every: int) -> NDArray[np.intp]:
-    """Return one of ``every`` places, the nearest to the middle first; it is one of them.
+    """Return each ``every``-th place, nearest to the middle first; the nearest is among them.
 
-    The order of places that are equally far is the same on all processors.
+    The order of equally distant places is the same on all processors.
     """
     spaced = np.arange(int(np.argmin(apart)) % every, len(apart), every)
     return spaced[np.argsort(apart[spaced], kind="stable")]

@@ -16,21 +16,21 @@ Values = NDArray[np.int8]
 _DIAGONAL: Final = math.sqrt(2.0)
 _SMALL: Final = 1
 _LARGE: Final = 2
-"""Whether the patch of a cell is known to be large, small, or neither yet."""
+"""What is known of a cell's unknown patch: that it is large, or small; 0 is nothing yet."""
 
 
 @allocating_entry
 def ways_from(fits: NDArray[np.bool_], row: int, column: int, ways: NDArray[np.float64]) -> None:
-    """Fill ``ways`` with the lengths, in cells, of the shortest ways over cells that ``fits``.
+    """Fill ``ways`` with the lengths, in cells, of the shortest ways over cells that fit.
 
-    Ways go to eight neighbours and cut no closed corner; where none leads the length is infinite.
-    The first cell need not fit.
+    Steps go to eight neighbours and cut no closed corner. Where no way leads, the length is
+    infinite. The first cell need not fit.
     """
     rows, columns = fits.shape
     ways[:] = math.inf
     ways[row, column] = 0.0
-    # Cells whose neighbours are to be looked at, each in it once at most. With steps of nearly one
-    # length hardly any comes twice, and a heap would take five times as long.
+    # A queue of cells whose neighbours are to be looked at, each in it once at most. Steps are
+    # about equally long, so that hardly any cell comes twice; a heap would take five times as long.
     queue, waits = np.empty(fits.size, np.int64), np.zeros(fits.shape, np.bool_)
     queue[0] = row * columns + column
     first, count = 0, 1
@@ -58,7 +58,7 @@ def ways_from(fits: NDArray[np.bool_], row: int, column: int, ways: NDArray[np.f
 
 @allocating_entry
 def frontier_cells(values: Values, least: int, frontier: NDArray[np.bool_]) -> None:
-    """Mark free cells with a side to the unknown, if ``least`` unknown cells or more hang together.
+    """Mark free cells with a side to an unknown patch of ``least`` connected cells or more.
 
     Smaller patches of the unknown are shadows of chair legs and gaps between beams.
     """
@@ -79,7 +79,7 @@ def frontier_cells(values: Values, least: int, frontier: NDArray[np.bool_]) -> N
 
 @inner_part
 def _mark_sides(values: Values, marked: NDArray[np.bool_]) -> None:
-    """Mark free cells with a side to the unknown, none at the border of the map."""
+    """Mark free cells with a side to an unknown cell, but no cells at the border of the map."""
     marked[:] = False
     for row in range(1, values.shape[0] - 1):
         below, own, above = values[row - 1, 1:-1], values[row], values[row + 1, 1:-1]
@@ -94,9 +94,9 @@ def _mark_sides(values: Values, marked: NDArray[np.bool_]) -> None:
 def _is_large(
     values: Values, row: int, column: int, sizes: NDArray[np.int8], patch: NDArray[np.int64]
 ) -> bool:
-    """Whether a cell is of an unknown patch of as many cells as ``patch`` has room for, or more.
+    """Whether a cell is in an unknown patch of as many cells as ``patch`` has room for, or more.
 
-    ``sizes`` keeps what was found: of a large patch no more is looked at than that takes.
+    ``sizes`` keeps the results. Of a large patch only as many cells are visited as decide it.
     """
     if values[row, column] != UNKNOWN or sizes[row, column] != 0:
         return bool(sizes[row, column] == _LARGE)
@@ -165,9 +165,9 @@ def seen_from(
 ) -> tuple[int, int, int]:
     """Return the first of ``cells``, int64 [n, 2], that can be looked at, and from which cell.
 
-    Its index, and row and column of that cell, see :func:`viewpoint`; all -1 when there is none.
-    The cells' ``middles`` [n, 2] that are nearer than ``away`` to ``left_out`` [m, 2], m, do not
-    count.
+    Returned are its index, and row and column of the viewpoint, see :func:`viewpoint`; all are -1
+    if there is none. Cells whose ``middles`` [n, 2] are nearer than ``away`` to ``left_out``
+    [m, 2], m, do not count.
     """
     for index in range(cells.shape[0]):
         is_left_out = False
@@ -196,9 +196,9 @@ def viewpoint(
 ) -> tuple[int, int, float]:
     """Return the cell from where a frontier cell is best looked at, and its cost in cells.
 
-    It can be reached, nothing occupied stands between, and it is ``radius`` cells away at most;
-    the cost is that of being there, ``costs``, and ``aside`` times how far it is from the frontier.
-    An infinite cost means that there is none.
+    The viewpoint can be reached, nothing occupied lies between, and it is at most ``radius`` cells
+    away. Its cost is its entry in ``costs``, plus ``aside`` times its distance from the frontier
+    cell. An infinite cost means that there is none.
     """
     rows, columns = values.shape
     best, best_row, best_column = math.inf, -1, -1

@@ -1,4 +1,4 @@
-"""Planning on a map whose walls are not quite where they stand, as one is that is being made."""
+"""Planning on a map whose walls are not quite in their places, as while a map is being made."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from roomba.planning.path.planner import NoPathError, Path, PathPlanner
 
 
 class CarefulPathPlanner(PathPlanner):
-    """Goes as near to walls as the tight clearance only where no way leads that keeps more.
+    """Goes as near to walls as the tight clearance only if no path exists that keeps more.
 
-    A drawn map has a surface that is round or lies aslant up to two fifths of a cell behind where
-    it stands: the shortest of the tight ways, which lies along that, would be one through it.
+    A map draws round or oblique surfaces up to two fifths of a cell behind their true places. The
+    shortest path with tight clearance, along the drawn surface, would then lead through the true
+    one.
     """
 
     def __init__(
@@ -25,9 +26,9 @@ class CarefulPathPlanner(PathPlanner):
         careful_clearance: float,
         tight_clearance: float,
     ) -> None:
-        """Take the distances wanted, kept wherever any way does, and the least one accepted, m.
+        """Take three distances from walls, m: wanted, kept if any path does, and still accepted.
 
-        Raises ValueError unless they are in order, none larger than the one before.
+        Raises ValueError if one of them is larger than the one before.
         """
         super().__init__(map, body_radius, clearance, tight_clearance)
         if not clearance >= careful_clearance >= tight_clearance:
@@ -40,7 +41,7 @@ class CarefulPathPlanner(PathPlanner):
     def plan(self, start: Point, goal: Point, obstacles: Iterable[RoundObstacle] = ()) -> Path:
         """Return the shortest path that keeps the careful clearance, or else the tight one.
 
-        A body that is nearer to a wall first leaves it by the shortest way; all else as
+        A body that stands nearer to a wall first leaves it by the shortest way. All else is as in
         :meth:`roomba.planning.path.planner.PathPlanner.plan`.
         """
         among = list(obstacles)

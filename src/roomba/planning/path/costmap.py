@@ -21,7 +21,7 @@ from roomba.planning.path.straight_walls import has_shares, solid_parts
 from roomba.raster.regions import dilated, numbered_regions
 
 _PARTS = 5
-"""To a side of a cell that may be solid in part; odd: one of them is in the cell's middle."""
+"""Parts along each side of a cell that is solid in part; odd, so that one is in the middle."""
 _TOUCH = 1e-9
 """m; tolerance, so that a body at exactly the wanted distance fits despite rounding."""
 
@@ -30,12 +30,12 @@ _TOUCH = 1e-9
 class FitMap:
     """Where a disc of radius ``reach``, m, fits on ``map`` among round ``obstacles``.
 
-    ``fits``, bool [rows, columns], tells it exactly for the disc's middle on each cell's centre:
-    the disc touches no square of a cell that is not free, no obstacle, and nothing outside the map.
+    ``fits``, bool [rows, columns], is exact for the disc's middle on each cell's centre: there the
+    disc touches no square of a cell that is not free, no obstacle, and nothing outside the map.
     Between neighbouring centres that fit, a wall's corner can be nearer than ``reach`` by the
-    sagitta, ``resolution**2 / (8 * reach)``, at most: 1.7 mm for 5 cm cells and 0.18 m. Straight
-    walls that lie aslant are solid where they are within their cells: ``solid``, bool, has squares
-    of ``cell``, m, the map's cells or parts of them.
+    sagitta, ``resolution**2 / (8 * reach)``, at most: 1.7 mm for 5 cm cells and 0.18 m. ``solid``,
+    bool, has squares of ``cell``, m: the map's cells, or parts of them, so that oblique straight
+    walls are where they really lie within their cells.
     """
 
     map: OccupancyMap
@@ -92,7 +92,8 @@ class FitMap:
     def regions(self) -> NDArray[np.int32]:
         """Numbers of the connected regions in which the body fits, int32 [rows, columns]; 0: none.
 
-        Connected means over sides: between two cells that touch at a corner it does not fit.
+        Cells are connected over sides: between two that touch only at a corner the body does not
+        fit.
         """
         labels = numbered_regions(self.fits)
         labels.flags.writeable = False
@@ -106,8 +107,8 @@ class FitMap:
     def room_along(self, start: Point, end: Point) -> float:
         """Return how near anything solid is to the straight way between two points, m.
 
-        Exact; 0 in solid things, below 0 inside a round obstacle, never more than ``reach`` plus
-        one cell, where nothing that matters is near.
+        The distance is exact; 0 in solid things, below 0 inside a round obstacle. It is never more
+        than ``reach`` plus one cell: beyond that nothing matters.
         """
         frame, cell = self.map.frame, self.cell
         limit = self.reach + frame.resolution

@@ -11,15 +11,16 @@ from roomba.planning.path.costmap import FitMap
 from roomba.planning.path.search.any_angle import Joints
 
 _NEAR = 2.0
-"""cells; how far a point at which the body fits is joined to, along each axis."""
+"""cells; a point at which the body fits is joined to centres up to so far, along each axis."""
 _ROUNDING = 1e-9
 
 
 def join_goal(fit: FitMap, goal: Point) -> Joints | None:
-    """Join a goal to near centres: to those around it if it lies on the floor between them.
+    """Join a goal to near centres: to the four around it if the body fits at all of them.
 
-    Elsewhere at which the body fits, close to a wall, it is joined to all near centres to which
-    the body can go straight, possibly none. Returns None when it does not fit at the goal itself.
+    If the body fits at another goal, close to a wall, the goal is joined to all near centres to
+    which the body can go straight, possibly none. Returns None if the body does not fit at the
+    goal.
     """
     near = _centres_near(fit, goal, _NEAR)
     if len(near.legs) and near.legs[0] < _ROUNDING:
@@ -36,10 +37,10 @@ def join_goal(fit: FitMap, goal: Point) -> Joints | None:
 def join_start(fit: FitMap, start: Point) -> Joints:
     """Join a start to the near centres as a goal is.
 
-    A body that does not fit where it stands, because it has bumped into something or was put
-    there, is joined to the nearest centre at which it fits and to which it can go straight without
-    coming nearer to anything than it is now; to none if none is nearer than its own size. Off the
-    map it is joined to none: no cell is there from which a way could begin.
+    A body may not fit where it stands, because it has bumped into something or was put there. Then
+    the start is joined to the nearest centre at which the body fits, and to which it can go
+    straight without coming nearer to anything than it is now. It is joined to none if no such
+    centre is within the body's reach and two cells, or if the start is off the map.
     """
     if not fit.map.frame.contains(*start):
         return _none()

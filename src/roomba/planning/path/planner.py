@@ -35,9 +35,9 @@ from roomba.raster.regions import dilated
 __all__ = ["NoPathError", "NoPathReason", "Path", "PathPlanner"]
 
 _SAME = 1e-6
-"""m; points of a path nearer to each other are one."""
+"""m; points of a path nearer to each other than this are one."""
 _STRAIGHT = 1e-9
-"""rad; a bend below this is none."""
+"""rad; a smaller bend counts as straight."""
 _NEXT_DOOR = 4.0
 """cells; ends this near are joined straight, if that is legal, even where it is not comfortable."""
 _OPENING = 5
@@ -50,11 +50,11 @@ class NoPathReason(Enum):
     GOAL_OFF_MAP = "the map ends before it"
     """The goal lies outside the map."""
     GOAL_IN_OBSTACLE = "the body does not fit there"
-    """A wall, an unknown cell or an obstacle is nearer to it than body and tight clearance."""
+    """A wall, unknown cell or obstacle is nearer to the goal than body and tight clearance."""
     GOAL_UNREACHABLE = "no way leads there"
     """The body fits at the goal, but nowhere on the way: walls or narrow places lie between."""
     START_BLOCKED = "the body cannot move from where it stands"
-    """There is no place near the start where the body fits and that it can get to straight."""
+    """No place near the start has room for the body and can be reached straight from there."""
 
 
 class NoPathError(RoombaError):
@@ -180,7 +180,7 @@ class PathPlanner:
         return all(tight.fits_along(start, end) for start, end in pairwise(corners))
 
     def _room(self, obstacles: Iterable[RoundObstacle]) -> _Room:
-        """Return where the body fits; kept until other obstacles come."""
+        """Return where the body fits; the result is cached until the obstacles change."""
         walls = self._among_walls
         tight = walls.tight.with_obstacles(obstacles)
         if not tight.obstacles:
@@ -191,9 +191,9 @@ class PathPlanner:
         return self._among_obstacles
 
     def _floor(self, room: _Room, start: Joints, goal: Joints) -> FreeSpace | None:
-        """Return the floor to search: the comfortable one, opened only where there is no other way.
+        """Return the floor to search: the comfortable one, widened where there is no other way.
 
-        None when even with tight clearance no way leads from the start to the goal.
+        None if even with tight clearance no way leads from the start to the goal.
         """
         if np.intersect1d(
             _regions(room.comfortable, start), _regions(room.comfortable, goal)
@@ -212,7 +212,7 @@ class PathPlanner:
         regions = room.comfortable.regions[cells[:, 0], cells[:, 1]]
         opened = np.zeros(self.frame.shape, np.bool_)
         comfortable = np.flatnonzero(regions)
-        # A stretch that leaves a comfortable region and comes back to the same one can be avoided.
+        # A stretch that leaves a comfortable region and returns to the same one can be avoided.
         edges = np.concatenate(([-1], comfortable, [len(cells)]))
         for before, after in pairwise(edges.tolist()):
             within = before >= 0 and after < len(cells) and regions[before] == regions[after]
@@ -260,7 +260,7 @@ def _check_finite(name: str, point: Point) -> None:
 
 
 def _without_repeats(way: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return a way's points, float64 [n, 2], but for bends that are where the last point is."""
+    """Return a way's points, float64 [n, 2], without bends that repeat the point before."""
     start, *bends, goal = way.tolist()
     points = [start]
     for bend in bends:

@@ -50,7 +50,7 @@ class Path:
 
     @cached_property
     def _straights(self) -> list[_Leg]:
-        """The legs as numbers: a robot on a path looks at few of them, where arrays take longer."""
+        """The legs as plain numbers: a robot looks at few of them, for which arrays are slower."""
         lengths = np.diff(self.stations)
         directions = self._legs / lengths[:, None]
         rows = np.column_stack((self.stations[:-1], self.points[:-1], lengths, directions))
@@ -75,7 +75,7 @@ class Path:
         return angles
 
     def point_at(self, s: float) -> tuple[float, float]:
-        """Return the (x, y), m, at arc length ``s``; before the start and past the end: the end."""
+        """Return the (x, y), m, at arc length ``s``; outside of the path that of the nearer end."""
         if not 0.0 < s < self.length:
             x, y = self.points[0 if s <= 0.0 else -1].tolist()
             return x, y
@@ -86,8 +86,8 @@ class Path:
     def project(self, x: float, y: float, from_s: float = 0.0, window: float = 1.0) -> float:
         """Return the arc length, m, of the path's point that is nearest to (x, y).
 
-        Only ``from_s`` to ``from_s + window`` is looked at, so that a robot goes on where the path
-        comes by again. Of points equally near the first counts.
+        Only the part from ``from_s`` to ``from_s + window`` is searched, so that a robot does not
+        jump ahead where the path comes by again. Of equally near points the first one counts.
         """
         if len(self.points) == 1:
             return 0.0

@@ -1,8 +1,8 @@
-"""Straight walls that lie aslant on a map's grid: where they are within its cells.
+"""Straight walls that lie oblique on a map's grid: where they are within the cells.
 
-A map tells how much of each cell is solid. Of cells beside each other these shares say where the
-wall is in each, to some millimetres; where such heights lie along a line, the wall is that line,
-and what the cells have before it is floor.
+A map tells how much of each cell is solid. From these shares follows the wall's height in each of
+neighbouring cells, to some millimetres. If the heights lie along a line, the wall is that line, and
+the part of the cells before it is floor.
 
 Lengths and places in cells of the map: whole numbers are the cells' sides.
 """
@@ -22,23 +22,23 @@ from roomba.grid import FREE, OCCUPIED, OccupancyMap
 _WINDOW: Final = 7
 """Columns over which a wall must be straight: 35 cm."""
 _OFF: Final = 0.1
-"""By so much its heights may be off their line, and shares off what it makes them."""
+"""Tolerance of a wall's heights against the line, and of shares against those that it gives."""
 _MARGIN: Final = 0.2
-"""So much before a wall counts as solid: more than shares and the robot's place are off."""
+"""So much before a wall counts as solid: more than the errors of shares and of the robot's pose."""
 _FLATTEST, _STEEPEST = 0.03, 1.05
-"""Slopes: a flatter wall has no steps, and of a steeper one they are told from the side."""
+"""Slopes: a flatter wall has no steps, and a steeper one is found along the other axis."""
 
 
 def has_shares(map: OccupancyMap) -> bool:
-    """Whether a map tells of any cell that it is solid in part."""
+    """Whether any cell of a map is solid in part."""
     return bool(((map.values > FREE) & (map.values < OCCUPIED)).any())
 
 
 def solid_parts(map: OccupancyMap, parts: int) -> Mask:
-    """Return what is solid on a grid of ``parts`` x ``parts`` of each of the map's cells.
+    """Return the solid parts, on a grid with ``parts`` x ``parts`` of each of the map's cells.
 
-    Bool [parts * rows, parts * columns]. Cells that are solid in part count in full, but for what
-    lies clear of straight walls.
+    Bool [parts * rows, parts * columns]. Cells that are solid in part count in full, but for the
+    parts that lie clear of straight walls.
     """
     solid = np.repeat(np.repeat(map.solid, parts, axis=0), parts, axis=1)
     if not has_shares(map):
@@ -53,7 +53,7 @@ def solid_parts(map: OccupancyMap, parts: int) -> Mask:
 
 @allocating_entry
 def _floor_above(shares: Floats, parts: int) -> Mask:
-    """Return the parts of cells that are floor above a straight wall, of which lower rows are.
+    """Return the parts of cells that are floor above a straight wall, which is in lower rows.
 
     ``shares``, float64 [rows, columns], is how much of each cell is solid, 0..1.
     """
@@ -75,9 +75,10 @@ def _floor_above(shares: Floats, parts: int) -> Mask:
 def _find_tops(
     shares: Floats, row: int, column: int, tops: NDArray[np.int64], heights: Floats
 ) -> bool:
-    """Follow the top of what is solid over a window of columns; False where it ends.
+    """Follow the top of the solid cells over a window of columns; return whether it goes on so far.
 
-    ``tops`` are the highest rows that are not free, ``heights`` how high it is in the mean.
+    ``tops`` gets the highest rows that are not free, ``heights`` the mean height in each column.
+    A top of full cells alone returns False, too.
     """
     rows = len(shares)
     is_partly = False
@@ -122,7 +123,7 @@ def _is_along(
     middle: float,
     slope: float,
 ) -> bool:
-    """Whether all heights, and the shares that they are of, are those of a wall along a line."""
+    """Whether all heights, and the shares from which they follow, fit a wall along a line."""
     for step in range(_WINDOW):
         height = middle + (step - 0.5 * (_WINDOW - 1)) * slope
         if abs(heights[step] - height) > _OFF:
@@ -144,7 +145,7 @@ def _share_below(left: float, right: float) -> float:
 
 @inner_part
 def _area_up_to(height: float) -> float:
-    """Return the integral, up to a height, of what part of a cell is below each."""
+    """Return the integral of the share of a cell below a height, from 0 to ``height``."""
     if height <= 0.0:
         return 0.0
     return 0.5 * height * height if height <= 1.0 else height - 0.5
@@ -156,7 +157,7 @@ def _free(
 ) -> None:
     """Mark the parts of the top cells that lie clear above a line, but for the outermost cells.
 
-    Of a corner that begins in these their shares may tell too little.
+    In these a corner may begin that their shares hardly show.
     """
     clear = _MARGIN * math.sqrt(1.0 + slope * slope)
     for step in range(1, _WINDOW - 1):

@@ -1,10 +1,10 @@
-"""Compiled string pulling: a way becomes taut around the corners of what is solid.
+"""Compiled string pulling: a way becomes taut around the corners of solid cells.
 
 Places in cells of the solid grid; whole numbers are the cells' sides and corners.
 
-A disc that passes a corner keeps its room from it: its middle goes around an arc about the corner.
-Points on such arcs, and on circles about round things, stand for all that is solid. A bend of the
-way gives way to the convex hull of those points that lie within the triangle of it and its two
+A disc that passes a corner keeps its distance: its middle goes on an arc about the corner. Points
+on such arcs, and on circles about round things, stand for all solid things. A bend of the way is
+replaced by the convex hull of those points that lie within the triangle of the bend and its two
 neighbours. When the hull of each bend is the bend itself, the way is the shortest of all that pass
 the points on the same sides (Hershberger & Snoeyink, "Computing minimum length paths of a given
 homotopy class", Computational Geometry 4, 1994, on what is shortest among points).
@@ -26,11 +26,11 @@ Bytes = NDArray[np.uint8]
 QUARTER: Final = 16
 """Steps of an arc of 90 degrees: its chords are nearer to the corner by 0.12 % of the room."""
 FULL: Final = -1
-"""Asks for a larger String."""
+"""Result that asks for a larger String."""
 _EPSILON: Final = 1e-9
-"""Square cells: twice the area of a triangle that is none."""
+"""Square cells; a triangle with less than this as twice its area counts as a line."""
 _MOST_SWEEPS: Final = 40
-"""Over the whole way; five do for nearly all."""
+"""Sweeps over the whole way, at most; five are enough for nearly all ways."""
 
 
 class String(NamedTuple):
@@ -41,20 +41,20 @@ class String(NamedTuple):
     pinned: Bytes
     """uint8 [capacity]: 1 for points that stay."""
     held: Floats
-    """float64 [capacity, 2]: what holds a bend, the points within its triangle."""
+    """float64 [capacity, 2]: the points within a bend's triangle, which hold the bend."""
     hull: Floats
     """float64 [capacity, 2]: the points that take a bend's place."""
 
 
 class Pegs(NamedTuple):
-    """What a way is pulled around."""
+    """The things around which a way is pulled."""
 
     corners: Bytes
     """uint8 [rows + 1, columns + 1], from :func:`mark_corners`."""
     room: float
-    """What the way keeps from corners, cells."""
+    """The distance that the way keeps from corners, cells."""
     circles: Floats
-    """float64 [n, 3]: x and y of round things, and what the way keeps from their middle, cells."""
+    """float64 [n, 3]: x and y of round things, and the distance to keep from these, cells."""
     arc: Floats
     """float64 [4 * QUARTER, 2]: unit vectors all around, counterclockwise from the east."""
 
@@ -73,7 +73,7 @@ class _Bend(NamedTuple):
 
 @entry
 def mark_corners(solid: NDArray[np.bool_], corners: Bytes) -> None:
-    """Mark the corners of what is solid that a disc can go around; all outside is solid, too.
+    """Mark the corners of solid cells that a disc can go around; all outside is solid, too.
 
     ``solid`` is bool [rows, columns], ``corners`` uint8 [rows + 1, columns + 1]; its bits 1, 2, 4
     and 8 tell that the cell to the NE, NW, SW or SE has such a corner there (x goes to the east, y
@@ -99,7 +99,7 @@ def mark_corners(solid: NDArray[np.bool_], corners: Bytes) -> None:
 def pull(string: String, size: int, pegs: Pegs) -> int:
     """Pull the first ``size`` points of a way taut; return how many it has then, or FULL.
 
-    The way keeps the pegs' room, but for that of pinned points.
+    The way keeps the pegs' distances, except at pinned points.
     """
     for _ in range(_MOST_SWEEPS):
         is_taut = True
@@ -153,7 +153,7 @@ def _put(string: String, at: int, x: float, y: float, pinned: int) -> None:
 def _hull_of_bend(string: String, at: int, pegs: Pegs) -> int:
     """Find the points of the taut way between the neighbours of a bend, in ``string.hull``.
 
-    Returns how many they are, or FULL.
+    Returns the number of points, or FULL.
     """
     points = string.points
     from_x, from_y = points[at - 1, 0], points[at - 1, 1]
@@ -244,10 +244,10 @@ def _hold_arc(
 
 @inner_part
 def _holds(bend: _Bend, x: float, y: float, about_x: float, about_y: float) -> bool:
-    """Whether a point of an arc about another one lies in a bend's triangle.
+    """Whether a point (x, y) of an arc about another point lies in a bend's triangle.
 
-    Its side between the neighbours is not counted, and on a leg only what the arc of which is about
-    something on the inside of the bend: what lies outside of it does not hold it.
+    Points on the side between the neighbours do not count. A point on a leg counts only if its arc
+    is about a point on the inside of the bend: what lies outside does not hold the bend.
     """
     turn, to_about_x, to_about_y = bend.turn, about_x - x, about_y - y
     leg_x, leg_y = bend.x - bend.from_x, bend.y - bend.from_y
@@ -264,7 +264,7 @@ def _holds(bend: _Bend, x: float, y: float, about_x: float, about_y: float) -> b
 
 @inner_part
 def _is_within(inside: float, about_inside: float) -> bool:
-    """Whether a point lies on the inside of a leg, or on it and what its arc is about inside."""
+    """Whether a point lies inside of a leg, or on it with the middle of its arc inside."""
     return inside > _EPSILON or (inside >= -_EPSILON and about_inside > 0.0)
 
 
@@ -290,7 +290,7 @@ def _span(bend: _Bend, low: float, high: float) -> tuple[float, float]:
 
 @part
 def _wrap(string: String, held: int, bend: _Bend) -> int:
-    """Find the hull of what holds a bend, from neighbour to neighbour (Graham scan)."""
+    """Find the hull of the points that hold a bend, from neighbour to neighbour (Graham scan)."""
     _sort_around(string.held, held, bend)
     hull, size = string.hull, 0
     for n in range(held + 1):
@@ -316,7 +316,7 @@ def _wrap(string: String, held: int, bend: _Bend) -> int:
 def _sort_around(held: Floats, size: int, bend: _Bend) -> None:
     """Sort points by their direction from a bend's first neighbour, from that of the bend on.
 
-    Of those in one direction the nearest comes first.
+    Of points in the same direction the nearest comes first.
     """
     for last in range(1, size):
         x, y = held[last, 0], held[last, 1]

@@ -1,6 +1,6 @@
-"""String pulling: ways over the cells that fit, made the shortest for the disc between the walls.
+"""String pulling: it makes ways over the cells that fit the shortest ones between the walls.
 
-A way over cells bends at their centres, up to about a cell farther from corners than it must be.
+A way over cells bends at their centres, up to about a cell farther from corners than necessary.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from roomba.planning.path.string_kernels import FULL, QUARTER, Pegs, String, mar
 _ANGLES = np.arange(4 * QUARTER) * (math.pi / (2 * QUARTER))
 _ARC = np.column_stack((np.cos(_ANGLES), np.sin(_ANGLES)))
 _TOUCH = 1e-9
-"""m; a way that keeps just the room may be pulled."""
+"""m; tolerance: a way that keeps exactly the room may be pulled."""
 _BESIDE_THINGS = math.sqrt(0.5)
-"""Cells, half a diagonal; so much more is kept from things: what is known of one is what was seen
-of it, and a way over cells keeps as much in the mean."""
+"""Cells, half a diagonal; additional distance from things. Only the seen side of a thing is known,
+and a way over cells keeps this much more on average."""
 _FIRST_CAPACITY = 256
 
 
@@ -36,9 +36,9 @@ class StringPulling:
         half = 0.5 * frame.resolution
         self._walls = walls
         self.room = math.sqrt(max(walls.reach**2 - half**2, 0.0))
-        """m; what ways between centres that fit keep from walls. Pulled ones keep it, too, but for
-        0.12 % of it, or of the circle around a thing. Of a disc smaller than half a cell ways may
-        keep nothing, and are not pulled."""
+        """m; the distance from walls that ways between centres that fit keep. Pulled ways keep it,
+        too, but for 0.12 % of it, or of the circle around a thing. For a disc smaller than half a
+        cell it is 0, and ways are not pulled."""
         self._make_room(_FIRST_CAPACITY)
 
     def _make_room(self, capacity: int) -> None:
@@ -59,10 +59,10 @@ class StringPulling:
     def pulled(
         self, points: NDArray[np.float64], things: Sequence[RoundObstacle] = ()
     ) -> NDArray[np.float64]:
-        """Return the shortest way that a way can be pulled to, float64 [n, 2], m, as ``points``.
+        """Return the way along ``points``, float64 [n, 2], m, pulled to the shortest one.
 
-        ``things`` are round, and not on the map: x, y and radius, m. From them it keeps half a
-        cell's diagonal more than :attr:`room`. Legs that have less room stay as they are.
+        ``things`` are round, and not on the map: x, y and radius, m. The way keeps half a cell's
+        diagonal more than :attr:`room` from them. Legs with less room stay as they are.
         """
         if self.room == 0.0 or len(points) < 3:
             return points
@@ -77,7 +77,7 @@ class StringPulling:
         pegs = Pegs(self._corners, self.room / cell, circles / cell, _ARC)
         size = self._pull((points - origin) / cell, pinned, pegs)
         pulled: NDArray[np.float64] = self._string.points[:size] * cell + origin
-        # What stays is where it was, to the last bit.
+        # Pinned points stay where they were, to the last bit.
         pulled[self._string.pinned[:size] > 0] = points[pinned]
         return pulled
 
@@ -86,7 +86,7 @@ class StringPulling:
     ) -> NDArray[np.bool_]:
         """Tell which points stay, bool [n]: both ends, and those of legs with too little room.
 
-        ``circles``, float64 [n, 3], m, are what a way is to stay out of around things.
+        ``circles``, float64 [n, 3], m, around things are those that a way stays out of.
         """
         pinned = np.zeros(len(points), np.bool_)
         pinned[[0, -1]] = True

@@ -61,7 +61,7 @@ class Expectation:
         return near and abs(wrap_angle(pose.theta - self.pose.theta)) <= self.turn
 
     def drifted(self, pose: Pose, more: float) -> Expectation:
-        """Return it around ``pose``, to which dead reckoning led, wider by ``more``, m and rad."""
+        """Return it about ``pose``, to which dead reckoning led, wider by ``more``, m and rad."""
         return Expectation(pose, self.radius + more, self.turn + more, self.evidence)
 
 

@@ -1,4 +1,4 @@
-"""What floor the tool can reach: masks over a fine grid of about one centimetre.
+"""The floor that the tool can reach: masks over a fine grid of about one centimetre.
 
 Metres in the map frame; everything that is not known to be free, and all outside the map, is solid.
 """
@@ -24,7 +24,7 @@ _TOUCH = 1e-7
 
 
 def fine_frame(coarse: GridFrame, cell: float) -> GridFrame:
-    """Return a grid of about ``cell`` m over the extent of a map's."""
+    """Return a grid with cells of about ``cell`` m over the extent of a map's grid."""
     parts = max(1, round(coarse.resolution / cell))
     return GridFrame(
         coarse.resolution / parts,
@@ -40,10 +40,10 @@ class CoverageFloor:
     """Where the middle of a robot may be, and what its tool sweeps from there.
 
     ``frame`` is the fine grid, over the extent of the map. ``fits``, bool [rows, columns] on it,
-    tells for the middle on each fine cell's centre whether it keeps ``reach``, m, from the squares
-    of all solid cells, from the ``obstacles`` and from the outside of the map; exact. A
-    robot in its station is at most ``out_of_station``, m, from where it fits. ``is_aslant``:
-    the map tells where in its cells some walls are that lie aslant.
+    tells of each fine cell whether the robot's middle on the cell's centre keeps ``reach``, m, from
+    the squares of all solid cells, from the ``obstacles`` and from the outside of the map; exact. A
+    robot in its station is at most ``out_of_station``, m, from where it fits. ``is_aslant``: the
+    map has oblique walls of which it tells where they are within their cells.
     """
 
     frame: GridFrame
@@ -91,9 +91,9 @@ class CoverageFloor:
 
     @property
     def solid(self) -> Mask:
-        """What the map does not show as free, bool [rows, columns] on ``frame``.
+        """The cells that the map does not show as free, bool [rows, columns] on ``frame``.
 
-        Of straight walls that lie aslant: what lies behind them, or nearly before them.
+        Cells of an oblique straight wall are solid behind the wall's line, and just before it.
         """
         return self._solid
 
@@ -101,8 +101,8 @@ class CoverageFloor:
         """Return the fine cells where the middle may be and can get to from ``start``.
 
         Bool [rows, columns] on ``frame``, connected over sides; all false when the robot cannot
-        move from there. A robot that stands where it does not fit, in its station, counts as at the
-        nearest place within ``out_of_station`` where it does, with no wall between.
+        move from there. A robot that stands where it does not fit, in its station, is taken to be
+        at the nearest place within ``out_of_station`` where it fits, with no wall between.
         """
         seed = self.cell_near(start)
         if seed is None:
@@ -117,14 +117,18 @@ class CoverageFloor:
         return self.swept_from(self.middles(start))
 
     def swept_from(self, middles: Mask) -> Mask:
-        """Return the free fine cells within half the tool's width of any of these; bool, on
-        ``frame``."""
+        """Return the free fine cells within half the tool's width of any of ``middles``.
+
+        Bool [rows, columns] on ``frame``.
+        """
         within = half_widths(self.tool_width / 2 / self.frame.resolution + _TOUCH)
         return grown(middles, within) & ~self._solid
 
     def cell_near(self, point: Point) -> tuple[int, int] | None:
-        """Return the (row, column) nearest to a point where the middle may be, and to which no wall
-        bars the way; None if none is within ``out_of_station``."""
+        """Return the (row, column) nearest to a point where the middle may be.
+
+        No wall may bar the way there; None if there is no such cell within ``out_of_station``.
+        """
         frame = self.frame
         if not (math.isfinite(point[0]) and math.isfinite(point[1])):
             raise ValueError(f"expected a point of two finite numbers, m, got {point}")

@@ -15,14 +15,14 @@ from roomba.compilation import allocating_entry, entry
 from roomba.raster.growing import with_room
 
 _TILE = 32
-"""Cells to a side of the squares that are transposed at once: as many lines as the cache holds."""
+"""Side, in cells, of the squares that are transposed at once: as many lines as the cache holds."""
 
 
 def half_widths(radius: float, to_squares: bool = False) -> NDArray[np.int32]:
     """Return how many cells a disc covers to each side of its middle, row by row from there up.
 
-    ``radius`` in cells; int32 [n], -1 where nothing. A cell counts when its centre is at most
-    ``radius`` away, or with ``to_squares`` when any of its square is.
+    ``radius`` in cells; int32 [n], -1 for a row without any. A cell counts if its centre is at most
+    ``radius`` away, or, with ``to_squares``, if any point of its square is.
     """
     away = 0.5 if to_squares else 0.0
     rows = np.maximum(np.arange(math.ceil(radius) + 2) - away, 0.0)

@@ -14,11 +14,11 @@ from roomba.raster.growing import with_room
 from roomba.raster.regions import Labels, join, numbered_regions, root_of
 
 _BLOCK = 5
-"""Cells to a side of the blocks that are told apart."""
+"""Side of a block, in cells: the floor is cut into regions block by block."""
 
 
 class Regions(NamedTuple):
-    """Floor in parts, told by runs of cells along rows.
+    """Floor in parts, each given by runs of cells along rows.
 
     ``runs`` int32 [n, 4]: row, first and last column, and number of the region, from 0 on, row by
     row. ``bounds`` int64 [regions, 4]: first and last row and column of each. ``sizes`` int64
@@ -33,10 +33,9 @@ class Regions(NamedTuple):
 def regions(floor: Mask, narrow: float, least: int) -> Regions:
     """Return the regions of ``floor``, bool [rows, columns], numbered by their first cells.
 
-    A place with less than ``narrow`` blocks of 5 cells to both sides is not wide, and one of fewer
-    than ``least`` blocks is of the region beside it.
-    A region is a connected wide place with all that is nearer to it than to other wide places, or
-    connected floor without any.
+    A place is wide if it is more than ``narrow`` blocks of 5 cells away from the edge of the floor.
+    A region is a connected wide place of ``least`` blocks or more, with all floor that is nearer to
+    it than to other wide places, or connected floor without a wide place.
     """
     shape = (-(-floor.shape[0] // _BLOCK), -(-floor.shape[1] // _BLOCK))
     middles, blocks = np.zeros(shape, np.bool_), np.zeros(shape, np.bool_)

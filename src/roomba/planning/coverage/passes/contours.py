@@ -35,7 +35,7 @@ def outlines(mask: Mask) -> list[Chain]:
 
 @allocating_entry
 def _trace(mask: Mask) -> tuple[Chain, NDArray[np.int64]]:
-    """Follow the cracks between true and false cells; every border has one that leads east."""
+    """Follow the borders between true and false cells, each from a side that leads east."""
     rows, columns = mask.shape
     followed = np.zeros((rows, columns), np.bool_)
     cells = np.empty((4096, 2), np.int32)
@@ -81,7 +81,7 @@ def _trace(mask: Mask) -> tuple[Chain, NDArray[np.int64]]:
 def straightened(fits: Mask, chain: NDArray[np.float64], tolerance: float) -> NDArray[np.int64]:
     """Return which points of an open chain to keep, ascending int64 [k], both ends among them.
 
-    The straight ways between those fit, and pass by all others within ``tolerance`` cells.
+    The straight ways between kept points fit, and pass all other points within ``tolerance`` cells.
     """
     count = len(chain)
     kept = np.ones(count, np.bool_)

@@ -1,7 +1,7 @@
-"""Main directions of the walls, told from the outlines of where the middle fits.
+"""Main directions of the walls, found from the outlines of where the middle fits.
 
-A grid draws slanted walls as stairs, so that single sides tell nothing; a long part of the
-outline that lies along a line does.
+A grid draws slanted walls as stairs, so that single sides of cells tell no direction. A long part
+of the outline that lies along a line does.
 """
 
 from __future__ import annotations
@@ -19,27 +19,27 @@ _WINDOW = 150
 """Points of an outline, more than 1.5 m: three steps or more of a wall that is slanted by 6
 degrees."""
 _BAND = 6.5
-"""cells; between two corners of such a wall the outline is 5 off the line through them, on a map of
-5 cm, and corners of cells lie off their line by up to one more."""
+"""cells; width of a line. Between two corners of such a wall the outline is 5 cells off the line
+through them, on a map with cells of 5 cm, and corners of cells lie up to one cell more off."""
 _STRIDE = 5
 """Points from one window to the next."""
 _ALONG = 0.75
-"""Of the points of a window: the least length, cells, of a way that leads along a wall."""
+"""Factor on the points of a window: a wall's line must be this long, cells, between its ends."""
 _QUARTER = 90
 """degrees; walls at right angles to each other have one direction."""
 _NEAR = 4
-"""degrees; walls that are nearer to a main direction than this are told to be along it."""
+"""degrees; walls that are nearer than this to a main direction count as along it."""
 _LEAST_SHARE = 0.2
-"""Of all that is straight; walls of fewer make no direction a main one."""
+"""Least share of all straight windows that a main direction must have."""
 _AXES = math.radians(1.5)
-"""A main direction as near to the axes as this is theirs: a room has but few steps then."""
+"""A main direction this near to the axes is taken as along them: a room then has but few steps."""
 
 
 def main_directions(middles: Mask) -> list[float]:
     """Return the angles of walls that are slanted, rad in (-pi / 4, pi / 4], the commonest first.
 
-    ``middles``, bool [rows, columns], is where the middle fits. Walls along the axes, and at right
-    angles to each other, are the same: of a home along the axes the list is empty.
+    ``middles``, bool [rows, columns], is where the middle fits. Walls at right angles to each other
+    have the same direction. Walls along the axes are not slanted: if all are, the list is empty.
     """
     counts = np.zeros(_QUARTER)
     sums = np.zeros((_QUARTER, 2))
@@ -61,9 +61,9 @@ def main_directions(middles: Mask) -> list[float]:
 
 @allocating_entry
 def _count(chain: Chain, counts: NDArray[np.float64], sums: NDArray[np.float64]) -> None:
-    """Count windows that lie along a line by their whole degrees, int32 [n, 2] of a chain.
+    """Count the windows of a chain, int32 [n, 2], that lie along a line, by whole degrees.
 
-    ``sums``, float64 [90, 2], are those of cosine and sine of four times their angles.
+    ``sums``, float64 [90, 2], gets the sums of cosine and sine of four times their angles.
     """
     points = chain.astype(np.float64)
     for first in range(0, len(points) - _WINDOW + 1, _STRIDE):
@@ -81,7 +81,7 @@ def line_along(
 ) -> tuple[bool, float]:
     """Return whether ``window`` points from ``first`` on lie along one line, and its angle, rad.
 
-    Of an outline, float64 [n, 2], which is within ``band`` cells then.
+    ``points`` is an outline, float64 [n, 2]; along a line means within ``band`` cells.
     """
     mean_x, mean_y = 0.0, 0.0
     for at in range(first, first + window):

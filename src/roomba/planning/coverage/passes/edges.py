@@ -29,9 +29,9 @@ from roomba.planning.coverage.passes.sweep import (
 _SIDEWAYS = 0.75
 """cells; how far an edge may be off the outline that it straightens."""
 _ASLANT = 1.25
-"""cells; the same along walls that lie aslant: fine cells draw them with steps of one."""
+"""cells; the same if there are oblique walls: fine cells draw them with steps of one cell."""
 _NEAR_CUT = 8
-"""Points of an edge; as near to where a piece would end another end is looked for."""
+"""Points of an edge; within so many of where a piece would end, a roomier end is searched for."""
 _STRETCH = 10.0
 """cells; edges are kept or left out by stretches of this length."""
 
@@ -41,8 +41,8 @@ def rings(
 ) -> list[Polyline]:
     """Return the outlines of ``middles``, bool [rows, columns], straightened; each is closed.
 
-    With ``walls`` they are smooth along those that are slanted. ``is_aslant``: it is known where
-    some of these are within their cells.
+    With ``walls`` the outlines are smooth along slanted walls. ``is_aslant``: it is known where
+    some of these walls are within their cells.
     """
     lines, sideways = [], _ASLANT if is_aslant else _SIDEWAYS
     for chain in outlines(middles):
@@ -79,8 +79,8 @@ def edges(
     """Return lines along the rings that together sweep the needed floor there.
 
     ``need`` and ``middles`` are bool [rows, columns]; ``radius`` is half the tool's width, cells.
-    Lines are cut to pieces of about ``piece_length`` cells, so that a path can branch off: from
-    their ends all around fits, or they are cells of ``middles``.
+    Lines are cut to pieces of about ``piece_length`` cells, so that a path can branch off at their
+    ends. So an end has room all around, or is a cell of ``middles``.
     """
     counts = np.zeros(need.shape, np.int16)
     pieces: list[Polyline] = []
@@ -93,7 +93,7 @@ def edges(
 
 
 def cut(line: Polyline, spacing: float) -> Polyline:
-    """Return the line with more points in it, no two more than ``spacing`` apart."""
+    """Return the line with points added, so that neighbours are at most ``spacing`` apart."""
     legs = np.hypot(*np.diff(line, axis=0).T)
     parts = np.maximum(np.ceil(legs / spacing - 1e-9).astype(np.int64), 1)
     index = np.repeat(np.arange(len(legs)), parts)
@@ -106,9 +106,9 @@ def cut(line: Polyline, spacing: float) -> Polyline:
 def _claim(
     need: Mask, counts: Counts, stretches: Polyline, radius: float, least: float
 ) -> NDArray[np.bool_]:
-    """Return which legs sweep ``least`` new cells for a cell of way, bool [n - 1].
+    """Return which legs sweep more than ``least`` new cells per cell of way, bool [n - 1].
 
-    What they sweep is counted.
+    The cells that these sweep are added to ``counts``.
     """
     worth = np.zeros(len(stretches) - 1, np.bool_)
     legs = room_for_legs()
@@ -124,7 +124,7 @@ def _claim(
 
 
 def _bridged(worth: NDArray[np.bool_], gap: int) -> NDArray[np.bool_]:
-    """Return the same with gaps of up to ``gap`` between true ones closed."""
+    """Return ``worth`` with gaps of up to ``gap`` between true legs closed."""
     bridged = worth.copy()
     true = np.flatnonzero(worth)
     for first, last in pairwise(true):
@@ -153,7 +153,7 @@ def _joined(
 
 
 def _roomy(run: Polyline, at: int, middles: Mask) -> int:
-    """Return the index of the point nearest to one, of a line, around which all fits."""
+    """Return the index of the point of a line nearest to ``at`` with room all around."""
     for step in range(_NEAR_CUT):
         for other in (at - step, at + step):
             if 0 < other < len(run) - 1 and _has_room(run[other], middles):
@@ -168,7 +168,7 @@ def _has_room(place: Floats, middles: Mask) -> bool:
 
 
 def _seat(place: Floats, middles: Mask) -> Floats:
-    """Return a place around which all fits, or the cell nearest to it that does, float64 [2]."""
+    """Return a place if it has room all around, else the nearest cell that fits, float64 [2]."""
     if _has_room(place, middles):
         return place
     cells = np.floor(place) + np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])

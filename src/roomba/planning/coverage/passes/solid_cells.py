@@ -1,4 +1,4 @@
-"""What is solid around outlines, and the nearest point of it.
+"""The solid cells around outlines, and the search for the nearest point of them.
 
 Places in cells: (x, y) is (column, row), whole numbers are the cells' centres.
 """
@@ -17,10 +17,10 @@ from roomba.compilation import entry, inner_part
 
 
 class Beside(NamedTuple):
-    """The nearest solid cell of each cell's row to either side, and where cell (0, 0) lies in it.
+    """For each cell the nearest solid cells of its row to both sides, and where cell (0, 0) lies.
 
     ``before`` and ``after`` are columns, int32 [rows, columns]: of the nearest solid cell up to
-    this one, -1 for none, and from this one on, as many as there are columns for none.
+    this one, -1 if there is none; and from this one on, the number of columns if there is none.
     """
 
     before: Ints32
@@ -31,9 +31,12 @@ class Beside(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class SolidCells:
-    """What is solid: bool [rows, columns], of which cell (0, 0) of the outlines is at ``column``
-    and ``row``; ``reach`` is what the middle keeps from it, cells. ``things`` are round and not
-    part of it, float64 [n, 3]: x, y and radius."""
+    """The solid cells: ``solid`` is bool [rows, columns].
+
+    Cell (0, 0) of the outlines is at ``column`` and ``row`` of it. ``reach`` is the distance that
+    the middle keeps from solid cells, cells. ``things`` are round and not part of ``solid``,
+    float64 [n, 3]: x, y and radius.
+    """
 
     solid: Mask
     column: int
@@ -43,7 +46,7 @@ class SolidCells:
 
     @cached_property
     def beside(self) -> Beside:
-        """The nearest solid cell of each row to either side, found once."""
+        """The nearest solid cells of each row to both sides; they are found once and kept."""
         shape = self.solid.shape
         beside = Beside(np.empty(shape, np.int32), np.empty(shape, np.int32), self.column, self.row)
         _note_beside(np.ascontiguousarray(self.solid), beside.before, beside.after)
@@ -68,9 +71,9 @@ def _note_beside(solid: Mask, before: Ints32, after: Ints32) -> None:
 
 @inner_part
 def nearest_solid(beside: Beside, x: float, y: float, far: float) -> tuple[float, float, float]:
-    """Return the nearest point of what is solid, x and y, and how far it is, cells.
+    """Return the nearest solid point, x and y, and how far away it is, cells.
 
-    Infinitely far, and (0, 0), where there is none within ``far`` cells.
+    If there is none within ``far`` cells, return (0, 0) and an infinite distance.
     """
     rows, columns = beside.before.shape
     span = math.ceil(far) + 1

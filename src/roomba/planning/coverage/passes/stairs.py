@@ -1,7 +1,8 @@
-"""Ways along slanted walls: a grid draws these as stairs, and here the way around them is smooth.
+"""Smooth ways along slanted walls, which a grid draws as stairs.
 
 The outline of where the middle fits goes around the corner of each step on an arc. On a grid that
-has few bends, so sharp that the robot stops at each; here an arc has as many as are driven along.
+arc has few bends, so sharp that the robot stops at each. Here an arc gets so many bends that the
+robot takes each while driving.
 
 Places in cells: (x, y) is (column, row), whole numbers are the cells' centres.
 """
@@ -25,29 +26,29 @@ _WINDOW = 60
 """Points of an outline, more than half a metre: three steps or more of a wall that is slanted by 17
 degrees."""
 _BAND = 3.75
-"""cells; a dip between two corners of a wall that is slanted by 17 degrees is 2.6 deep, and corners
-of cells lie off their line by up to one more."""
+"""cells; width of a line. A dip between two corners of a wall that is slanted by 17 degrees is 2.6
+cells deep, and corners of cells lie up to one cell more off their line."""
 _SLANT = math.radians(8.0)
-"""A wall that is slanted by less has steps farther apart, and deeper dips."""
+"""The least slant: a wall with less has steps farther apart, and deeper dips."""
 _OFF = 1.6
-"""cells; by rounding an outline lies at most so much farther from a wall than the middle may be."""
+"""cells; rounding puts an outline at most so much farther from a wall than the middle must be."""
 _LEAST_STEPS = 3
-"""Corners of a stair."""
+"""Corners that a stair has at least."""
 _BEND = 0.3
 """rad; the most that a smooth way turns at a point: it is taken while driving."""
 _PROBES = 0.5
-"""cells between two places at which a way is compared with the walls."""
+"""cells between two places at which a way's distance from walls is tested."""
 _ROUNDING = 0.05
-"""cells; arcs are as much larger than what is kept from walls, as they are polygons."""
+"""cells; arcs are by this wider than the distance to keep, as they are drawn as polygons."""
 _MOST_LOOKS = 6
-"""Times that a way is made anew around what it met."""
+"""How often a way is made at most, each time around the walls that the last one met."""
 _RADIUS = 16.0
-"""cells; of bends away from walls, about as wide as those around corners. Tighter ones leave hardly
-less floor: the tool is wider than a dip, and they are driven slowly."""
+"""cells; radius of bends away from walls, about that of bends around corners. Tighter bends leave
+hardly less floor, as the tool is wider than a dip, and they are driven slowly."""
 
 
 class SmoothWay(NamedTuple):
-    """The points of an outline from ``first`` to ``last`` are passed by ``points`` between."""
+    """A smooth way: ``points`` replace those of an outline between ``first`` and ``last``."""
 
     first: int
     last: int
@@ -74,13 +75,13 @@ def smooth_ways(ring: Polyline, walls: SolidCells) -> list[SmoothWay]:
 def _smooth_way(
     ring: Polyline, nearest: Floats, begin: int, end: int, walls: SolidCells
 ) -> SmoothWay | None:
-    """Return a smooth way along what is nearest to the points before ``end``, or None."""
+    """Return a smooth way along the walls nearest to points ``begin`` to ``end`` - 1, or None."""
     is_corner = nearest[begin:end, 2] > 0.0
     is_corner[1:] &= (nearest[begin + 1 : end, :2] != nearest[begin : end - 1, :2]).any(axis=1)
     at = begin + np.flatnonzero(is_corner)
     if len(at) < _LEAST_STEPS:
         return None
-    # Where an outline begins it ends as well.
+    # The first and the last point of an outline are the same one: it stays.
     first = max(int(at[0]), 1)
     last = min(int(begin + np.flatnonzero(nearest[begin:end, 2] > 0.0)[-1]), len(ring) - 2)
     steps = nearest[at, :2]
@@ -91,7 +92,7 @@ def _smooth_way(
         met = _met(way, walls.beside, walls.reach - _ROUNDING)
         if len(met) == 0:
             return None if _is_beside_things(points, walls) else SmoothWay(first, last, points)
-        # Sides of steps come nearer than their corners where these are far apart.
+        # Between corners that are far apart, sides of steps come nearer than the corners.
         near = first + _nearest_points(ring[first:last], met)
         order = np.argsort(np.concatenate((at, near)), kind="stable")
         at = np.concatenate((at, near))[order]
@@ -126,10 +127,10 @@ def _is_slanted(ring: Polyline, first: int) -> bool:
 def _nearest_corners(
     ring: Polyline, wanted: NDArray[np.bool_], beside: Beside, far: float
 ) -> Floats:
-    """Return what of the walls is nearest to the wanted points, float64 [n, 3].
+    """Return the places on walls that are nearest to the wanted points, float64 [n, 3].
 
-    x and y, and 1 for a corner, 0 for a side; NaN for other points, and those from which no wall is
-    within ``far`` cells.
+    A row is x and y, and 1 for a corner, 0 for a side. It is NaN for other points, and for points
+    without a wall within ``far`` cells.
     """
     found = np.full((len(ring), 3), np.nan)
     for at in range(len(ring)):
@@ -146,9 +147,9 @@ def _nearest_corners(
 
 @allocating_entry
 def _met(way: Polyline, beside: Beside, near: float) -> Polyline:
-    """Return where legs of a way come nearer than ``near`` cells to what is solid, float64 [n, 4].
+    """Return where legs of a way come nearer than ``near`` cells to solid cells, float64 [n, 4].
 
-    Each is x and y of the worst place of a leg, and of what is nearest to it there.
+    A row is x and y of the worst place of a leg, and of the solid point nearest to that place.
     """
     found = np.empty((len(way), 4))
     size = 0
@@ -202,7 +203,7 @@ def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
 def _around(steps: Floats, start: complex, end: complex, reach: float, radius: float) -> Polyline:
     """Return a smooth way around the corners of steps, float64 [k, 2], all of them on its right.
 
-    It begins and ends beside the places ``start`` and ``end``, as all here complex: x + i y.
+    The way begins and ends beside the places ``start`` and ``end``, complex numbers x + i y.
     """
     corners = np.empty(len(steps), np.complex128)
     bends = np.empty(len(steps), np.complex128)
@@ -226,8 +227,8 @@ def _keep_corners(
 ) -> int:
     """Write the corners that a way around steps touches, and the middles of the bends between them.
 
-    Returns how many corners there are; of bends there is one less. Those that the bend between
-    their neighbours does not touch are left out.
+    Returns how many corners there are; there is one bend less. Corners that the bend between their
+    neighbours does not touch are left out.
     """
     size = 0
     for at in range(len(steps)):
@@ -262,7 +263,7 @@ def _write_arc(
 ) -> int:
     """Write the corners of sides that touch an arc, from one direction to the other.
 
-    They stand behind the first ``count`` points; returns how many there are then.
+    They are written after the first ``count`` points; returns the new number of points.
     """
     turned = end / begin
     angle = math.atan2(turned.imag, turned.real)

@@ -18,16 +18,15 @@ from roomba.planning.coverage.passes.turned_cells import TurnedCells, turned_mas
 from roomba.raster.growing import with_room
 
 _OVERLAP = 0.4
-"""cells, of two slanted swaths beside each other."""
+"""cells; overlap of two slanted swaths beside each other."""
 
 
 def swaths(left: Mask, middles: Mask, radius: float, config: CoverageConfig) -> list[Polyline]:
     """Return lines, float64 [2, 2], that sweep the floor in ``left``, bool [rows, columns].
 
-    The lines stay in ``middles``, bool of the same shape. Every cell of ``left`` must be so far
-    from where the middle may not be that the middle may be anywhere within ``radius``, cells, of
-    it. Each region is swept along rows, along columns, or along or across a main direction of
-    slanted walls, whichever takes the least way.
+    The lines stay in ``middles``, bool of the same shape. The middle must be allowed anywhere
+    within ``radius``, cells, of each cell of ``left``. Each region is swept along rows, along
+    columns, or along or across a main direction of slanted walls, as takes the least way.
     """
     parts = regions(left, config.narrow, config.least_part)
     across = transposed(middles)
@@ -54,9 +53,9 @@ def swaths(left: Mask, middles: Mask, radius: float, config: CoverageConfig) -> 
 
 
 def _roomy(middles: Mask) -> Mask:
-    """Return the cells all around which the middle fits, bool of the same shape.
+    """Return the cells with all eight neighbours in ``middles``, bool of the same shape.
 
-    A way whose places are nearest to such cells fits wherever the cells are cut.
+    A way whose places are each nearest to such a cell fits, wherever it crosses the cells.
     """
     fenced = np.pad(middles, 1)
     rows, columns = middles.shape
@@ -78,8 +77,9 @@ def _slanted(
 ) -> tuple[Polyline, float]:
     """Return swaths along or across a direction, rad, and what they cost, as :func:`_along_rows`.
 
-    The tool is a whole number of rows wide that are a little narrower than cells: seams cross
-    cells anyhow, and would leave some of them by the least error of the drive.
+    The rows are a little narrower than cells, and the tool a whole number of rows wide. So swaths
+    overlap: their seams cross cells at any place, and the least error of the drive would leave
+    some of these cells.
     """
     wide = int(2 * radius + 1e-6)
     cell = (2 * radius - _OVERLAP) / wide
@@ -118,7 +118,7 @@ def _runs_by_row(
     rows, columns = region.shape
     runs = np.empty((1024, 3), np.int64)
     size = 0
-    # The last row, up to ``radius`` ahead, where there is something to sweep in each column.
+    # For each column the last row, up to ``radius`` ahead, with floor to sweep.
     seen = np.full(columns, -radius - 1, np.int32)
     for row in range(min(radius, rows)):
         _look(seen, region[row], row)

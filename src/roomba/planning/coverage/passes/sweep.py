@@ -1,4 +1,4 @@
-"""Compiled counting of what a tool sweeps, and of what a change of its way would leave.
+"""Compiled counting of the cells that a tool sweeps, and that a change of its way would leave.
 
 Lengths and places in cells: (x, y) is (column, row), whole numbers are the cells' centres.
 """
@@ -25,7 +25,7 @@ class Legs(NamedTuple):
     """Some legs of a way: ``ends`` float64 [n, 4] (x, y, x, y).
 
     ``sides`` float64 [n, 2], as :func:`side_of` returns them, and ``spans`` int64 [n, 2], the
-    first and last column that each sweeps of a row, are for work.
+    first and last column of a row that each leg sweeps, are work arrays.
     """
 
     ends: NDArray[np.float64]
@@ -35,7 +35,7 @@ class Legs(NamedTuple):
 
 @allocating_entry
 def room_for_legs() -> Legs:
-    """Return room for 64 legs."""
+    """Return work arrays for 64 legs."""
     return Legs(
         np.empty((_MOST_LEGS, 4)), np.empty((_MOST_LEGS, 2)), np.empty((_MOST_LEGS, 2), np.int64)
     )
@@ -132,11 +132,11 @@ def unswept(need: Mask, lines: list[NDArray[np.float64]], radius: float) -> Mask
 def left_without(
     need: Mask, counts: Counts, legs: Legs, old: int, count: int, radius: float, most: float
 ) -> int:
-    """Return how many more needed cells would be swept by nothing if legs were replaced.
+    """Return how many more needed cells would be left unswept if legs were replaced.
 
-    The first ``old`` of ``legs`` are counted in ``counts`` and would go, the others up to ``count``
-    would come in their place. Only cells that not both sweep are looked at, row by row, and no
-    further rows after more than ``most`` were found.
+    The first ``old`` of ``legs`` are counted in ``counts`` and would be removed; the others, up to
+    ``count``, would replace them. Only cells that are not swept by both are looked at, row by row,
+    and no further row once more than ``most`` were found.
     """
     rows, columns = counts.shape
     reach = radius + _TOUCH
@@ -162,8 +162,8 @@ def left_without(
 
 @inner_part
 def replace_legs(counts: Counts, legs: Legs, old: int, count: int, radius: float) -> None:
-    """Count what the first ``old`` of legs sweep once less, and what the others up to ``count``
-    sweep once more."""
+    """Count the cells of the first ``old`` legs once less, and those of the others, up to
+    ``count``, once more."""
     for leg in range(count):
         x, y, to_x, to_y = legs.ends[leg]
         sweep_leg(counts, x, y, to_x, to_y, radius, -1 if leg < old else 1)
@@ -177,7 +177,7 @@ def _left_in_row(
     old: int,
     count: int,
 ) -> int:
-    """Return the same for a row; each cell is looked at with the first leg that sweeps it."""
+    """Return the same as :func:`left_without` for one row; each cell counts at its first leg."""
     left = 0
     for leg in range(count):
         is_old = leg < old

@@ -18,7 +18,8 @@ from roomba.compilation import allocating_entry
 class TurnedCells(NamedTuple):
     """Cells, ``rows`` x ``columns``, whose first one is at (``x``, ``y``).
 
-    A column further is (``step_x``, ``step_y``) further, and a row further that turned to the left.
+    The next column is a step (``step_x``, ``step_y``) further, the next row the same step turned
+    to the left.
     """
 
     x: float
@@ -30,9 +31,9 @@ class TurnedCells(NamedTuple):
 
     @classmethod
     def over(cls, rows: int, columns: int, angle: float, cell: float) -> TurnedCells:
-        """Return those over so many cells of the floor, turned by an angle, rad.
+        """Return turned cells that cover a window of the floor; ``angle`` is in rad.
 
-        Their sides are ``cell`` long.
+        The window has ``rows`` x ``columns`` cells; the sides of turned cells are ``cell`` long.
         """
         cosine, sine = math.cos(angle), math.sin(angle)
         x, y = np.array([[0.0, 0.0, 1.0, 1.0], [0.0, 1.0, 0.0, 1.0]])
@@ -63,9 +64,9 @@ class TurnedCells(NamedTuple):
 
 @allocating_entry
 def turned_mask(mask: Mask, cells: TurnedCells, x: int, y: int) -> Mask:
-    """Return what of a mask is nearest to the cells' centres, bool [rows, columns] of these.
+    """Return for each of ``cells`` the value of ``mask`` at its centre, bool [rows, columns].
 
-    They are over a window of ``mask`` that begins at column ``x`` and row ``y``; false outside.
+    The cells cover a window of ``mask`` that begins at column ``x`` and row ``y``; false outside.
     """
     rows, columns = mask.shape
     found = np.zeros((cells.rows, cells.columns), np.bool_)

@@ -1,7 +1,7 @@
-"""Bends around a corner of a way, or around a corner and the next one: as they are laid out.
+"""Layout of bends around a corner of a way, or around a corner and the next one.
 
-Around a corner and the next, as from one swath to another, the ways before and behind go on a
-little farther first. Places in cells of the window, as in :mod:`.rounding`.
+Before a bend around two corners, as from one swath to the next, the ways may go on a little farther
+first. Places in cells of the window, as in :mod:`.rounding`.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from roomba.planning.coverage.passes.sweep import Counts, Legs
 _SHARPEST: Final = 2.4
 """rad; sharper corners stay: a bend would begin far before them."""
 _SIDE: Final = 0.1
-"""rad; a bend turns by no more at a point: so it is driven without slowing down for its points."""
+"""rad; a bend turns by at most this at a point, so that the robot does not slow down at points."""
 NARROWER: Final = 0.75
-"""Radii of bends that are tried are by this factor apart, ..."""
+"""Factor from one radius of a bend that is tried to the next."""
 RADII: Final = 3
-"""... and so many: tighter bends are driven as slowly as turns on the spot."""
+"""Radii that are tried: tighter bends are driven as slowly as turns on the spot."""
 _OFF: Final = 1e-6
-"""Cells of way; what is off by rounding decides nothing."""
+"""Cells of way; tolerance, so that rounding decides nothing."""
 ROOM: Final = 64
 """Points of a way around two corners: more than bends of _SHARPEST have, in sides of _SIDE."""
 
@@ -33,11 +33,12 @@ ROOM: Final = 64
 class Rounded(NamedTuple):
     """A way that is being rounded.
 
-    ``points`` float64 [n, 2], of which the first ``size`` [0] are written down; ``counts`` int16
-    [rows, columns]; ``need`` the cells that count; ``fits`` where the middle may be; ``old`` and
-    ``new``, float64 [64, 2], are the ways around the corners at hand, of ``sizes`` [2] points, and
-    ``legs`` those of both; ``radius`` is half the tool's width, cells, ``sharp`` from which turn
-    on, rad, a corner is sharp, and ``spare`` [1] how many more cells may be left.
+    ``points`` is float64 [n, 2], of which the first ``size`` [1] are written. ``counts`` int16
+    [rows, columns] is how many legs sweep each cell; ``need`` are the cells to sweep; ``fits`` is
+    where the middle may be. ``old`` and ``new``, float64 [64, 2], are the ways around the corners
+    at hand, of ``sizes`` [2] points, and ``legs`` those of both. ``radius`` is half the tool's
+    width, cells; ``sharp``, rad, the turn from which on a corner is sharp; ``spare`` [1] how many
+    more cells may be left.
     """
 
     points: Polyline
@@ -62,14 +63,14 @@ def _turn(ax: float, ay: float, bx: float, by: float) -> float:
 
 @inner_part
 def turn_at(work: Rounded, line: Polyline, at: int) -> float:
-    """Return how much the way turns at a point of the line, rad, from where it is written down."""
+    """Return how much the way turns at a point of the line, rad, after the last point written."""
     before, here, after = work.points[work.size[0] - 1], line[at], line[at + 1]
     return _turn(here[0] - before[0], here[1] - before[1], after[0] - here[0], after[1] - here[1])
 
 
 @part
 def is_sharp(work: Rounded, turn: float) -> bool:
-    """Whether a bend may come in place of a corner that turns by ``turn``, rad."""
+    """Whether a bend may replace a corner that turns by ``turn``, rad."""
     return work.sharp < abs(turn) < _SHARPEST
 
 
@@ -77,7 +78,7 @@ def is_sharp(work: Rounded, turn: float) -> bool:
 def bend_both(work: Rounded, line: Polyline, at: int, farther: float) -> bool:
     """Lay out the old and the new way around two corners that turn to the same side.
 
-    The ways before and behind them go on by ``farther``. False where there is no room for bends.
+    The ways before and behind them go on by ``farther``. Return False if bends have no room.
     """
     before, one, two, after = work.points[work.size[0] - 1], line[at], line[at + 1], line[at + 2]
     come = math.hypot(one[0] - before[0], one[1] - before[1])
@@ -111,9 +112,9 @@ def bend_both(work: Rounded, line: Polyline, at: int, farther: float) -> bool:
 
 @inner_part
 def bend_one(work: Rounded, line: Polyline, at: int, bend: float) -> bool:
-    """Lay out the old and the new way around a corner; False where a bend has no room.
+    """Lay out the old and the new way around a corner; return False if a bend has no room.
 
-    Half of the way to the next point is left to the corner there.
+    The bend uses half of the way to the next point at most, as the corner there needs the rest.
     """
     before, here, after = work.points[work.size[0] - 1], line[at], line[at + 1]
     turn = turn_at(work, line, at)

@@ -20,7 +20,7 @@ from roomba.planning.path.search.grid_path import shortest_grid_path
 _SAME = 0.01
 """cells; points nearer to each other than this are one."""
 _SHORT = 0.75
-"""cells; legs shorter than this are not driven; those from a point to its cell's centre are."""
+"""cells; shorter legs are dropped, for example those from a point to its cell's centre."""
 _STRAIGHT = 0.02
 """cells; points as near as this to the straight way between their neighbours are left out."""
 
@@ -39,7 +39,7 @@ def connected(net: Net, pieces: list[Polyline], start: Floats, end: Floats | Non
 
 
 def _way(net: Net, costs: NDArray[np.float64], start: Floats, goal: Floats) -> Polyline:
-    """Return the shortest way; over the cells themselves where the net is too coarse for it."""
+    """Return the shortest way; it is searched over the cells if the net is too coarse for it."""
     way: Polyline = way_between(net, costs, start[0], start[1], goal[0], goal[1])
     if len(way):
         return way
@@ -73,7 +73,7 @@ def tidy(fits: Mask, line: Polyline) -> Polyline:
 
 @allocating_entry
 def _without_short(fits: Mask, line: Polyline) -> Polyline:
-    """Return the line without legs below ``_SHORT``, wherever the middle fits without them too."""
+    """Return the line without legs below ``_SHORT``, if the middle fits on the way without them."""
     points = line.copy()
     size = 1
     for at in range(1, len(line)):

@@ -24,9 +24,9 @@ _HIDDEN = 2.0
 _AROUND = 200.0
 """cells; added to that estimate."""
 _LOOKS = 8.0
-"""cells."""
+"""cells; distance between the places at which a straight way is tested."""
 _PARTS = 256.0
-"""Costs are counted in parts of a cell, so that sums are exact and no move undoes another."""
+"""Costs are whole numbers of these parts of a cell: sums are exact, and no move undoes another."""
 _KNOWN = 256
 _PROBES = 16
 _SCATTER = 37
@@ -34,14 +34,14 @@ _COST = (1 << 40) - 1
 
 
 class Costs(NamedTuple):
-    """What connections cost: their length, and ``turning`` cells for each radian.
+    """Costs of connections: their length, and ``turning`` cells for each radian.
 
-    ``nearest`` int32 [ends, k], the cheapest first, -1 for none, with ``costs``, the same there and
-    back. ``known``, int64 [ends, 128], holds what was found of other pairs, in the row of the lower
-    end wherever :func:`_slot` finds room: the other end + 1, shifted, and the cost in parts; small
-    enough to stay near the processor. ``at`` float64 [ends, 2] are places on ``fits``, and
-    ``headings`` float64 [ends] lead out of the pieces, rad, not a number for a piece without
-    length. ``loose``: the last piece costs nothing to get to.
+    ``nearest`` int32 [ends, k] are the nearest ends of each, the cheapest first, -1 for none, with
+    their ``costs``, which are the same in both directions. ``known``, int64 [ends, 256], is a hash
+    table for each end: of a pair, the row of the lower end holds the higher end + 1, shifted, and
+    the cost in parts. It is small enough for the processor's cache. ``at`` float64 [ends, 2] are
+    the ends' places on ``fits``; ``headings`` float64 [ends], rad, lead out of the pieces, NaN for
+    a piece without length. ``loose``: the last piece costs nothing to get to.
     """
 
     nearest: NDArray[np.int32]
@@ -72,7 +72,7 @@ def costs_of(
 
 @entry
 def note_pair(costs: Costs, one: int, other: int, cost: float) -> float:
-    """Note what a connection costs, while there is room, and return it in whole parts of a cell."""
+    """Store a connection's cost, if there is room, and return it rounded to parts of a cell."""
     low, high = min(one, other), max(one, other)
     parts = np.int64(cost * _PARTS + 0.5)
     for probe in range(_PROBES):
@@ -105,7 +105,7 @@ def _between(one: float, other: float) -> float:
 
 @inner_part
 def cost_of(costs: Costs, one: int, other: int) -> float:
-    """Return what the connection of two ends costs; a guess if it is neither known nor in sight."""
+    """Return the cost of connecting two ends; it is a guess if neither known nor in sight."""
     low, high = min(one, other), max(one, other)
     for probe in range(_PROBES):
         word = costs.known[low, (high * _SCATTER + probe) & (_KNOWN - 1)]
@@ -118,7 +118,7 @@ def cost_of(costs: Costs, one: int, other: int) -> float:
 
 @part
 def least_cost(costs: Costs, one: int, other: int) -> float:
-    """Return what the connection of two ends costs at least, without looking anything up."""
+    """Return the least that connecting two ends can cost, without looking anything up."""
     if costs.loose and max(one, other) >= len(costs.nearest) - 2:
         return 0.0
     x, y = costs.at[other, 0] - costs.at[one, 0], costs.at[other, 1] - costs.at[one, 1]
@@ -127,7 +127,7 @@ def least_cost(costs: Costs, one: int, other: int) -> float:
 
 @inner_part
 def _cost_found(costs: Costs, one: int, other: int) -> float:
-    """Find out what a connection costs, and note it."""
+    """Compute or guess the cost of a connection, and store it."""
     ends = len(costs.nearest)
     cost = 0.0
     if not (costs.loose and (one >= ends - 2 or other >= ends - 2)):
@@ -142,9 +142,10 @@ def _cost_found(costs: Costs, one: int, other: int) -> float:
 
 @inner_part
 def _is_in_sight(fits: Mask, x: float, y: float, to_x: float, to_y: float) -> bool:
-    """Whether nothing is seen between two places, looking every few cells.
+    """Whether the middle fits on the straight way between two places, tested every few cells.
 
-    Where the middle does not fit is wider than that, by twice what it keeps from all that is solid.
+    No wall is missed: floor where the middle does not fit is wider than the distance between tests,
+    as the middle keeps its distance on both sides of a wall.
     """
     looks = int(math.hypot(to_x - x, to_y - y) / _LOOKS)
     for look in range(1, looks + 1):
@@ -157,9 +158,9 @@ def _is_in_sight(fits: Mask, x: float, y: float, to_x: float, to_y: float) -> bo
 
 @allocating_entry
 def _add_turns(costs: Costs) -> None:
-    """Add the turns to what ``costs`` holds, lengths so far; sort by the sum, and note all pairs.
+    """Add the turns to ``costs``, which are lengths so far; sort by the sum, and store all pairs.
 
-    With an end that is loose, nothing is near to it.
+    An end of a loose piece has no near ends.
     """
     ends, most = costs.nearest.shape
     for one in range(ends):
@@ -181,7 +182,7 @@ def _add_turns(costs: Costs) -> None:
 
 @entry
 def tour_cost(costs: Costs, tour: Tour) -> float:
-    """Return what all connections of a tour cost."""
+    """Return the cost of all connections of a tour."""
     total = 0.0
     for at in range(1, tour.size - 1, 2):
         total += cost_of(costs, tour[at], tour[at + 1])

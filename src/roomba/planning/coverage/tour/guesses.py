@@ -1,7 +1,7 @@
-"""Compiled measuring of the connections of a tour whose lengths were guessed.
+"""Compiled measuring of those connections of a tour whose lengths were guessed.
 
-Only the ways to the ends near by are searched for beforehand. Where a tour connects ends that are
-farther apart and out of sight of each other, the guess may be far too short: a wall lies between.
+Only the ways to near ends are searched for beforehand. If a tour connects ends that are farther
+apart and out of sight of each other, the guess may be far too short, as a wall may lie between.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ _OFF = 1.0
 
 @allocating_entry
 def guesses_measured(net: Net, costs: Costs, tour: Tour) -> int:
-    """Note in ``costs`` what the guessed connections of a tour truly cost.
+    """Store the true costs of the guessed connections of a tour in ``costs``.
 
-    Returns how many cost more than was guessed.
+    Returns how many of them cost more than was guessed.
     """
     room = np.full(net.links.size // 8, np.inf)
     more = 0

@@ -15,15 +15,15 @@ from roomba.planning.coverage.tour.costs import Costs, Tour, cost_of, least_cost
 
 _GAIN = 1e-6
 _MOST_MOVES = 20
-"""moves for each end; far more than are ever made."""
+"""Moves for each end, at most; far more than are ever made."""
 
 
 class TourState(NamedTuple):
-    """A tour that is being changed, ``position`` int32 [ends] of each end in it, and room for work.
+    """A tour that is being changed, ``position`` int32 [ends] of each end in it, and work arrays.
 
-    ``joined``, float64 [ends], is what the connection of each end costs. ``touched``, int32 [6],
-    are the ends that the last move concerned. What moves did: ``gain`` float64 [1], ``span`` int64
-    [2], first and last position changed.
+    ``joined``, float64 [ends], is the cost of each end's connection. ``touched``, int32 [6], are
+    the ends that the last move changed. ``gain`` float64 [1] and ``span`` int64 [2], the first and
+    last position changed, add up over moves until they are set anew.
     """
 
     tour: Tour
@@ -57,14 +57,14 @@ def state_along(costs: Costs, tour: Tour) -> TourState:
 
 @part
 def place_of(state: TourState, end: int) -> int:
-    """Return the position of an end, as wide as sums of positions: moves are compiled once then."""
+    """Return the position of an end in the type of sums, so that moves are compiled only once."""
     place: int = np.int64(state.position[end])  # type: ignore[assignment]
     return place
 
 
 @part
 def join(costs: Costs, state: TourState, at: int) -> None:
-    """Note what the connection of the ends at a position and at the next one costs."""
+    """Store the cost of connecting the ends at a position and at the next one."""
     one, other = state.tour[at], state.tour[at + 1]
     cost = cost_of(costs, one, other)
     state.joined[one] = cost
@@ -96,9 +96,9 @@ def _reverse(costs: Costs, state: TourState, first: int, last: int) -> None:
 
 @inner_part
 def _try_end(costs: Costs, state: TourState, end: int) -> int:
-    """Make the first move that a better connection of one end allows.
+    """Make the first move that gains by a better connection of one end.
 
-    Returns how many ends it concerned, written to ``touched``; 0 when there is no such move.
+    Returns how many ends it changed, written to ``touched``; 0 if there is no such move.
     """
     tour, touched = state.tour, state.touched
     size = tour.size
@@ -149,8 +149,8 @@ def _try_end(costs: Costs, state: TourState, end: int) -> int:
 def _swap_runs(costs: Costs, state: TourState, at: int, other_at: int, gain: float) -> int:
     """Let two neighbouring runs of pieces change places, without turning either.
 
-    The connection of the ends at ``at`` and ``other_at`` is new and brings ``gain``; which third
-    connection is broken is searched here.
+    The connection of the ends at ``at`` and ``other_at`` is new and brings ``gain``. The third
+    connection to break is searched here.
     """
     tour, touched = state.tour, state.touched
     size = tour.size

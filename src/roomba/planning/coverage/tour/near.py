@@ -21,15 +21,15 @@ _NEVER = np.int32(1 << 30)
 _SQUARE = 64.0
 """cells; places are looked for square by square, outwards."""
 _TOUCHED, _QUEUED, _WAITING = 0, 1, 2
-"""What is counted of a search: blocks with a cost, all that was queued, and what still is."""
+"""Counters of a search: blocks with a cost, entries queued so far, and entries still waiting."""
 _TRIED = 3
-"""Times as many places as are wanted are tried, the nearest as the crow flies."""
+"""So many times the wanted places are tried: those that are nearest in a straight line."""
 
 
 class Places(NamedTuple):
     """Places over a net, float64 [n, 2] ``at``.
 
-    Those near block b, whose knot they see, are ``of_block[block_first[b]:block_first[b + 1]]``.
+    The places near block b that see its knot are ``of_block[block_first[b]:block_first[b + 1]]``.
     """
 
     at: Floats
@@ -40,8 +40,8 @@ class Places(NamedTuple):
 class NearestSearch(NamedTuple):
     """Work arrays of a search over a net, int32.
 
-    ``costs`` are of its blocks, and ``touched`` those that have one. What is queued stands in
-    ``queued``, and in ``next_of`` where the next one of the same bucket stands.
+    ``costs`` are those of the net's blocks, and ``touched`` the blocks that have one. ``queued``
+    has the queued blocks, ``next_of`` the index of the next one in the same bucket.
     """
 
     costs: Ints32
@@ -71,7 +71,7 @@ def search_over(net: Net) -> NearestSearch:
 
 @allocating_entry
 def places_over(net: Net, places: Floats) -> Places:
-    """Return places, float64 [n, 2], with which of them are near each block."""
+    """Return places, float64 [n, 2], with lists of those near each block."""
     near = np.empty((len(places), 9), np.int32)
     sizes = np.empty(len(places), np.int64)
     first_of = np.zeros(net.links.size // 8 + 1, np.int32)
@@ -102,10 +102,10 @@ def nearest_wanted(
     found: Ints32,
     lengths: NDArray[np.float64],
 ) -> int:
-    """Write the places nearest to one of them over the net, and the lengths of the ways.
+    """Write the places nearest to place ``origin`` over the net, and the lengths of the ways.
 
-    Only those ``wanted``, bool [n], count. The search ends after ``enough`` of them or ``limit``
-    cells. Returns how many; they are not sorted.
+    Only ``wanted`` places, bool [n], count. The search ends after ``enough`` of them or ``limit``
+    cells. Returns how many were found; they are not sorted.
     """
     counts = search.counts
     counts[:] = 0
@@ -140,7 +140,7 @@ def nearest_wanted(
 
 @inner_part
 def _put_in_linked(net: Net, search: NearestSearch, block: int) -> None:
-    """Queue the blocks next to one that are reached cheaper over it."""
+    """Queue the neighbours of a block that are reached cheaper over it."""
     columns = net.links.shape[1]
     links = net.links[block // columns, block % columns]
     for step in range(8):
@@ -153,7 +153,7 @@ def _put_in_linked(net: Net, search: NearestSearch, block: int) -> None:
 
 @inner_part
 def _put_in(search: NearestSearch, block: int, cost: int) -> None:
-    """Queue a block at its cost, behind what is queued at that cost."""
+    """Queue a block at its cost, behind those already queued at that cost."""
     counts = search.counts
     if search.costs[block] == _NEVER:
         search.touched[counts[_TOUCHED]] = block
@@ -176,7 +176,7 @@ def _put_in(search: NearestSearch, block: int, cost: int) -> None:
 def _note_place(
     place: int, length: float, found: Ints32, lengths: NDArray[np.float64], count: int
 ) -> int:
-    """Note a place, or that it is nearer than was known; return how many are found."""
+    """Store a place that was found, or a shorter way to it; return how many are found."""
     for known in range(count):
         if found[known] == place:
             lengths[known] = min(lengths[known], length)
@@ -191,7 +191,7 @@ def _note_place(
 def _twice_as_long(queue: Ints32) -> Ints32:
     """Return the rows of a queue with as much room again behind them."""
     longer = np.empty((queue.shape[0], 2 * queue.shape[1]), np.int32)
-    # Cell by cell: an array set at once may not fit, and to say so takes longest to compile.
+    # Copied cell by cell: the check for equal shapes of a copy at once takes long to compile.
     for row in range(queue.shape[0]):
         for at in range(queue.shape[1]):
             longer[row, at] = queue[row, at]
@@ -204,8 +204,8 @@ def neighbours(
 ) -> tuple[Ints32, NDArray[np.float64]]:
     """Return the nearest places of each, the nearest first, and the lengths of the ways to them.
 
-    int32 and float64 [n, most]; -1 and infinite where there are fewer within ``limit`` cells. Those
-    in sight are as far as they look; only for others that may be nearer the net is searched.
+    int32 and float64 [n, most]; -1 and infinite if there are fewer within ``limit`` cells. The way
+    to a place in sight is straight; the net is searched only for others that may be nearer.
     """
     count = len(places.at)
     columns, square_first, of_square = _squares(places.at)
@@ -257,7 +257,7 @@ def neighbours(
 
 @allocating_part
 def _squares(at: Floats) -> tuple[int, Ints32, Ints32]:
-    """Return how many squares there are in a row, and which places lie in each, as of blocks."""
+    """Return the number of squares in a row, and lists of the places in each square."""
     columns, rows = 1, 1
     for place in range(len(at)):
         columns = max(columns, int(at[place, 0] / _SQUARE) + 1)
@@ -289,7 +289,10 @@ def _as_the_crow_flies(
     near: Ints32,
     away: NDArray[np.float64],
 ) -> tuple[int, float]:
-    """Write other places and how far they are; return how many, and how far there are no others."""
+    """Write the places nearest in a straight line, and their distances.
+
+    Return how many were written, and the distance within which there are no others.
+    """
     x, y = at[origin]
     row, column = int(y / _SQUARE), int(x / _SQUARE)
     rows = (len(first) - 1) // columns
@@ -326,7 +329,7 @@ def _as_the_crow_flies(
 
 @inner_part
 def _make_symmetric(nearest: Ints32, lengths: NDArray[np.float64]) -> None:
-    """Give ways there and back the same length; searches both ways can differ by their steps."""
+    """Give both directions of a way the same length: searches from its two ends can differ."""
     for place in range(len(nearest)):
         for n in range(nearest.shape[1]):
             other = nearest[place, n]

@@ -45,7 +45,7 @@ def net_over(fits: Mask) -> Net:
 
 @entry
 def _place_knots(net: Net) -> None:
-    """Let each block have its knot, the cell that fits nearest its middle."""
+    """Give each block its knot: the cell nearest to the block's middle that fits."""
     rows, columns = net.links.shape[:2]
     for row in range(rows):
         for column in range(columns):
@@ -91,7 +91,7 @@ def _link_neighbours(net: Net) -> None:
 
 @part
 def blocks_near(net: Net, x: float, y: float, found: NDArray[np.int32]) -> int:
-    """Write the blocks around a place whose knots it sees, at most 9, and return how many."""
+    """Write the blocks around a place, at most 9, whose knots are in sight; return how many."""
     rows, columns = net.links.shape[:2]
     row, column = int(y + 0.5) // _BLOCK, int(x + 0.5) // _BLOCK
     size = 0

@@ -1,4 +1,4 @@
-"""Stage order: in which order, and which way round, the pieces are driven."""
+"""Stage order: the order and direction in which the pieces are driven."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from roomba.planning.coverage.tour.tour import greedy_links, iterated_local_sear
 
 _NEAREST = 20
 _NEAR = 300.0
-"""cells; connections longer than this are only made where there is no other."""
+"""cells; longer connections are not searched beforehand: they are made only if needed."""
 _EVERYWHERE = 1e8
 _MOST_SEARCHES = 6
-"""Searches for an order, each with the true lengths of the ways that the last one had guessed."""
+"""Searches for an order, each with the true lengths of the ways that the one before had guessed."""
 
 
 def ordered(
@@ -67,7 +67,7 @@ def _headings(lines: list[Polyline]) -> NDArray[np.float64]:
 def _first_tour(net: Net, search: NearestSearch, places: Places, costs: Costs) -> NDArray[np.int32]:
     """Return a tour that makes the cheapest connections, and goes on to the nearest free end.
 
-    What the latter cost is noted in ``costs``.
+    The costs of the connections to free ends are stored in ``costs``.
     """
     links: NDArray[np.int32] = greedy_links(costs)
     found = np.empty(64, np.int32)

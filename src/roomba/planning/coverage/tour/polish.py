@@ -28,22 +28,22 @@ from roomba.planning.coverage.passes.sweep import (
 )
 
 _LEG = 24.0
-"""cells; longer legs are cut, so that a change concerns little floor."""
+"""cells; longer legs are cut, so that each change affects little floor."""
 _LONGEST = 60.0
 """cells; no leg longer than this is made."""
 _ROUNDS = 14
 _LEAST_GAIN = 0.02
 _BENDS = 0.01
-"""rad; a point where the way turns less than this is moved only with others."""
+"""rad; no change is tried around a point where the way turns by less than this."""
 
 
 class Bent(NamedTuple):
-    """A way that is being changed: points, their neighbours along it, and what it sweeps.
+    """A way that is being changed: its points, their neighbours along it, and the swept cells.
 
     ``points`` float64 [n, 2]; ``before`` and ``after`` int64 [n], -1 past the ends; ``on_way``
-    bool [n], which points are left; ``counts`` int16 [rows, columns]; ``need`` the cells that
-    count; ``fits`` where the middle may be; ``spare``, int64 [1], how many more may be left;
-    ``legs`` those that the change at hand concerns.
+    bool [n], which points are still on the way; ``counts`` int16 [rows, columns]; ``need`` the
+    cells to sweep; ``fits`` where the middle may be; ``spare``, int64 [1], how many more cells may
+    be left; ``legs`` those of the change at hand.
     """
 
     points: Polyline
@@ -103,7 +103,7 @@ def _turn(points: Polyline, one: int, two: int, three: int) -> float:
 def _turn_if_moved(
     points: Polyline, one: int, two: int, three: int, moved: int, x: float, y: float
 ) -> float:
-    """Return how much it would turn there if ``moved``, one of the three, were at (x, y), rad."""
+    """Return that turn, rad, if ``moved``, one of the three points, were at (x, y)."""
     if one < 0 or three < 0:
         return 0.0
     ax, ay = points[one]
@@ -177,9 +177,9 @@ def _set_between(bent: Bent, at: int, one: int, other: int) -> None:
 def _is_worth_it(
     bent: Bent, old: int, count: int, gain: float, radius: float, floor: float
 ) -> bool:
-    """Whether other legs in place of the first ``old`` cost less for all they leave.
+    """Whether the new legs are worth it in place of the first ``old``, for all that they leave.
 
-    If so, what is swept is counted anew.
+    If so, the swept cells are counted anew.
     """
     most = min((gain - _LEAST_GAIN) / floor, max(bent.spare[0], 0))
     left = left_without(bent.need, bent.counts, bent.legs, old, count, radius, most)
@@ -228,7 +228,7 @@ def _try_move(
 
 @inner_part
 def _improve_at(bent: Bent, at: int, radius: float, turning: float, floor: float) -> bool:
-    """Try all changes around a point; whether one was made."""
+    """Try all changes around a point; return whether one was made."""
     points = bent.points
     before, after = bent.before[at], bent.after[at]
     if before < 0 or after < 0:

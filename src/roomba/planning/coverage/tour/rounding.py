@@ -2,8 +2,8 @@
 
 At a sharp corner the robot stops and turns on the spot; a bend is driven in one go. From one swath
 to the next beside it there are two such corners: there the swaths go on a little farther, and a
-bend leads from one into the other. Corners at which the outer floor is swept by nothing else, as in
-those of rooms, stay.
+bend leads from one into the other. A corner stays if nothing else sweeps the floor on its outside,
+as in the corners of rooms.
 
 Places in cells of the window: (x, y) is (column, row), whole numbers are the cells' centres.
 """
@@ -39,14 +39,14 @@ from roomba.planning.coverage.tour.bends import (
 from roomba.planning.coverage.tour.connection import tidy
 
 _FARTHER: Final = 0.2
-"""Widest radii; in such steps it is tried how much farther swaths go on, ..."""
+"""In widest radii; step by which swaths are tried to go on farther."""
 _STEPS: Final = 5
-"""... up to so many: a bend of the widest radius then leaves nothing."""
+"""Such steps, at most: a bend of the widest radius then leaves no floor."""
 _LEAST_GAIN: Final = 1e-6
-"""Cells of way by which a bend is better than another one."""
+"""Cells of way that a bend must save to count as better than another one."""
 _BESIDE: Final = 2.0
-"""cells; bends keep so much more than all ways do: in a bend the place is known less exactly, and a
-touch takes more time than a stop."""
+"""cells; bends keep so much more distance than other ways: in a bend the pose is known less
+exactly, and a touch takes more time than a stop."""
 
 
 def rounded(
@@ -58,10 +58,10 @@ def rounded(
     the radius of the widest bend. At corners of more than ``sharp``, rad, the robot turns on the
     spot; softer ones it rounds off as it drives, and they stay.
 
-    A bend costs ``config.bend_unswept`` for each needed cell that it leaves, and what it makes the
-    way longer; where that is below ``config.bend_worth`` it is taken. All in cells of way; in all
-    they leave a share of ``config.spare`` at most. Bends keep a little more from where the middle
-    does not fit than other ways.
+    A bend costs ``config.bend_unswept`` for each needed cell that it leaves, plus the length that
+    it adds to the way. It is taken if it costs less than ``config.bend_worth``; all costs are in
+    cells of way. All bends together leave a share of ``config.spare`` of the needed cells at most.
+    Bends keep a little more distance from where the middle does not fit than other ways.
     """
     line = tidy(fits, line)
     if len(line) < 3:
@@ -111,9 +111,9 @@ def _write(work: Rounded, place: Floats) -> None:
 
 @inner_part
 def _try_both(work: Rounded, line: Polyline, at: int, unswept: float, worth: float) -> bool:
-    """Put bends in place of a corner and the next one, and tell whether it was done.
+    """Put bends in place of a corner and the next one; return whether it was done.
 
-    The ways before and behind them go on farther, by what costs least.
+    The ways before and behind them go on farther by the step that costs least.
     """
     least, best = worth, -1.0
     for step in range(_STEPS + 1):
@@ -131,7 +131,7 @@ def _try_both(work: Rounded, line: Polyline, at: int, unswept: float, worth: flo
 
 @inner_part
 def _try_one(work: Rounded, line: Polyline, at: int, unswept: float, worth: float) -> bool:
-    """Put a bend in place of a corner, the widest that is worth it; tell whether it was done."""
+    """Put the widest bend that is worth it in place of a corner; return whether it was done."""
     bend = work.radius
     for _ in range(RADII):
         if bend_one(work, line, at, bend) and _cost(work, unswept, worth) < worth:
@@ -143,8 +143,8 @@ def _try_one(work: Rounded, line: Polyline, at: int, unswept: float, worth: floa
 
 @inner_part
 def _cost(work: Rounded, unswept: float, most: float) -> float:
-    """Return what the new way costs in place of the old one, cells of way; infinite where it does
-    not fit, or is longer by ``most``."""
+    """Return the cost of the new way in place of the old one, cells of way; infinite if the new one
+    does not fit, or is longer by ``most``."""
     longer = _length(work.new, work.sizes[1]) - _length(work.old, work.sizes[0])
     if longer >= most or not _fits(work):
         return math.inf
@@ -171,9 +171,9 @@ def _fits(work: Rounded) -> bool:
 
 @inner_part
 def _left(work: Rounded) -> int:
-    """Return how many more needed cells nothing sweeps with the new way in place of the old one.
+    """Return how many more needed cells are left unswept by the new way in place of the old one.
 
-    Both ways are written down as legs.
+    Both ways are written to the work array of legs.
     """
     at = 0
     for which in range(2):
@@ -188,7 +188,7 @@ def _left(work: Rounded) -> int:
 
 @inner_part
 def _take(work: Rounded) -> None:
-    """Go the new way in place of the old one, and write it down."""
+    """Take the new way in place of the old one, and write its points."""
     work.spare[0] -= _left(work)
     old = work.sizes[0] - 1
     replace_legs(work.counts, work.legs, old, old + work.sizes[1] - 1, work.radius)

@@ -13,9 +13,9 @@ from roomba.planning.coverage.tour.moves import TourState, exchange, improve, st
 
 _MOST_ROUNDS = 100000
 _NEAR_SHARE = 30
-"""Of a hundred rounds, those that exchange runs between connections that are near each other."""
+"""Rounds in a hundred that exchange runs between connections near each other."""
 _LONGEST = 25
-"""pieces; the longest run that the others exchange."""
+"""pieces; the longest run that the other rounds exchange."""
 
 
 class BestTour(NamedTuple):
@@ -27,9 +27,10 @@ class BestTour(NamedTuple):
 
 @allocating_entry
 def greedy_links(costs: Costs) -> NDArray[np.int32]:
-    """Return the end that each is connected to, or -1: cheapest connections first, no circles.
+    """Return the end that each end is connected to, or -1, int32 [ends].
 
-    int32 [ends]. The outer ends of the first and the last piece stay free.
+    The cheapest connections are made first, without circles. The outer ends of the first and the
+    last piece stay free.
     """
     ends, most = costs.nearest.shape
     links = np.full(ends, -1, np.int32)
@@ -65,7 +66,7 @@ def _drawn(generator: NDArray[np.uint64], below: int) -> int:
 def _connection_near(
     costs: Costs, state: TourState, end: int, generator: NDArray[np.uint64]
 ) -> int:
-    """Return the position before a connection some steps from an end, from near end to near end."""
+    """Return the position before a connection that is some random steps between near ends away."""
     for _ in range(1 + _drawn(generator, 3)):
         known = 0
         while known < costs.nearest.shape[1] and costs.nearest[end, known] >= 0:
@@ -81,8 +82,8 @@ def _connection_near(
 def iterated_local_search(costs: Costs, first_tour: Tour, period: int, pays: float) -> Tour:
     """Return a tour improved by iterated local search, which exchanges runs while that pays.
 
-    It goes on while ``period`` exchanges gain the share ``pays`` of the cost. They are drawn from a
-    fixed sequence, so the outcome is always the same.
+    It goes on while ``period`` exchanges gain the share ``pays`` of the cost. Exchanges are drawn
+    from a fixed sequence, so that the result is always the same.
     """
     ends = first_tour.size
     tour = first_tour.copy()
@@ -133,7 +134,7 @@ def _search_on(
 def _drawn_runs(
     costs: Costs, state: TourState, generator: NDArray[np.uint64]
 ) -> tuple[int, int, int]:
-    """Return positions before three connections; the runs between them are to be exchanged."""
+    """Return the positions before three connections, between which two runs are to be exchanged."""
     ends = state.tour.size
     if _drawn(generator, 100) < _NEAR_SHARE:
         end = _drawn(generator, ends)
@@ -158,7 +159,7 @@ def _exchange_drawn(
     middle: int,
     last: int,
 ) -> int:
-    """Exchange two runs, and queue the ends that this concerns; return how many these are."""
+    """Exchange two runs, and queue the ends at the changed connections; return their number."""
     tour, joined = state.tour, state.joined
     queue[0], queue[1], queue[2] = tour[first], tour[first + 1], tour[middle]
     queue[3], queue[4], queue[5] = tour[middle + 1], tour[last], tour[last + 1]

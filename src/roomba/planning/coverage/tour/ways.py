@@ -24,8 +24,8 @@ def way_between(
 ) -> Polyline:
     """Return the shortest way over the net from one place to another, pulled straight.
 
-    float64 [n, 2] with both ends; empty when there is none. ``costs`` is float64 [blocks], all
-    infinite, and is left so.
+    float64 [n, 2] with both ends; empty if there is no way. ``costs`` is a work array, float64
+    [blocks]: all infinite, before and after.
     """
     if way_fits(net.fits, x, y, to_x, to_y):
         return np.array([[x, y], [to_x, to_y]])
@@ -41,10 +41,10 @@ def way_between(
 def _search(
     net: Net, costs: NDArray[np.float64], x: float, y: float, to_x: float, to_y: float
 ) -> tuple[dict[int, int], int]:
-    """Search from place to place by A*; return the block before each, and the way's last one.
+    """Search from place to place by A*; return the block before each, and the way's last block.
 
-    Before the first block of a way is -1, and the last is -1 if there is no way. Writes what the
-    blocks cost.
+    The block before the first one is -1; the last block is -1 if there is no way. Writes the costs
+    of the blocks.
     """
     columns = net.links.shape[1]
     goals = np.empty(9, np.int32)
@@ -118,7 +118,7 @@ def taut(fits: Mask, way: Polyline) -> Polyline:
     """Return a way pulled straight: bends are cut short and moved until none can be."""
     line = _shortcut(fits, way)
     for _ in range(4):
-        # New bends halfway along the legs next to each bend let it slide towards its obstacle.
+        # New points halfway along the legs let each bend slide towards its obstacle.
         finer = np.empty((2 * len(line) - 1, 2))
         for at in range(len(line)):
             for axis in range(2):
@@ -166,7 +166,7 @@ def _pull(fits: Mask, line: Polyline, at: int) -> None:
 
 @allocating_part
 def _shortcut(fits: Mask, way: Polyline) -> Polyline:
-    """Return the way without the bends that can be left out, farthest view first."""
+    """Return the way without needless bends: from each point straight to the farthest in view."""
     line = np.empty_like(way)
     line[0, 0], line[0, 1] = way[0, 0], way[0, 1]
     size = 1

@@ -28,7 +28,7 @@ def bit_rows(cells: NDArray[np.uint8]) -> Bits:
 
 @inner_part
 def bit_length(word: np.uint64) -> int:
-    """Return how many bits a word has up to its highest 1: one instruction, LLVM sees to that."""
+    """Return how many bits a word has up to its highest 1; LLVM makes one instruction of it."""
     length = 0
     while word != _ZERO:
         word >>= _ONE
@@ -46,8 +46,8 @@ def is_set(bits: Bits, row: int, column: int) -> bool:
 def jump(bits: Bits, row: int, column: int, step: int, target: int) -> int:
     """Return the next cell of a row where a path may have to turn, or NOWHERE at a dead end.
 
-    That is ``target``, or the cell just past a closed one of the row above or below: it could not
-    be rounded diagonally.
+    That is ``target``, or the cell just past a closed cell of the row above or below, whose corner
+    could not be cut diagonally.
     """
     word = column >> 6
     place = np.uint64(column & 63)

@@ -1,4 +1,4 @@
-"""Compiled fans of the any-angle search: what a root sees of a row, and how they go on to the next.
+"""Compiled fans of the any-angle search: what a root sees of one row, driven on to the next row.
 
 See :mod:`roomba.planning.path.search.path_kernels` for the search. Lengths in cells.
 """
@@ -87,7 +87,7 @@ def offer_root(work: Work, x: int, y: int, root: int, cost: float) -> None:
 def see(
     work: Work, x: int, y: int, root: int, root_x: float, root_y: float, root_cost: float
 ) -> None:
-    """Let a root see a centre: offer it if a taut path can bend there, or it leads on anyhow."""
+    """Let a root see a centre: offer it where a taut path can bend, at a crossing or exit."""
     flag = work.flags[y, x]
     if flag == 0:
         return

@@ -31,7 +31,7 @@ from roomba.planning.path.search.floor_kernels import BEND, CROSSING, EXIT, SIDE
 from roomba.planning.path.search.heap_kernels import heap_pop
 
 START = -1
-"""Stands for the start where a root is asked for."""
+"""Stands for the start in place of a root."""
 FULL, NO_PATH, FOUND = 0, 1, 2
 EVERYWHERE = 1e18
 
