@@ -45,7 +45,7 @@ SECTION: Final = np.dtype(
 
 BENDING: Final = np.dtype(
     [
-        ("off_corner", "f8"),  # m; the curve is at most so far off the path
+        ("off_corner", "f8"),  # m; the curve is not farther off the path
         ("longest_blend", "f8"),  # m; no mean is taken over more than this to each side
         ("turning", "f8"),  # rad/s
         ("turning_acceleration", "f8"),  # rad/s2

@@ -41,7 +41,7 @@ _VARIANCE: Final = 0.05**2
 class FloorMatch:
     """How well two maps fit: shares 0..1, see above; ``old_in_new`` puts the old on the new one.
 
-    ``is_same``: both maps show the same floor.
+    ``is_same``: they show the same floor.
     """
 
     walls: float
@@ -57,7 +57,7 @@ def match_floors(new: FloorRecord, old: FloorRecord, config: FloorsConfig) -> Fl
     """
     station = new.station
     starts = [Pose(station.x, station.y, station.theta + turn) for turn in _TURNS]
-    # Maps that were begun at the same place have the same frame.
+    # Maps that were begun at the same place have one frame.
     starts.append(old.station)
     field, walls = SurfaceField.of(new.occupancy), _walls(old.occupancy)
     ends = np.zeros((len(walls), 4))

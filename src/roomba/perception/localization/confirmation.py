@@ -72,7 +72,7 @@ class Confirmation:
         return self._go_on_comparing(self.compared, now, view, reckoned, field)
 
     def drop(self) -> None:
-        """Confirm nothing any more, as the pose is not believed."""
+        """Confirm nothing any more: the pose is not believed."""
         self.awaited = self.compared = None
 
     def refuted(

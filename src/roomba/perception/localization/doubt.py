@@ -50,19 +50,19 @@ class Doubt:
         self._compared = -math.inf
         self._last: Pose | None = None
         self._way = 0.0
-        """m; the way driven while scans did not correct the pose."""
+        """m; driven while scans did not correct the pose; turns on the spot do not count."""
 
     def note(self, stamp: float, reckoned: Pose, view: ScanView) -> None:
         """Remember a scan that was taken at a time, s."""
         self.sight.note(stamp, reckoned, view)
 
     def drop(self) -> None:
-        """End a comparison under way, as the map is another one, or the pose is not known."""
+        """End a comparison that is under way: the map is another one, or the pose not known."""
         self._comparison = None
         self.end()
 
     def end(self) -> None:
-        """Doubt no more, as scans fit again."""
+        """Doubt no more: scans fit again."""
         self._last, self._way = None, 0.0
 
     def follow(self, reckoned: Pose, *, fits: bool) -> None:

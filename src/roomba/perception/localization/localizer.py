@@ -289,7 +289,7 @@ class Localizer:
     def _follow_clock(self, time: float, clock: ClockJumps) -> None:
         """Take the time that a clock shows.
 
-        Stamps of sensors and the time itself are two clocks: stamps are always a little late.
+        Stamps and the time itself are two clocks: stamps are always a little late.
         """
         was_set = clock.at(time) != 0.0
         if not self._has_clock or was_set:

@@ -24,7 +24,7 @@ _SECTORS: Final = 360
 class RecentSight:
     """Scans of the last seconds, each with where dead reckoning said that it was taken.
 
-    Kernels may go on with its ``arrays``, in its place.
+    Kernels may go on with its ``arrays``.
     """
 
     def __init__(self, config: RecentSightConfig) -> None:

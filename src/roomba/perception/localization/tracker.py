@@ -104,7 +104,7 @@ class Tracker:
         return bool(self._belief["is_doubtful"])
 
     def trust(self, fit: Fit) -> None:
-        """Take this fit for the usual one, as the place was compared with all others."""
+        """Take this fit for the usual one: the place was compared with all others."""
         self._fit[:] = fit.agree, fit.short, fit.through, fit.evidence
         self._belief["is_doubtful"] = False
         trust(self._beliefs)

@@ -25,7 +25,7 @@ _STEP: Final = math.log(_LAST / _FIRST) / _BINS
 LEAST_SAMPLES: Final = 300
 """Fewer samples say too little."""
 _MOST_SAMPLES: Final = 100_000
-"""Above this number all samples so far are counted as half as many."""
+"""Above this number of samples all counts so far are halved."""
 _PER_MEDIAN: Final = 1.4826
 """Standard deviation of a normal distribution over the median of its absolute values."""
 _PER_TENTH: Final = 1.0 / 0.12566

@@ -53,7 +53,7 @@ class SurfaceField:
     def near(occupancy: OccupancyMap, farthest: float) -> SurfaceField:
         """Return the field of a map as :meth:`of` does, but nowhere more than ``farthest``, m.
 
-        This takes a tenth of the time. All unknown cells count as solid.
+        It takes a tenth of the time. All that is unknown counts as solid.
         """
         resolution = occupancy.frame.resolution
         most = math.ceil(farthest / resolution + 0.5)

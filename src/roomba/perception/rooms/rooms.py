@@ -215,7 +215,8 @@ def segment(occupancy: OccupancyMap, config: RoomsConfig | None = None) -> Rooms
 
     A room is free cells (value 0) that are connected over sides. Specks, corners that no robot
     reaches, and floor that a scan saw through windows are in no room. Bormann et al., "Room
-    Segmentation: Survey, Implementation, and Analysis" (2016), compare methods and their scores.
+    Segmentation: Survey, Implementation, and Analysis" (2016), compare methods, and say how they
+    are scored.
     """
     labels = room_labels(occupancy, config or RoomsConfig())
     names = tuple(f"Room {number}" for number in range(1, int(labels.max(initial=0)) + 1))

@@ -73,7 +73,7 @@ class SubmapMap:
         )
 
     def use(self, lidar: LidarBeams) -> None:
-        """Take the scans of a lidar from now on; make ``surfels`` anew for it."""
+        """Take the scans of a lidar from now on: makes ``surfels`` anew."""
         reach = min(lidar.farthest, self._config.farthest) + self._config.spare
         self.graph.use_reach(reach)
         self.drawn.use(lidar)
@@ -179,7 +179,7 @@ class SubmapMap:
             self.version += self.mirrors.see(self._newest, mount, self.drawn.occupancy)
 
     def _leave_mirrors_behind(self, frame: Keyframe) -> None:
-        """Drop mirrors that the robot drove through since the last keyframe, if it drove."""
+        """Forget mirrors that the robot drove through since the last keyframe, if it drove."""
         here = self.graph.placed(frame.pose)
         if self._last_kept is not None and len(self.mirrors):
             number, pose = self._last_kept

@@ -142,7 +142,7 @@ def _window(
 
 @part
 def _inverse_square(way_x: float, way_y: float) -> float:
-    """Return one over the squared length of a way, or 0 if it has no length."""
+    """Return one over the squared length of a way, or 0 of one without length."""
     square = way_x * way_x + way_y * way_y
     return 1.0 / square if square > 0.0 else 0.0
 

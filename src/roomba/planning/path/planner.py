@@ -191,9 +191,9 @@ class PathPlanner:
         return self._among_obstacles
 
     def _floor(self, room: _Room, start: Joints, goal: Joints) -> FreeSpace | None:
-        """Return the floor to search: the comfortable one, widened where there is no other way.
+        """Return the floor to search: the comfortable one, opened only where there is no other way.
 
-        None if even with tight clearance no way leads from the start to the goal.
+        None when even with tight clearance no way leads from the start to the goal.
         """
         if np.intersect1d(
             _regions(room.comfortable, start), _regions(room.comfortable, goal)
@@ -212,7 +212,7 @@ class PathPlanner:
         regions = room.comfortable.regions[cells[:, 0], cells[:, 1]]
         opened = np.zeros(self.frame.shape, np.bool_)
         comfortable = np.flatnonzero(regions)
-        # A stretch that leaves a comfortable region and returns to the same one can be avoided.
+        # A stretch that leaves a comfortable region and comes back to the same one can be avoided.
         edges = np.concatenate(([-1], comfortable, [len(cells)]))
         for before, after in pairwise(edges.tolist()):
             within = before >= 0 and after < len(cells) and regions[before] == regions[after]

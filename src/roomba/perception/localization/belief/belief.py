@@ -111,7 +111,7 @@ def unknown_belief() -> Rows:
 
 
 def numbers_of(config: LocalizationConfig, gyro: GyroConfig, every: int = 1) -> Rows:
-    """Return the numbers for kernels that get every ``every``-th scan of a lidar."""
+    """Return the numbers for kernels that are shown each ``every``-th scan of a lidar."""
     fields: dict[str, float] = {
         "way_variance": config.way_noise**2,
         "side_variance": config.side_noise**2,

@@ -17,7 +17,7 @@ Particles = NDArray[np.float64]
 
 @entry
 def spread_over(spots: Floats, headings: int, particles: Particles) -> None:
-    """Fill ``particles`` with each spot, [n, 2], m, in ``headings`` headings, all of weight 1."""
+    """Fill ``particles`` with each spot, [m, 2], m, in ``headings`` headings, all of weight 1."""
     turn = 2.0 * math.pi / headings
     for index in range(particles.shape[0]):
         spot, heading = index // headings, index % headings

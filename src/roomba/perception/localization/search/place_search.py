@@ -13,7 +13,7 @@ from roomba.perception.localization.search.search_kernels import cells_with_room
 from roomba.perception.matching.surface_field import SurfaceField
 
 STEP: Final = 0.15
-"""m; between places that are tried: a match finds its way from half of that."""
+"""m; between places that are tried: the match finds its way from half of that."""
 TURN: Final = math.radians(4.0)
 """rad; between headings that are tried."""
 WIDTH: Final = 0.35

@@ -75,7 +75,7 @@ class Hypothesis:
     is_expected: bool = False
 
     def is_possible(self, needed: FitConfig) -> bool:
-        """Whether the scan fits at all at this place."""
+        """Whether the scan fits at all there."""
         if self.is_expected:
             return self.fit.agree > 0.5 * needed.found_agree
         return self.fit.agree >= needed.found_agree and self.fit.through <= needed.found_through

@@ -191,7 +191,7 @@ def _walk(
 ) -> None:
     """Count the cells of a way that is all on the grid: ``at``, and the cell after each step.
 
-    The direction of a step is unpredictable: the code does not branch on it, in half the time.
+    The direction of a step is unpredictable, so nothing branches on it: that halves the time.
     """
     while True:
         _count(counts, at, times)

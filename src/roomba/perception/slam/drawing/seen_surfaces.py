@@ -14,7 +14,7 @@ from roomba.grid import FREE, UNKNOWN, OccupancyMap
 from roomba.raster.regions import dilated, large_regions
 
 _AROUND: Final = np.ones((3, 3), np.bool_)
-"""A cell, and those that touch it at a side or a corner."""
+"""A cell, and those that meet it at a side or a corner."""
 
 
 def only_seen(map: OccupancyMap, least_floor: float) -> OccupancyMap:

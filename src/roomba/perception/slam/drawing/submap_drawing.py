@@ -18,7 +18,7 @@ from roomba.perception.slam.submaps.submap import Keyframe
 from roomba.perception.slam.submaps.submap_graph import SubmapGraph
 
 _REDRAWN_TURN: Final = 0.002
-"""rad; a submap that turned by more than this is drawn anew."""
+"""rad; a submap that turned more is drawn anew."""
 
 
 class SubmapDrawing:

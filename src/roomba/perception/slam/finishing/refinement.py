@@ -34,7 +34,7 @@ from roomba.perception.slam.submaps.pose_graph import (
 from roomba.perception.slam.submaps.submap import Keyframe
 
 _STRIDE: Final = 5
-"""Keyframes from the first one of a group to the first one of the next group."""
+"""Keyframes from the first of a group to the first of the next."""
 _MOST_VISITS: Final = 5
 """Groups of other visits that a keyframe is matched to, at most."""
 _ROUNDS: Final = 2

@@ -13,8 +13,8 @@ from roomba.perception.matching.pose_kernels import is_apart
 
 FINDING: Final = np.dtype(
     [
-        ("usual", "f8"),  # share of points that usually agree
-        ("pace", "f8"),  # m/s; the fastest of late
+        ("usual", "f8"),  # share of points that scans usually agree in
+        ("pace", "f8"),  # m/s; the fastest one of late
         ("stamp", "f8"),  # s; of the newest scan
         ("way", "f8"),  # m; driven by then
         ("well_since", "f8"),  # s; stamp of the newest scan that agreed as usual; nan: none
@@ -83,7 +83,7 @@ def _count(findings: Rows, follower: Row, stamp: float) -> None:
     finding.misses = 0
     agreement = follower.met * follower.close
     stands = not is_apart(follower.reckoned, finding.well_at, _STANDS, _STANDS)
-    # A driving robot sees new things, which is no doubt; but scans far apart may fit wrongly.
+    # A driving robot sees new things, which raises no doubt; but scans far apart may fit wrongly.
     is_doubted = stands or follower.way - finding.way >= finding.far_apart
     if agreement < least_usual(findings) and is_doubted:
         if finding.doubts == 0:

@@ -102,7 +102,7 @@ class ScanFollower:
         self._use_standing(config)
 
     def find_reckoned(self, stamp: float) -> bool:
-        """Look up where dead reckoning had the robot at a scan; tell whether that is known."""
+        """Look up where dead reckoning had the robot at a scan, and tell whether that is known."""
         return pose_at(self._reckoning.path, stamp - self.latency, self._row["scanned_at"])
 
     def see(self, stamp: float, ranges: NDArray[np.float32]) -> Floats:

@@ -215,7 +215,7 @@ class Mirrors:
         return Mirror.found(submap, placed(plane, inverse(self._graph.poses[submap])), seen_from)
 
     def _nearest_before(self, plane: Plane) -> int:
-        """Return the number of the submap whose keyframe is the nearest one before a plane."""
+        """Return the number of the submap with the keyframe that is nearest before a plane."""
         nearest, away = len(self._graph.submaps) - 1, math.inf
         for number in range(len(self._graph.submaps)):
             for scan in self._scans_of(number):

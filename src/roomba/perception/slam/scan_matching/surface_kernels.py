@@ -22,7 +22,7 @@ Y: Final = 1
 NORMAL_X: Final = 2
 NORMAL_Y: Final = 3
 POINT: Final = 4
-"""Columns of a point: x, y, m, and its surface's unit normal towards the lidar; 0, 0: unknown."""
+"""Columns of a point: x, y, m, and its surface's unit normal towards the lidar; 0, 0: not known."""
 
 _HALF_SPAN: Final = 0.07
 """m; a normal is fitted over at least so much of the surface to each side."""

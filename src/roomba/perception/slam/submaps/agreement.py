@@ -15,7 +15,7 @@ from roomba.perception.slam.submaps.pose_graph import Link, composed, relative_t
 
 
 def is_far(link: Link, poses: Floats, config: BackingConfig) -> bool:
-    """Whether a link would move its child far; the submaps are at ``poses``, [n, 3]."""
+    """Whether a link would move its child far, the submaps lying at ``poses``, [n, 3]."""
     here = _told(link, poses)
     return math.hypot(*(here[:2] - poses[link.child, :2])) > config.far
 

@@ -64,7 +64,7 @@ def _way_of(link: Link, ways: Sequence[float]) -> float:
 
 
 def _holds(link: Link, ways: Sequence[float], pieces: NDArray[np.int64]) -> bool:
-    """Whether a link says something of a heading that others do not: see ``_LONG_AGO``."""
+    """Whether a link says something of a heading that other ones do not: see ``_LONG_AGO``."""
     if link.kind is not LinkKind.MATCHED:
         return link.kind is not LinkKind.GUESSED
     is_of_one_piece = bool(pieces[link.parent] == pieces[link.child])

@@ -112,7 +112,7 @@ class Linker:
     ) -> Link | None:
         """Return the link between two submaps, or None where they do not match well enough.
 
-        They may be off by ``window``, m, and ``turn``, rad, from where they are thought to be.
+        They may lie off by ``window``, m, and ``turn``, rad, from where they are thought to be.
         """
         cloud = submaps[child].cloud
         if len(cloud) < self._config.link_points or not len(submaps[parent].cloud):

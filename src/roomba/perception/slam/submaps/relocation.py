@@ -47,7 +47,7 @@ class MapRelocation:
     def find(
         self, points: Floats, reckoned: Floats, submaps: list[Submap], poses: Floats
     ) -> Floats | None:
-        """Return where the robot is, [3], map frame, or None while that is not sure.
+        """Return where the robot is, [3], map frame, or None as long as that is not sure.
 
         ``points`` [n, 4] are those of a scan, ``reckoned`` [3] its pose by dead reckoning,
         ``poses`` [m, 3] those of the submaps.

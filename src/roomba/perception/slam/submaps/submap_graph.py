@@ -76,17 +76,17 @@ class SubmapGraph:
         self.poses, self.links = poses.copy(), list(links)
 
     def use_reach(self, reach: float) -> None:
-        """Set how far the points of a submap are from its origin at most, m."""
+        """Take how far the points of a submap are from its origin at most, m."""
         self.reach = reach
         self._linker = Linker(self._config, reach)
         self._linker.use_noise(self.range_deviation)
 
     def use_odometry(self, localization: LocalizationConfig) -> None:
-        """Use the noise of other odometry from now on."""
+        """Go by the noise of other odometry from here on."""
         self._localization = localization
 
     def use_noise(self, deviation: float) -> None:
-        """Use the standard deviation of a range, m."""
+        """Go by the standard deviation of a range, m."""
         self.range_deviation = deviation
         if self._linker is not None:
             self._linker.use_noise(deviation)

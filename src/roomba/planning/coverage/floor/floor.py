@@ -1,4 +1,4 @@
-"""The floor that the tool can reach: masks over a fine grid of about one centimetre.
+"""What floor the tool can reach: masks over a fine grid of about one centimetre.
 
 Metres in the map frame; everything that is not known to be free, and all outside the map, is solid.
 """

@@ -25,7 +25,7 @@ _NEAR = 300.0
 """cells; longer connections are not searched beforehand: they are made only if needed."""
 _EVERYWHERE = 1e8
 _MOST_SEARCHES = 6
-"""Searches for an order, each with the true lengths of the ways that the one before had guessed."""
+"""Searches for an order, each with the true lengths of the ways that the last one had guessed."""
 
 
 def ordered(
