@@ -155,8 +155,7 @@ class CoverageLedger:
         """Return where the next part begins, m, seen from this one; None if it is the last.
 
         That is the middle of the places where it is nearest: at the side of a door the robot would
-        touch the frame. None also if the next part is another pass over the same floor, which may
-        begin anywhere.
+        touch the frame. Another pass over the same floor may begin anywhere: None as well.
         """
         following = self.stages[self.stage_number + 1 : self.stage_number + 2]
         if not following or (following[0].floor & stage.floor).any():

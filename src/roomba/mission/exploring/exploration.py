@@ -93,8 +93,7 @@ class Exploration:
     def of(values: list[list[float]], config: ExploringConfig) -> Exploration:
         """Return an exploration that goes on; raises ValueError or TypeError for other values.
 
-        Values of older programs do not tell from how far a frontier was looked at, or whether it
-        was.
+        Values of older programs do not tell whether, or from how far, a frontier was looked at.
         """
         exploration = Exploration(config)
         for x, y, *told in values:
@@ -138,9 +137,7 @@ class Exploration:
         obstacles: list[RoundObstacle],
         farthest: float = math.inf,
     ) -> NDArray[np.float64] | None:
-        """Return the way to the next viewpoint, float64 [n, 2], m, or None.
-
-        None when no viewpoint is left, or the robot is shut in.
+        """Return the way to the next viewpoint, float64 [n, 2], m; None if there is none.
 
         Viewpoints that are ``farthest`` m of way off and more are left out. A frontier to which no
         way leads is given up. When no viewpoint is left and ``farthest`` is infinite, the robot

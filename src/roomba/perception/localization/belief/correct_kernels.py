@@ -63,10 +63,8 @@ def correct(
 ) -> int:
     """Correct the pose by a scan, float32 [beams], m, taken here; return how many beams ended.
 
-    ``now`` is when it came, s.
-
-    Afterwards ``lidar.ends`` has the beams that ended. :func:`is_calm` tells whether the pose is
-    still to be trusted.
+    It came at ``now``, s. Afterwards ``lidar.ends`` has the beams that ended. :func:`is_calm` tells
+    whether the pose is still to be trusted.
     """
     belief = beliefs[0]
     count = beam_ends(
@@ -198,8 +196,7 @@ def match_ends(
 @inner_part
 def _is_unsure(covariance: Floats, numbers: Row) -> bool:
     """Whether the pose is so unsure that a scan is matched to surfaces farther away."""
-    unsure: float = numbers.unsure_deviation
-    is_unsure: bool = max(covariance[0, 0], covariance[1, 1]) > unsure * unsure
+    is_unsure: bool = max(covariance[0, 0], covariance[1, 1]) > numbers.unsure_deviation**2
     return is_unsure
 
 

@@ -25,9 +25,9 @@ _SHIFTS: Final = np.arange(-0.06, 0.061, 0.01)
 _SPARE: Final = 0.1
 """rad; the touched plane may face so far beyond the pressed part of the bumper."""
 _ASIDE: Final = 0.12
-"""m; a beam passed the plane's middle if it went by less than this beside it,"""
+"""m; a beam passed the plane's middle if it went by less than this beside the middle."""
 _BEYOND: Final = 0.25
-"""m; and ended more than this behind it."""
+"""m; a beam counts as one that passed if it also ended more than this behind the plane."""
 _LEAST: Final = 25
 """The fewest beams that passed the plane; fewer show nothing."""
 _LEAST_INFORMING: Final = 10
