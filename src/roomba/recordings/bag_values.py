@@ -195,10 +195,10 @@ def _turning(message: Any, lidars: LidarBook) -> Value | Refused:
 
 
 def _pose(message: Any) -> Pose:
-    """Return the planar part of a pose."""
+    """Return the planar part of a pose; its quaternion need not be of unit length."""
     place, turn = message.position, message.orientation
     x, y, z, w = turn.x, turn.y, turn.z, turn.w
-    theta = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    theta = math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
     return Pose(float(place.x), float(place.y), theta)
 
 

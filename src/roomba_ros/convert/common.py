@@ -40,9 +40,9 @@ def quaternion_of(theta: float) -> Quaternion:
 
 
 def theta_of(rotation: Quaternion) -> float:
-    """Return the heading, rad, of a rotation; what tilts it is left out."""
+    """Return the heading, rad, of a rotation of any length; what tilts it is left out."""
     x, y, z, w = rotation.x, rotation.y, rotation.z, rotation.w
-    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
 
 
 def pose_of_message(pose: PoseMessage) -> Pose:

@@ -135,6 +135,14 @@ def test_one_bad_number_of_a_pose_is_enough(field: str, number: float) -> None:
         pose_of(message)
 
 
+@pytest.mark.parametrize("length", [0.5, 2.0])
+def test_a_quaternion_of_any_length_tells_the_heading(length: float) -> None:
+    message = pose_message(1.0, Pose(1.0, 2.0, 2.5), "map")
+    message.pose.orientation.z *= length
+    message.pose.orientation.w *= length
+    assert pose_of(message).theta == pytest.approx(2.5)
+
+
 @pytest.mark.parametrize("number", BAD)
 @pytest.mark.parametrize("place", [0, 7, 35])
 def test_one_bad_variance_is_enough(place: int, number: float) -> None:

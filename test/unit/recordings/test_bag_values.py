@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from roomba.geometry import Pose
 from roomba.perception.matching.mounts import FrameTransform, Mount, Mounts
 from roomba.recordings.bag_values import LidarBook, decoded
-from roomba.recordings.readings import Kind, Refused, Turning
+from roomba.recordings.readings import Kind, Odometry, Refused, Turning
 
 _HALF = math.sqrt(0.5)
 
@@ -61,6 +62,18 @@ def test_an_axis_that_is_level_need_not_be_a_number() -> None:
     flat = mounted((0.0, 0.0, 0.0, 1.0))
     assert decoded(Kind.GYRO, turning(math.nan, math.nan, 0.5), flat) == Turning(0.5)
     assert isinstance(decoded(Kind.GYRO, turning(0.0, 0.0, math.nan), flat), Refused)
+
+
+@pytest.mark.parametrize("length", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("theta", [-2.5, -0.4, 0.0, 1.2, 3.0])
+def test_a_quaternion_of_any_length_tells_the_heading(length: float, theta: float) -> None:
+    place = SimpleNamespace(x=1.0, y=2.0, z=0.0)
+    x, y, z, w = 0.0, 0.0, length * math.sin(theta / 2.0), length * math.cos(theta / 2.0)
+    pose = SimpleNamespace(position=place, orientation=SimpleNamespace(x=x, y=y, z=z, w=w))
+    message = SimpleNamespace(pose=SimpleNamespace(pose=pose))
+    value = decoded(Kind.ODOMETRY, message, LidarBook(lambda frame, kind: Mount()))
+    assert isinstance(value, Odometry)
+    assert value.pose.as_array() == pytest.approx(Pose(1.0, 2.0, theta).as_array())
 
 
 def scan(increment: float, frame: str = "laser", beams: int = 4) -> Any:
