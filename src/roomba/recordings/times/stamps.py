@@ -31,6 +31,11 @@ _SHORT_STEP, _LONG_STEP = 0.1, 0.9
 """Quantiles of the steps: drivers may send at once what came while they were busy."""
 _AT_ONCE: Final = 0.5
 """Share of the usual step; a message that comes sooner after another one was held up with it."""
+_EVEN: Final = (0.5, 1.5)
+"""Shares of the usual step; of evenly sent messages steps are neither shorter nor longer."""
+_WORSE: Final = 2
+"""If stamps are shifted to where arrivals say and more than so many times as many steps are uneven
+then, it was the arrivals that were wrong."""
 _INFORMATIVE: Final = 0.5
 """Arrivals tell something if there are so many different ones, as a share of the stamps."""
 
@@ -101,7 +106,11 @@ def mended(stamps: Floats, arrivals: Floats, delay: float, counts: StampCounts) 
     counts.without += int(np.count_nonzero(~valid))
     times[~valid] = expected[~valid]
     if arrivals_tell(stamps[valid], arrivals):
-        counts.jumped += _unjumped(times, expected)
+        shifted = times.copy()
+        jumped = _unjumped(shifted, expected)
+        if _uneven_steps(shifted) <= _WORSE * _uneven_steps(times):
+            times = shifted
+            counts.jumped += jumped
     before = np.maximum.accumulate(times)
     counts.out_of_order += int(np.count_nonzero(times < before))
     return times
@@ -194,6 +203,15 @@ def _unjumped(times: Floats, expected: Floats) -> int:
         else:
             shifted += _mend_each(times[first:end], expected[first:end], ordered, hole)
     return shifted
+
+
+def _uneven_steps(times: Floats) -> int:
+    """Return how many steps between ``times``, s, in their order are unusually short or long."""
+    if len(times) < 2:
+        return 0
+    steps = np.diff(np.sort(times))
+    least, most = np.multiply(_EVEN, np.median(steps))
+    return int(np.count_nonzero((steps < least) | (steps > most)))
 
 
 def _mend_each(times: Floats, expected: Floats, ordered: Floats, hole: Floats) -> int:

@@ -89,6 +89,32 @@ def test_many_messages_that_come_late_keep_their_stamps(seed: int) -> None:
     assert counts.jumped <= 9
 
 
+@given(st.integers(0, 1000), st.sampled_from((0.8, 1.5, 5.0)), st.sampled_from((0.1, 0.5, 1.0)))
+@settings(max_examples=examples(20), deadline=None)
+def test_evenly_sent_messages_keep_their_stamps_however_late_they_come(
+    seed: int, most: float, share: float
+) -> None:
+    """As through a network that delays each by another time."""
+    generator = np.random.default_rng(seed)
+    stamps = BEGAN + 2.0 * PERIOD * np.arange(400)
+    late = np.where(generator.random(400) < share, generator.uniform(0.0, most, 400), 0.01)
+    order = np.argsort(stamps + late)
+    times, counts = mend(stamps[order], (stamps + late)[order])
+    assert np.array_equal(times, stamps[order])
+    assert counts.jumped == 0
+
+
+@given(st.integers(0, 1000), st.integers(20, 150), st.sampled_from((-5.0, 1.0, 30.0)))
+@settings(max_examples=examples(20), deadline=None)
+def test_a_jump_of_unevenly_sent_messages_comes_back(seed: int, first: int, by: float) -> None:
+    generator = np.random.default_rng(seed)
+    stamps = BEGAN + np.cumsum(generator.choice((0.03, 0.07, 0.2), 200))
+    wrong = stamps.copy()
+    wrong[first : first + 40] += by
+    times, _ = mend(wrong, stamps + generator.uniform(0.0, 0.02, 200))
+    assert np.abs(times - stamps).max() < 0.05
+
+
 @given(st.integers(5, 80), st.integers(5, 80), st.sampled_from((-2.0, 1.0, 3600.0)))
 @settings(max_examples=examples(40), deadline=None)
 def test_a_clock_that_is_set_on_the_way_comes_back(first: int, length: int, by: float) -> None:
