@@ -78,6 +78,7 @@ class CoveragePlanner:
     ) -> CoveragePlan:
         """Return a way from ``start``, to ``end`` if given, that sweeps the floor to do.
 
+        If the middle may not be at ``end``, the way ends at the nearest place where it may.
         ``todo``, bool on ``floor.frame``, marks the floor to sweep, all by default; floor that
         cannot be reached is left out. ``obstacles`` are round things not on the map. With
         ``edges_only`` only the floor along walls and furniture is swept. Raises
@@ -103,7 +104,9 @@ class CoveragePlanner:
         edges_only: bool,
     ) -> CoveragePlan:
         ground, first = self._ground_from(start, obstacles)
-        last = None if end is None else _end_on(ground, end)
+        last = None
+        if end is not None:
+            last, end = _end_on(ground, end)
         need = ground.coverable if todo is None else ground.coverable & todo[ground.window]
         config, radius, stages = self._config, ground.radius, self._stages
         length = config.piece * 2 * radius
@@ -170,12 +173,14 @@ def _off_middles(line: Polyline, middles: Mask) -> Polyline:
     return next((moved for moved in sides if way_fits(middles, *moved.ravel().tolist())), line)
 
 
-def _end_on(ground: Ground, end: Point) -> Floats:
-    """Return the place where the way ends."""
+def _end_on(ground: Ground, end: Point) -> tuple[Floats, Point]:
+    """Return the place where the way ends, and the point there, m: ``end``, if the middle may be
+    there."""
     cell = ground.floor.cell_near(end)
     if cell is None or not ground.holds(cell):
         raise NoPathError(end, NoPathReason.GOAL_UNREACHABLE, None)
-    return ground.place_of(cell)
+    frame = ground.floor.frame
+    return ground.place_of(cell), end if cell == frame.cell_of(*end) else frame.centre_of(*cell)
 
 
 def _from_to(ground: Ground, line: Polyline, start: Point, end: Point | None) -> Polyline:
