@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -23,6 +24,10 @@ PNG_END = b"IEND\xaeB`\x82"
 _LFS_BEGIN: Final = b"version https://git-lfs"
 _CUT_SHORT: Final = ("truncated", "not enough image data", "Reached EOF")
 """What Pillow says of a picture whose end is missing."""
+_PNM_HEAD: Final = re.compile(rb"P[2356]" + 3 * rb"(?:\s|#[^\r\n]*[\r\n])+(\d+)")
+"""How a PGM or PPM begins: its third number is the value of white."""
+_WHITE: Final = 255
+"""The value of white in most pictures, and in :class:`Image`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,7 +81,7 @@ def _read_with_pillow(path: Path, content: bytes) -> Image:
     try:
         picture = PIL.Image.open(io.BytesIO(content), formats=FORMATS)
         _require_size(path, *picture.size)
-        return _decoded(picture)
+        return _decoded(picture, _white_of(content))
     except PIL.Image.DecompressionBombError as error:
         raise HomeError(
             f"{path}: expected at most {MOST_CELLS} pixels, got a larger picture ({error}); cut it "
@@ -97,7 +102,20 @@ def _read_with_pillow(path: Path, content: bytes) -> Image:
         ) from error
 
 
-def _decoded(picture: PIL.Image.Image) -> Image:
+def _white_of(content: bytes) -> int:
+    """Return which value is white in a file; more than 8 bits count as 8."""
+    head = _PNM_HEAD.match(content)
+    return min(int(head[3]), _WHITE) if head else _WHITE
+
+
+def _as_map_server(grey: NDArray[np.uint8], white: int) -> NDArray[np.float64]:
+    """Return Pillow's greys 0..255, which it rounds where ``white`` has another value, rounded
+    down: so does SDL_image, through which map_server reads, and 205 of 254 stays map_saver's grey.
+    """
+    return np.rint(grey * (white / _WHITE)) * _WHITE // white
+
+
+def _decoded(picture: PIL.Image.Image, white: int) -> Image:
     """Return a decoded picture. Raises ValueError for greys of more than 16 bits."""
     if picture.mode in ("I", "F") or picture.mode.startswith("I;16"):
         grey = np.asarray(picture, np.float64)
@@ -105,7 +123,7 @@ def _decoded(picture: PIL.Image.Image) -> Image:
             raise ValueError("greys of more than 16 bits")
         return Image(grey * (255.0 / 65535.0), np.zeros(grey.shape, np.bool_))
     if picture.mode == "L" and "transparency" not in picture.info:
-        grey = np.asarray(picture, np.float64)
+        grey = _as_map_server(np.asarray(picture), white)
         return Image(grey, np.zeros(grey.shape, np.bool_))
     pixels = np.asarray(picture.convert("RGBA"))
-    return Image(pixels[..., :3].mean(axis=2), pixels[..., 3] == 0)
+    return Image(_as_map_server(pixels[..., :3], white).mean(axis=2), pixels[..., 3] == 0)

@@ -32,6 +32,16 @@ def test_sixteen_bits_are_scaled(tmp_path: Path) -> None:
     assert read_image(tmp_path / "plan.png").grey == pytest.approx(GREYS)
 
 
+@pytest.mark.parametrize("white", [1, 100, 127, 254, 255])
+def test_greys_of_another_white_are_those_of_sdl_image(tmp_path: Path, white: int) -> None:
+    """They are ``value * 255 / white`` in whole numbers (``IMG_pnm.c``)."""
+    values = range(white + 1)
+    head = f"P5\n# white is {white}\n{len(values)} 1\n{white}\n"
+    (tmp_path / "plan.pgm").write_bytes(head.encode() + bytes(values))
+    expected = [float(value * 255 // white) for value in values]
+    assert read_image(tmp_path / "plan.pgm").grey.tolist() == [expected]
+
+
 def test_a_clear_colour_of_a_palette_is_transparent(tmp_path: Path) -> None:
     Image.fromarray(GREYS).convert("P").save(tmp_path / "plan.png", transparency=51)
     assert read_image(tmp_path / "plan.png").transparent.tolist() == [[False, True, False]]

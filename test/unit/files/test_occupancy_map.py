@@ -136,6 +136,11 @@ def test_negate_turns_black_into_free(tmp_path: Path) -> None:
         b"P5 3 1 255 \x00\xcd\xfe",
         b"P5\n3 1\n65535\n\x00\x00\xcd\xcd\xfe\xfe",
         b"P2 3 1 1000 0 800 996",
+        b"P5\n# a program's\n3 1\n254\n\x00\xcd\xfe",
+        b"P2\n3 1\n# white\n254\n0 205 254\n",
+        b"P5\n3 1\n210\n\x00\xa9\xd2",
+        b"P6\n3 1\n254\n\x00\x00\x00\xcd\xcd\xcd\xfe\xfe\xfe",
+        b"P3\n3 1\n254\n0 0 0 205 205 205 254 254 254\n",
     ],
 )
 def test_kinds_of_pgm(tmp_path: Path, image: bytes) -> None:
