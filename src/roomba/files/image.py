@@ -109,10 +109,13 @@ def _white_of(content: bytes) -> int:
 
 
 def _as_map_server(grey: NDArray[np.uint8], white: int) -> NDArray[np.float64]:
-    """Return Pillow's greys 0..255, which it rounds where ``white`` has another value, rounded
-    down: so does SDL_image, through which map_server reads, and 205 of 254 stays map_saver's grey.
+    """Return greys 0..255 as map_server reads them from a file whose white is ``white``.
+
+    SDL_image, which map_server uses, rounds down, and Pillow to the nearest: so 205 of 254, the
+    grey by which map_saver says "unknown", stays 205.
     """
-    return np.rint(grey * (white / _WHITE)) * _WHITE // white
+    greys: NDArray[np.float64] = np.rint(grey * (white / _WHITE)) * _WHITE // white
+    return greys
 
 
 def _decoded(picture: PIL.Image.Image, white: int) -> Image:
