@@ -19,13 +19,20 @@ from rosbags.serde import SerdeError
 
 from roomba.perception.matching.mounts import FrameTransform, frame_name
 from roomba.recordings.bag_file import BagFile
-from roomba.recordings.bag_values import LidarBook, decoded, transforms_in
+from roomba.recordings.bag_values import (
+    LidarBook,
+    decoded,
+    transforms_in,
+    with_first_echoes,
+)
 from roomba.recordings.log import Arrival, Channel, Frames, MountOf
 from roomba.recordings.message_types import TRANSFORMS, full_name, known_types
 from roomba.recordings.readings import Kind, Refused, Value
 
+_SEVERAL_ECHOES: Final = "sensor_msgs/MultiEchoLaserScan"
 _KINDS: Final[dict[str, Kind]] = {
     "sensor_msgs/LaserScan": Kind.SCAN,
+    _SEVERAL_ECHOES: Kind.SCAN,
     "nav_msgs/Odometry": Kind.ODOMETRY,
     "sensor_msgs/Imu": Kind.GYRO,
     "roomba_robot/WheelDrop": Kind.LIFTED,
@@ -198,9 +205,10 @@ class BagLog:
         """Return a message; None for one that is cut short."""
         type_ = _TRANSFORMS[0] if channel.type in _TRANSFORMS else channel.type
         try:
-            return self._deserialize(raw, full_name(type_))
+            message = self._deserialize(raw, full_name(type_))
         except SerdeError:
             return None
+        return with_first_echoes(message) if type_ == _SEVERAL_ECHOES else message
 
 
 def _deserializer(is_first: bool) -> Callable[[bytes, str], Any]:

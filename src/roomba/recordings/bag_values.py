@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -105,6 +106,15 @@ def transforms_in(message: Any) -> Iterator[tuple[float, FrameTransform]]:
         except ValueError:
             continue
         yield stamp.sec + 1e-9 * stamp.nanosec, transform
+
+
+def with_first_echoes(message: Any) -> Any:
+    """Return a scan that has several echoes of each beam with the first ones as its ranges.
+
+    A beam without an echo met nothing.
+    """
+    firsts = [beam.echoes[0] if len(beam.echoes) else math.inf for beam in message.ranges]
+    return replace(message, ranges=np.array(firsts, np.float32))
 
 
 def _is_same(increment: float, known: float) -> bool:

@@ -97,6 +97,42 @@ def test_each_form_of_a_bag_says_the_same(tmp_path: Path, form: str) -> None:
     log.close()
 
 
+@pytest.mark.parametrize("form", ["bag", "mcap"])
+def test_of_several_echoes_of_a_beam_the_first_one_counts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, form: str
+) -> None:
+    """The last beam has none: it met nothing."""
+    plain = Messages.of
+
+    def of(made: Messages, item: Item) -> tuple[Any, str]:
+        message, type_ = plain(made, item)
+        if not type_.endswith("/LaserScan"):
+            return message, type_
+        echoes = [[each, each + 1.0] for each in message.ranges[:-1]] + [[]]
+        fields = {name: getattr(message, name) for name in message.__dataclass_fields__}
+        fields["ranges"] = [
+            made._make("sensor_msgs/msg/LaserEcho", echoes=np.array(each, np.float32))
+            for each in echoes
+        ]
+        fields["intensities"] = []
+        type_ = "sensor_msgs/msg/MultiEchoLaserScan"
+        fields.pop("__msgtype__", None)
+        return made._make(type_, **fields), type_
+
+    monkeypatch.setattr(Messages, "of", of)
+    items = drive(2.0)
+    log = BagLog(written(tmp_path, form, items))
+    [channel] = [each for each in log.channels if each.kind is Kind.SCAN]
+    scans = [value for _, value in read(log, channel) if isinstance(value, LidarScan)]
+    ranges = [item.value for item in items if isinstance(item.value, np.ndarray)]
+    for scan, expected in zip(scans, ranges, strict=True):
+        assert scan.ranges[:-1] == pytest.approx(expected[:-1], abs=1e-6)
+        assert scan.ranges[-1] == math.inf
+        assert scan.lidar is scans[0].lidar
+    assert log.transforms()
+    log.close()
+
+
 def test_ranges_that_are_cut_met_nothing_there(tmp_path: Path) -> None:
     """A driver cuts at 2.5 m and tells another farthest range, until longer ones come."""
     clean = drive(4.0)

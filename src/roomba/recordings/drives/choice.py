@@ -19,6 +19,8 @@ _TYPES: Final = {
     Kind.ODOMETRY: "nav_msgs/Odometry",
     Kind.GYRO: "sensor_msgs/Imu",
 }
+_CLOUDS: Final = "sensor_msgs/PointCloud2"
+"""What lidars tell as well; only scans are read."""
 _WORDS: Final = {
     Kind.SCAN: "scans of a lidar",
     Kind.ODOMETRY: "odometry",
@@ -182,12 +184,26 @@ def _named(paths: Sequence[Path], channels: Sequence[Channel], kind: Kind, name:
     if is_topic:
         sought = f"{_TYPES[kind]} on {spellings[-1]}"
         hint = f"try {fitting}" if fitting else f"no other one is {_TYPES[kind]} either"
+        if kind is Kind.SCAN and not fitting:
+            hint += _clouds_instead(channels)
     else:
         sought = _WORDS[kind] if name == _USUAL[kind] else f"{_WORDS[kind]} in lines {name}"
         hint = f"try {fitting}" if fitting else "no lines tell any"
     raise LogError(
         f"{', '.join(map(str, paths))}: expected {sought}, {got}; {hint}. There is "
         f"{_listed(channels)}"
+    )
+
+
+def _clouds_instead(channels: Sequence[Channel]) -> str:
+    """Return what to do with clouds of points where no channel has scans; "" without clouds."""
+    clouds = [each.name for each in channels if each.type == _CLOUDS]
+    if not clouds:
+        return ""
+    return (
+        f". What a lidar may have told on {' and '.join(clouds)} ({_CLOUDS}) is not read: make "
+        "scans of it, as pointcloud_to_laserscan does while the bag is played, and record them "
+        "with all else"
     )
 
 

@@ -139,6 +139,15 @@ def test_what_is_missing_is_told_with_what_there_is(
         assert f"{channel.name} ({channel.type}, {channel.messages})" in told
 
 
+def test_of_clouds_alone_it_is_told_how_to_make_scans_of_them() -> None:
+    cloud = Channel("/points", None, "sensor_msgs/PointCloud2", 7)
+    with pytest.raises(LogError, match=r"on /points .* is not read: make scans .*_to_laserscan"):
+        chosen(PATHS, [cloud, ODOM], Wanted())
+    with pytest.raises(LogError) as refusal:
+        chosen(PATHS, [cloud, SCAN, ODOM], Wanted(scan="/none"))
+    assert "is not read" not in str(refusal.value)
+
+
 def test_of_a_text_log_what_is_missing_is_told_in_its_words() -> None:
     odometry = Channel("ODOM", Kind.ODOMETRY, "line", 9)
     for channels, wanted, said in (
