@@ -5,7 +5,7 @@
 #   ./install_dependencies.sh --dev   also what the tests need
 #   ./install_dependencies.sh --library   what the library needs: no ROS, no system package
 #
-# May be run again at any time: what is there is kept, what is missing or was left half made is mended.
+# It may be run again at any time: it keeps what is there, and completes what is missing or half made.
 # ./roomba sources this file for its functions.
 set -euo pipefail
 
@@ -17,11 +17,11 @@ HA_VENV=$REPOSITORY/.venv-ha
 DOCS_VENV=$REPOSITORY/.venv-docs
 CACHE=$REPOSITORY/.cache
 OS_RELEASE=/etc/os-release
-PYTHON=/usr/bin/python3 # the one that ROS is packaged for; a pyenv or conda python has no rospy
+PYTHON=/usr/bin/python3 # the Python that ROS is packaged for; a pyenv or conda python has no rospy
 
 # ---------------------------------------------------------------- telling what goes on
 
-# Everything that is told goes to standard error: the output of `./roomba exec` belongs to the command.
+# All messages go to standard error: the output of `./roomba exec` belongs to the command.
 say() { printf '%s\n' "$*" >&2; }
 
 fail() {
@@ -29,8 +29,8 @@ fail() {
   exit 1
 }
 
-# Runs a command as a named step: its output goes to a log, one line on the screen tells how far it is.
-# Must not be called in a condition (`if`, `||`): bash would ignore errors inside the step.
+# Runs a command as a named step: its output goes to a log, and one line on the screen shows the progress.
+# It must not be called in a condition (`if`, `||`): bash would ignore errors inside the step.
 run_step() { # TITLE COMMAND...
   local title=$1 started=$SECONDS interrupted=no status log
   shift
@@ -39,7 +39,7 @@ run_step() { # TITLE COMMAND...
   say "==> $title"
   trap 'interrupted=yes' INT
   set +e
-  # The lock's descriptor is closed, so that nothing a step leaves running holds the lock.
+  # The lock's descriptor is closed, so that a process that the step leaves running does not hold the lock.
   (set -e; "$@") 2>&1 </dev/null 9>&- | show_progress "$log" "$started"
   status=${PIPESTATUS[0]}
   set -e
@@ -59,7 +59,7 @@ run_step() { # TITLE COMMAND...
 
 # Copies lines to LOG and shows the newest: in place on a terminal, now and then in a pipe.
 show_progress() { # LOG STARTED
-  trap '' INT # Ctrl-C ends the step; this goes on until the step's last line
+  trap '' INT # Ctrl-C ends the step; show_progress goes on until the step's last line
   local log=$1 started=$2 next=$((SECONDS + 15)) line="" newest="at work" packages=0 handled=0 width
   width=$(tput cols 2>/dev/null || echo 80)
   : >"$log"
@@ -93,7 +93,7 @@ show_progress() { # LOG STARTED
   [[ ! -t 2 ]] || printf '\r\033[K' >&2
 }
 
-# Holds the lock of the set-up while a command runs, so that two that start at once do not set up both.
+# Holds the lock of the set-up while a command runs: of two commands that start at once only one sets up.
 with_setup_lock() { # COMMAND...
   mkdir -p "$CACHE"
   (
@@ -112,13 +112,13 @@ stamp_is() { # FILE HASH
   [[ -r $1 && $(<"$1") == "$2" ]]
 }
 
-hash_of() { # FILE...  (also of what is given on standard input)
+hash_of() { # FILE...  (standard input counts as well)
   { cat; sha256sum "$@"; } | sha256sum | cut -d ' ' -f 1
 }
 
 # ---------------------------------------------------------------- step: system packages
 
-# Prints bookworm, trixie or jammy; on any other system why there is no ROS 1, with status 1.
+# Prints bookworm, trixie or jammy; on any other system it prints why there is no ROS 1, and returns 1.
 distribution() {
   local VERSION_CODENAME="" UBUNTU_CODENAME="" PRETTY_NAME="an unknown system"
   # shellcheck source=/dev/null
@@ -146,10 +146,10 @@ require_ros() {
     $'\n'"       Without ROS: ./roomba play, sim, map, campaign, top --demo, control --demo and others (./roomba help)."
 }
 
-# The names are the same in bookworm, trixie and jammy, but for those that the case at the end adds.
+# Names of packages are the same in bookworm, trixie and jammy; only chromium is not installed on Ubuntu.
 system_packages() { # runtime|dev|bench, or on asking: rviz|screen|robot_state_publisher
   case $1 in
-    bench) # beside those of runtime: OpenGL without a screen, for the peers that draw
+    bench) # in addition to runtime: OpenGL without a screen, for the peers that draw
       printf '%s\n' libegl1 libgl1 libgl1-mesa-dri
       return
       ;;
@@ -159,7 +159,7 @@ system_packages() { # runtime|dev|bench, or on asking: rviz|screen|robot_state_p
   esac
   local -a packages=(
     python3 python3-venv cmake g++ make
-    # building: catkin with its hooks, and the definitions and CMake files of the messages that ours contain
+    # building: catkin with its hooks, and the definitions and CMake files of messages that this package's messages contain
     catkin ros-environment ros-message-generation libactionlib-msgs-dev libsensor-msgs-dev libstd-msgs-dev
     # running: master, launcher, client library, terminal commands
     python3-rospy python3-roslaunch python3-actionlib rosout rosbash
@@ -184,7 +184,7 @@ system_packages() { # runtime|dev|bench, or on asking: rviz|screen|robot_state_p
   )
   if [[ $1 == dev ]]; then
     packages+=(catkin-lint curl git mosquitto nodejs openssl shellcheck systemd)
-    command -v npm >/dev/null || packages+=(npm) # some packages of nodejs have it in them
+    command -v npm >/dev/null || packages+=(npm) # some packages of nodejs contain npm
     # Ubuntu's package only fetches a snap.
     ! grep -qx 'ID=debian' /etc/os-release || packages+=(chromium)
   fi
@@ -203,7 +203,7 @@ system_is_current() { # as above
   command -v dpkg-query >/dev/null && [[ -z $(missing_system_packages "$1") ]]
 }
 
-# Prints what is missing in words; nothing where all is there.
+# Prints the missing packages, or why this system has no ROS 1; prints nothing if all is there.
 system_words() { # as above
   if distribution >/dev/null; then missing_system_packages "$1" | xargs; else distribution || true; fi
 }
@@ -216,7 +216,7 @@ as_root() {
   fi
 }
 
-# Says what to type if this user may not install packages, before anything is tried.
+# Fails with the command to type, before any step, if this user may not install packages.
 require_root() { # PACKAGE...
   ((EUID != 0)) || return 0
   local command="apt-get update && apt-get install --no-install-recommends $*"
@@ -232,7 +232,7 @@ apt_get() {
     -o Acquire::Retries=3 -o Acquire::http::Timeout=30 -o Acquire::https::Timeout=30 "$@"
 }
 
-# A source that cannot be read, of a third party for instance, is no reason to stop: the others may do.
+# A package source that apt cannot read, such as a third party's, is no reason to stop: the others may be enough.
 refresh_package_lists() {
   local output deadline=$((SECONDS + 300))
   while true; do
@@ -250,7 +250,7 @@ refresh_package_lists() {
 install_system_packages() { # as above
   local -a missing
   mapfile -t missing < <(missing_system_packages "$1")
-  as_root env DEBIAN_FRONTEND=noninteractive dpkg --configure -a || true # what an interrupted apt left
+  as_root env DEBIAN_FRONTEND=noninteractive dpkg --configure -a || true # completes what an interrupted apt left
   refresh_package_lists
   apt_get --yes --no-install-recommends install "${missing[@]}" || {
     printf 'If a package cannot be located: on Ubuntu the component "universe" must be enabled.\n'
@@ -259,7 +259,7 @@ install_system_packages() { # as above
   system_is_current "$1" || fail "apt-get succeeded, but these are still missing: $(missing_system_packages "$1" | xargs)"
 }
 
-# What is asked for, and no other command needs.
+# Installs a package group that only one option of `./roomba` needs.
 install_on_asking() { # rviz|screen|robot_state_publisher
   system_is_current "$1" && return
   require_ros
@@ -271,7 +271,7 @@ install_on_asking() { # rviz|screen|robot_state_publisher
 
 # ---------------------------------------------------------------- step: Python environment
 
-# What the environment is made for: another Python or another place needs another environment.
+# Prints the Python and the place that the environment is made for: another one of either needs a new environment.
 environment_identity() {
   printf '%s in %s\n' "$(readlink -f "$PYTHON")" "$(readlink -f "$VENV")"
 }
@@ -292,7 +292,7 @@ python_is_current() { # library|runtime|dev
   [[ -x $VENV/bin/python3 ]] && stamp_is "$VENV/.stamp-$1" "$(python_hash "$1")"
 }
 
-# The library runs in its own environment, and in that of the robot, which has all that it needs.
+# The library runs in its own environment, and in the robot's, which has all packages that the library needs.
 library_is_current() {
   python_is_current library || python_is_current runtime
 }
@@ -301,15 +301,15 @@ ros_is_installed() {
   system_is_current runtime
 }
 
-# Nothing is installed for the library but into .venv: what is missing is told.
+# For the library, packages are installed only into .venv: if the system's Python lacks a part, an error says so.
 require_python() {
   [[ -x $PYTHON ]] || fail "expected $PYTHON, there is none. Have this run as root, then try again:"$'\n'"    apt-get install python3 python3-venv"
   "$PYTHON" -c 'import ensurepip' 2>/dev/null ||
     fail "expected $PYTHON with ensurepip, which makes .venv. Have this run as root, then try again:"$'\n'"    apt-get install python3-venv"
 }
 
-# OpenCV, numpy and YAML come as wheels here. The robot's environment must not see them, for cv_bridge is compiled
-# against the distribution's: make_python_environment makes it anew when there is a mark of this one.
+# OpenCV, numpy and YAML come as wheels here. The robot's environment must not contain these wheels, as cv_bridge is compiled
+# against the distribution's packages. The mark .without-ros makes make_python_environment start anew.
 make_library_environment() {
   printf 'Making %s, without ROS\n' "$VENV"
   "$PYTHON" -m venv --clear "$VENV"
@@ -322,7 +322,7 @@ make_library_environment() {
   python_hash library >"$VENV/.stamp-library"
 }
 
-# What a user has in ~/.local does not count: it may be built against another numpy than the distribution's.
+# Packages in ~/.local are ignored: they may be built against another numpy than the distribution's.
 pip_install() { # VENV ARGUMENT...
   local venv=$1
   shift
@@ -330,7 +330,7 @@ pip_install() { # VENV ARGUMENT...
     --no-input --progress-bar off --retries 5 --prefer-binary "$@"
 }
 
-# Bytecode is made when a module is first imported, and of the rest in the background (set_up.sh).
+# Without bytecode: Python makes it when a module is first imported, and set_up.sh makes the rest in the background.
 install_requirements() { # library|runtime|dev
   local -a arguments=()
   local file
@@ -358,7 +358,7 @@ make_python_environment() { # runtime|dev
   [[ $1 != dev ]] || python_hash dev >"$VENV/.stamp-dev"
 }
 
-# What `--smart-home` and `smart_home:=` ask for, and no other command needs.
+# Packages that only `--smart-home` and `smart_home:=` need.
 smart_home_is_current() {
   PYTHONNOUSERSITE=1 "$VENV/bin/python3" -c 'import paho.mqtt.client, prometheus_client' 2>/dev/null
 }
@@ -371,7 +371,7 @@ add_smart_home() {
   pip_install "$VENV" --requirement "$REPOSITORY/requirements-smart-home.txt"
 }
 
-# What `./roomba campaign` asks for: dask for clusters, pyarrow for Parquet.
+# Packages that only `./roomba campaign` needs: dask for clusters, pyarrow for Parquet.
 campaign_is_current() {
   PYTHONNOUSERSITE=1 "$VENV/bin/python3" -c 'import distributed, pyarrow' 2>/dev/null
 }
@@ -394,7 +394,7 @@ npm_is_current() {
   [[ -d $CACHE/npm/node_modules ]] && stamp_is "$CACHE/npm/.stamp" "$(npm_hash)"
 }
 
-# Programs of other people that tests run as they are; none of their scripts is run.
+# Other people's programs, which tests run unchanged; the install scripts of their packages are not run.
 install_npm_packages() {
   mkdir -p "$CACHE/npm"
   rm -f "$CACHE/npm/.stamp"
@@ -413,7 +413,7 @@ bench_is_current() {
   [[ -x $BENCH_VENV/bin/python3 ]] && stamp_is "$BENCH_VENV/.stamp" "$(bench_hash)"
 }
 
-# The peers have an environment of their own, with the versions of everything that they like.
+# The peers have an environment of their own, so that they can have the versions of packages that they need.
 make_bench_environment() {
   local name arguments installed=0
   "$PYTHON" -m venv --clear "$BENCH_VENV"
@@ -431,7 +431,7 @@ make_bench_environment() {
   bench_hash >"$BENCH_VENV/.stamp"
 }
 
-# Each peer by itself, so that one that fails does not keep the others out; the benchmarks tell the reason.
+# Installs each peer by itself, so that a failing one does not prevent the others; the benchmarks report its reason.
 install_peer() { # NAME PIP_ARGUMENT...
   local name=$1 output
   shift
@@ -445,7 +445,7 @@ install_peer() { # NAME PIP_ARGUMENT...
   fi
 }
 
-# These are no reason to stop: a peer that cannot draw without them says so in the table.
+# If these packages cannot be installed, go on: a peer that cannot draw without them says so in the table.
 install_bench_packages() {
   local -a missing
   mapfile -t missing < <(missing_system_packages bench)
@@ -488,7 +488,7 @@ install_tool() { # TITLE VENV REQUIREMENTS
   tool_is_current "$2" "$3" || run_step "$1" make_tool_environment "$2" "$3"
 }
 
-# For one tool that runs in the robot's environment without being of it: .cache/NAME is put on PYTHONPATH for it.
+# Installs a tool that runs in the robot's environment without being part of it: into .cache/NAME, which is put on PYTHONPATH.
 install_aside() { # NAME REQUIREMENT
   [[ -d $CACHE/$1 ]] ||
     run_step "Installing $1" add_aside "$1" "$2"
@@ -498,17 +498,17 @@ add_aside() { # NAME REQUIREMENT
   "$VENV/bin/python3" -m pip install --quiet --target "$CACHE/$1" "$2"
 }
 
-# Its packages are none of the robot's, and would be in its bill.
+# In an environment of its own, or the audit's packages would be listed in the robot's bill of materials.
 install_audit() {
   install_tool "Installing what makes the bill of materials into .venv-audit" "$AUDIT_VENV" requirements-audit.txt
 }
 
-# The newest one that there is for this Python; it needs an older paho than the robot.
+# Installs the newest Home Assistant that there is for this Python; it needs an older paho than the robot.
 install_ha() {
   install_tool "Installing Home Assistant into .venv-ha" "$HA_VENV" requirements-ha.txt
 }
 
-# What makes the site of the documents.
+# Installs the tools that make the site of the documents.
 install_docs() {
   install_tool "Installing what makes the site into .venv-docs" "$DOCS_VENV" requirements-docs.txt
 }
@@ -519,7 +519,7 @@ install_dependencies() { # library|runtime|dev
   if [[ $1 == library ]]; then
     if library_is_current; then
       return
-    elif ros_is_installed; then # then the robot's environment does, and a later `run` has nothing to make anew
+    elif ros_is_installed; then # the robot's environment serves the library as well, and a later `run` need not make it
       run_step "Installing Python packages into .venv" make_python_environment runtime
     else
       require_python

@@ -1,4 +1,4 @@
-# The steps of the set-up that are of a checkout: the catkin workspace, compiled loops, and all of them in order. ./roomba sources it.
+# Steps of the set-up that only a checkout needs: the catkin workspace, compiled loops, and all steps in order. ./roomba sources this file.
 # shellcheck shell=bash
 
 # shellcheck source=install_dependencies.sh
@@ -8,7 +8,7 @@ WORKSPACE=$REPOSITORY/.workspace
 # ---------------------------------------------------------------- step: catkin workspace
 
 source_folders() {
-  # Not what pip leaves when it makes a wheel of this checkout.
+  # Without the folder build, which pip leaves when it makes a wheel of this checkout.
   find "$REPOSITORY" -mindepth 1 -maxdepth 1 -type d -not -name '.*' -not -name build -printf '%f\n' | sort
 }
 
@@ -32,8 +32,8 @@ run_catkin_make() {
     catkin_make --directory "$WORKSPACE" --no-color -DPYTHON_EXECUTABLE="$PYTHON"
 }
 
-# The package in the workspace is a folder of links to the repository's visible folders: a link to the whole would
-# hold this workspace again, and rosrun, which follows links, would find every script more than once.
+# The package in the workspace is a folder of links to the repository's visible folders. A link to the whole repository
+# would contain this workspace again, and rosrun, which follows links, would find every script more than once.
 link_sources() {
   local package=$WORKSPACE/src/roomba_robot name
   mkdir -p "$package"
@@ -60,8 +60,8 @@ build_workspace() {
 
 # ---------------------------------------------------------------- step: compiled loops
 
-# What all files with compiled functions hold, and all that they import. Each state of them that was compiled has a stamp: to
-# go back to a branch compiles nothing.
+# Hash of all files with compiled functions and of all that they import. Each state of these files that was compiled has a
+# stamp, so changing back to an earlier branch compiles nothing.
 compiled_hash() {
   PYTHONPATH=$REPOSITORY/src "$VENV/bin/python3" -m roomba.compiled_sources | hash_of "$(environment_stamp)"
 }
@@ -77,7 +77,7 @@ environment_stamp() {
   done
 }
 
-# Whether a robot can clean with what is compiled; the rest is compiled beside it, or when it is needed.
+# Whether the loops that a clean needs are compiled; the rest is compiled in the background, or when it is needed.
 compiled_is_current() {
   [[ -n $(environment_stamp) ]] && { compiled_is_complete || [[ -e $(compiled_stamp).left ]]; }
 }
@@ -92,18 +92,18 @@ compiled_stamp() {
   printf '%s\n' "$CACHE/compiled/$hash"
 }
 
-# What does not compile is for the tests to report; a set-up can do without, it only makes the first start slow.
+# A loop that does not compile does not fail the set-up: it only makes the first start slow, and the tests report it.
 compile_loops() { # library|runtime|dev
   local half=bursts stamp
   stamp=$(compiled_stamp)
   enter_what_there_is
-  [[ $1 == library ]] || half=ticks # what ROS calls tick by tick needs no bursts yet
+  [[ $1 == library ]] || half=ticks # on ROS the robot runs tick by tick: bursts are compiled later
   if python3 -m roomba.commands.first_use "$half"; then
     count_loops_left "$stamp" || true
   fi
 }
 
-# Bytecode of what was installed since it was last made; a package may bring files for another Python.
+# Makes bytecode if packages were installed since the last time. Errors do not count: a package may bring files for another Python.
 compile_packages() {
   local -a packages=("$VENV"/lib/python3*/site-packages)
   [[ ! $VENV/.bytecode -nt ${packages[0]} ]] || return 0
@@ -111,8 +111,8 @@ compile_packages() {
   touch "$VENV/.bytecode"
 }
 
-# Bytecode on all cores, then loops, two processes at a time. numba touches the folders that it looks into: the old ones are of
-# sources that are no more.
+# Compiles bytecode on all cores, then loops, two processes at a time. numba touches each cache folder that it reads: folders not
+# touched for 30 days belong to sources that no longer exist, and are removed.
 compile_other_loops() {
   local stamp mapping
   stamp=$(compiled_stamp)
@@ -126,11 +126,11 @@ compile_other_loops() {
   fi
   wait "$mapping" && count_loops_left "$stamp" || return 1
   mv -f "$stamp.left" "$stamp"
-  mkdir -p "$CACHE/numba" # another one may be named by NUMBA_CACHE_DIR
+  mkdir -p "$CACHE/numba" # NUMBA_CACHE_DIR may name another folder
   find "$CACHE/numba" "$CACHE/compiled" -mindepth 1 -maxdepth 1 -mtime +30 -exec rm -r {} +
 }
 
-# Nothing is said of sources that were changed meanwhile.
+# Counts the loops that are not compiled yet; fails if the sources were changed since STAMP was made.
 count_loops_left() { # STAMP
   [[ $(compiled_stamp) == "$1" ]] || return 1
   mkdir -p "$CACHE/compiled"
@@ -138,8 +138,8 @@ count_loops_left() { # STAMP
   mv "$1.counted" "$1.left" # another command may be reading it
 }
 
-# Begins to compile the rest, if that is not under way, and does not wait for it: it gives way to all other processes. Ctrl-C
-# does not end it. If the process ends before all is compiled, the next command compiles what is left.
+# Begins to compile the rest in the background, if that is not under way, with the lowest priority. Ctrl-C does not end the
+# compilation. If it ends before all is compiled, the next command compiles what is left.
 compile_beside() {
   say "It is usable; $(<"$(compiled_stamp).left") loops are still being compiled in the background, while the processor is free."
   mkdir -p "$CACHE/logs"
@@ -159,7 +159,7 @@ compile_all() {
 }
 
 enter_what_there_is() {
-  # Of what needs no ROS the environment of ROS may be there, and no workspace yet.
+  # The environment with ROS may be there without a workspace: then the library's is enough.
   if [[ -r $VENV/.stamp-runtime && -r $WORKSPACE/devel/setup.bash ]]; then
     enter_environment
   else
@@ -192,8 +192,8 @@ set_up_missing_steps() { # library|runtime|dev
   fi
 }
 
-# Whether nothing that the steps look at is newer than when all were found complete: one look instead of some forty. What
-# is taken away, or new, makes its folder newer.
+# Whether nothing that the steps check has changed since all of them were found complete: one check instead of some forty.
+# A file that is removed or new makes its folder newer.
 is_as_before() { # library|runtime|dev
   local stamp=$CACHE/.complete-$1 folder
   local -a sources=(roomba set_up.sh install_dependencies.sh constraints.txt requirements.txt requirements-*.txt src)
@@ -233,7 +233,7 @@ set_up() { # library|runtime|dev
 
 # ---------------------------------------------------------------- what is there
 
-# One line per step of the set-up: name, state, what is missing. Unavailable is what no set-up brings to this system.
+# One line per step of the set-up: name, state, what is missing. The state is unavailable if no set-up can do the step on this system.
 describe_steps() {
   local missing
   missing=$(system_words runtime)
@@ -273,15 +273,15 @@ local_master_port() {
   esac
 }
 
-# ROS, the virtual environment and the workspace, and nothing of what the calling shell had sourced before.
+# Enters ROS, the virtual environment and the workspace, without anything that the calling shell had sourced before.
 enter_environment() {
   local port
   port=$(local_master_port)
   if [[ -n $port && -z ${ROS_IP:-}${ROS_HOSTNAME:-} ]]; then
-    export ROS_IP=127.0.0.1 # nothing of this robot needs to be seen by other machines
+    export ROS_IP=127.0.0.1 # no other machine needs to see this robot's nodes
   fi
   export PYTHONNOUSERSITE=1
-  # Its matrices are small: a second thread only waits for the first, and takes a core for that.
+  # The robot's matrices are small: a second thread would only wait for the first, and use a core for that.
   export OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
   keep_bytecode
   unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH ROS_DISTRO PYTHONPATH
@@ -289,15 +289,15 @@ enter_environment() {
   # shellcheck source=/dev/null
   . "$WORKSPACE/devel/setup.bash"
   set -u
-  export PYTHONPATH=$REPOSITORY/src:$PYTHONPATH # the sources themselves, not by way of catkin's relays
+  export PYTHONPATH=$REPOSITORY/src:$PYTHONPATH # the sources themselves, not through catkin's relay modules
 }
 
-# Without it each start of a program, and of each node, compiles some 300 modules anew: 0.2 s of a core.
+# Without stored bytecode each start of a program, and of each node, compiles some 300 modules anew: 0.2 s of a core.
 keep_bytecode() {
   unset PYTHONDONTWRITEBYTECODE
 }
 
-# The library alone, from the sources: no ROS, no workspace, and nothing of what the calling shell had sourced before.
+# Enters the library alone, from the sources: no ROS, no workspace, nothing that the calling shell had sourced before.
 enter_library() {
   export PYTHONNOUSERSITE=1
   export OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
