@@ -1,1 +1,1 @@
-"""Checks of the sources that the tools do not ship with."""
+"""Checks of the sources that lint tools do not include, and tools for documents and packages."""

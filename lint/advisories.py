@@ -1,4 +1,4 @@
-"""Packages of PyPI looked up among known vulnerabilities, by pip-audit."""
+"""Looks packages of PyPI up among known vulnerabilities, by pip-audit."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _PATIENCE: Final = 300.0
 
 
 def audit(materials: Sequence[Material]) -> int:
-    """Look the packages of PyPI up, and tell what is known of them; return 1 for vulnerable ones.
+    """Look the packages of PyPI up, and print what is known; return 1 if one is vulnerable.
 
-    A service that is not reached is told, and no fault of the packages.
+    A service that does not answer is reported, but does not count as a vulnerability.
     """
     pinned = "".join(
         f"{each.name}=={each.version}\n" for each in materials if each.source == "pypi"

@@ -1,4 +1,4 @@
-"""References of docstrings, written as Sphinx has them, as those of the site of the documents."""
+"""Turns references in docstrings, in Sphinx's notation, into code for the site of the documents."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _ROLE: Final = re.compile(r":(?:mod|class|func|meth|data|attr):`([~!.]*)([\w.]+)
 
 
 class DocstringLinks(griffe.Extension):  # type: ignore[misc]
-    """Names what a docstring refers to as code: the last part of it where it has a tilde."""
+    """Replaces each reference by its name as code; with a tilde, by the name's last part."""
 
     def on_object(self, *, obj: griffe.Object, **_: Any) -> None:
         """Rewrite the docstring of a module, a class, a function or an attribute."""

@@ -1,4 +1,4 @@
-"""The type of import contract that the tables of folders are."""
+"""An import contract: packages import only what the tables of folders in a page allow."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from roomba.commands.pictures.import_graph import folders_in, imports_in
 
 
 class FolderTableContract(Contract):
-    """Keeps the packages to the tables of a page.
+    """Checks that the packages agree with the tables of a page.
 
     Options: ``page``, the path of the page from the folder where the check runs.
     """

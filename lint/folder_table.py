@@ -1,9 +1,9 @@
 """The tables of folders in ``docs/design.md``: what each folder is, and what it may import.
 
 A table stands under a heading with the path of a package and has the columns folder, what it is,
-may import. Folders are named from the package's own, ``*`` at the end stands for a folder and all
-in it, and a name that begins with the name of a package is named from ``src``. Rows stand in
-layers: a row names only rows below it, so no import runs back up and no cycle is possible.
+may import. Names of folders are relative to the package, or to ``src`` if they begin with the name
+of a package; ``*`` at the end stands for a folder and all in it. Rows stand in layers: a row names
+only rows below it, so no import runs back up and no cycle is possible.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class TableError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A row: modules with dots from the package on, and what they may import, as it is written."""
+    """A row: dotted names of folders from the package on, and what they may import, as written."""
 
     folders: tuple[str, ...]
     may_import: tuple[str, ...]
@@ -57,7 +57,7 @@ def _modules(cell: str, package: str) -> tuple[str, ...]:
 
 
 def problems(rows: list[Row], folders: Collection[str], imports: Iterable[Import]) -> list[str]:
-    """Return a sentence for each difference between the tables and the packages; none is good."""
+    """Return a sentence for each difference between tables and packages; empty if they agree."""
     listed = [folder for row in rows for folder in row.folders]
     return [
         *(f"{folder}: add a row for it" for folder in sorted(set(folders) - set(listed))),
@@ -69,7 +69,7 @@ def problems(rows: list[Row], folders: Collection[str], imports: Iterable[Import
 
 
 def _names_above(rows: list[Row]) -> Iterator[str]:
-    """Yield what a row may import that is no row below it."""
+    """Yield a sentence for each import that a row allows although it is no row below."""
     for index, row in enumerate(rows):
         below = {folder for lower in rows[index + 1 :] for folder in lower.folders}
         anywhere = {folder for each in rows for folder in each.folders}
@@ -89,7 +89,7 @@ def _meant(name: str, folders: Collection[str]) -> set[str]:
 
 
 def _allowed(rows: list[Row]) -> dict[str, set[str]]:
-    """Return by folder what it may import; the last row, the shared words, belongs to all."""
+    """Return for each folder what it may import; all may import the last row, the shared words."""
     folders = [folder for row in rows for folder in row.folders]
     shared = set(rows[-1].folders)
     return {

@@ -1,4 +1,4 @@
-"""What the running robot is made of: packages of the distribution and of PyPI, with versions."""
+"""Packages of the distribution and of PyPI that the running robot needs, with versions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _WORD: Final = re.compile(r"[a-z0-9][a-z0-9+.-]*")
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """One package: ``source`` is ``deb`` or ``pypi``; ``needs`` names others of its source."""
+    """One package: ``source`` is ``deb`` or ``pypi``; ``needs`` are names of the same source."""
 
     source: str
     name: str
@@ -31,9 +31,9 @@ class Material:
 
 
 def python_materials(site_packages: Path, requirements: Path) -> list[Material]:
-    """Return what a file of requirements needs of a folder of Python packages, and what that needs.
+    """Return the packages of a folder that a file of requirements needs, directly or indirectly.
 
-    What is not in the folder comes from the distribution, and is left out here.
+    Requirements that are not in the folder come from the distribution, and are left out here.
     """
     installed: dict[str, Material] = {
         canonicalize_name(found.metadata["Name"]): _of_distribution(found)
@@ -68,7 +68,7 @@ def _of_distribution(found: Distribution) -> Material:
 def system_materials(
     names: Iterable[str], query: Callable[[], str] | None = None
 ) -> list[Material]:
-    """Return packages of the distribution that are installed, and what they need.
+    """Return the installed packages of the distribution among ``names``, and all that they need.
 
     ``query`` returns what dpkg knows of all packages, in lines of five columns.
     """
@@ -91,7 +91,7 @@ def _ask_dpkg() -> str:
 
 
 def _needed(field: str, there: set[str], provided: Mapping[str, str]) -> tuple[str, ...]:
-    """Return what satisfies each of some alternatives, of the packages that are there."""
+    """Return for each dependency of a field the installed package that satisfies it."""
     names: dict[str, None] = {}
     for alternatives in field.split(","):
         for told in alternatives.split("|"):

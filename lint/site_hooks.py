@@ -1,4 +1,4 @@
-"""How mkdocs makes the site of what the repository holds: ``mkdocs.yml`` names it."""
+"""Hooks by which mkdocs makes the site of the repository's documents; ``mkdocs.yml`` names them."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
-    """Let links lead to pages of the site, and make formulas MathML, which needs no script."""
+    """Point links to pages of the site, and turn formulas into MathML, which needs no script."""
     place = page.file.src_uri
     if place.startswith(f"{site_pages.API}/") or place == site_pages.DECISIONS:
         return markdown

@@ -1,7 +1,7 @@
-"""The pages of the site of the documents: which there are, and where the links of each lead.
+"""The pages of the site of the documents, and where their links lead.
 
-The documents are written to be read in a checkout, by links from file to file. On the site some of
-these files are pages, pictures are copied, and what is neither is named without a link.
+The documents are written for a checkout, with links from file to file. On the site some of these
+files are pages, and pictures are copied; other files are named without a link.
 """
 
 from __future__ import annotations

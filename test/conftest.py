@@ -1,4 +1,4 @@
-"""One hypothesis profile; graphs of their own for the tests that ask for one."""
+"""Settings of all tests: the hypothesis profile, their order, and ROS graphs for those that ask."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ settings.load_profile("project")
 
 RosGraph.forks = True
 
-# A container may not tell its time zone, and the programs say so.
+# A container may have no time zone set, about which the programs print a warning.
 os.environ["TZ"] = "UTC"
 time.tzset()
 
@@ -81,8 +81,8 @@ LONGEST_FIRST = (
     "test_connections.py",
     "test_ros_interface.py",
 )
-"""Files that take longest, so that no worker is left with one when the others have ended; those
-that wait and those that compute by turns."""
+"""Files that take longest run first, so that no worker still has one when the others have ended;
+files that wait alternate with files that compute."""
 
 
 SLOW = (
@@ -107,9 +107,9 @@ SLOW = (
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Let the files that take longest come first; mark what is slow.
+    """Run the files that take longest first, and mark slow tests.
 
-    What is marked ``thorough`` runs only when all is to be tried.
+    Tests that are marked ``thorough`` are left out unless a thorough run is asked for.
     """
     left_out = set() if is_thorough() else {item for item in items if "thorough" in item.keywords}
     items[:] = [item for item in items if item not in left_out]
@@ -124,9 +124,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """Look for garbage neither while tests are collected nor, later, among what was made then.
+    """Collect no garbage while tests are collected, and later ignore the objects made meanwhile.
 
-    There are millions of such objects, and all of them stay.
+    There are millions of these objects, and all of them stay alive.
     """
     gc.disable()
     try:
@@ -138,7 +138,7 @@ def pytest_collection() -> Generator[None, object, object]:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
-    """Run what uses a graph in a process of its own: each test can be a node of its graph."""
+    """Run a test that uses a graph in a process of its own: so each can be a node of its graph."""
     if not any(isinstance(value, RosGraph) for value in pyfuncitem.funcargs.values()):
         return None
     names = pyfuncitem._fixtureinfo.argnames

@@ -21,27 +21,27 @@ from roomba.commands.process_end import quiet_end
 CHECKS = (sys.executable, "-m", "running.checks")
 SAFETY = (sys.executable, "-m", "safety")
 COMPUTING_AT_ONCE = 4
-"""Some of what computes waits for programs that it starts: two would leave a third of the cores."""
+"""Workers; some tests wait for programs that they start: two would leave a third of the cores."""
 
 
 @dataclass(frozen=True)
 class Computing:
-    """What runs without a robot."""
+    """Tests or checks that need no robot."""
 
     name: str
     command: Sequence[str]
     is_first: bool
-    """It begins beside robots that are timed, after those of its kind before it."""
+    """It runs beside the timed robots, after the earlier ones with this mark."""
     failed: Path | None = None
-    """Where it lists tests that failed."""
+    """The file in which it lists the tests that failed."""
 
     def begin(self, after: Background | None = None) -> Background:
-        """Let it run beside robots, at once or after another."""
+        """Start it beside the robots, at once or after another one."""
         return Background(self.name, self.command, self.failed, after)
 
 
 def main(words: list[str]) -> int:
-    """Run what is asked for; return 0 if all of it passed."""
+    """Run the suites that are asked for; return 0 if all of them passed."""
     if words[:1] in (["-h"], ["--help"]):
         print(usage())
         return 0
@@ -56,9 +56,9 @@ def main(words: list[str]) -> int:
 
 
 def _beside_robots(asked: Asked) -> bool:
-    """Run all at once: robots leave much of the cores to what computes.
+    """Run robots and computing tests together: robots leave much of the cores free.
 
-    Beside those that are timed there is one program at a time, which takes a core at most.
+    Beside the timed robots only one such program runs at a time, which takes a core at most.
     """
     robots, computing = Robots(asked), _computing(asked, asked.of(FIRST))
     background: list[Background] = []
@@ -78,7 +78,7 @@ def _one_by_one(asked: Asked) -> bool:
 
 
 def _computing(asked: Asked, first: Sequence[str] = ()) -> list[Computing]:
-    """Return what is to run without a robot, with folders of tests that are to begin ``first``."""
+    """Return what needs no robot; the tests of the folders ``first`` begin earlier."""
     found = []
     if asked.has(Kind.CHECKS):
         found.append(Computing("lint", CHECKS, is_first=True))

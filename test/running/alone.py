@@ -1,7 +1,7 @@
-"""What failed beside others runs once more with nothing beside it.
+"""Runs tests that failed beside other tests once more, with nothing beside them.
 
-Promises in wall time do not always hold on a machine that is busy with other tests. What fails
-twice has failed. What passes is named at the end: a busy machine breaks that test or promise.
+Promises in wall time do not always hold on a machine that is busy with other tests. A test that
+fails twice has failed. Those that pass alone are named at the end: a busy machine breaks them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from running.pytests import pytest_command
 from running.suites import ROOT
 
 FEW: Final = 4
-"""More failures than this are no matter of a busy machine."""
+"""If more tests than this fail, a busy machine is not the reason."""
 FAILED: Final = 1
 """The exit status of pytest when tests failed, and nothing else was wrong."""
 
@@ -26,12 +26,12 @@ def listing(path: Path) -> tuple[str, ...]:
 
 
 def listed(path: Path) -> list[str]:
-    """Return these names; none if it did not come so far."""
+    """Return the names in that file; none if pytest ended before it wrote the file."""
     return path.read_text(encoding="utf-8").splitlines() if path.exists() else []
 
 
 def pass_alone(names: Sequence[str]) -> bool:
-    """Whether tests that failed beside others are few, and all pass alone."""
+    """Whether the tests that failed beside others are few, and all pass alone."""
     if not 0 < len(names) <= FEW:
         return False
     print(f"{len(names)} failed beside others: once more, alone", flush=True)

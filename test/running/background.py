@@ -1,4 +1,4 @@
-"""What computes beside the robots: it takes only what they leave of the cores."""
+"""Commands that compute beside the robots, with only the time of cores that these leave."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class Background:
         failed: Path | None = None,
         after: Background | None = None,
     ) -> None:
-        """Start it, at once or when another has ended.
+        """Start the command, at once or when the one ``after`` which it comes has ended.
 
-        ``failed`` is the file in which it lists tests that failed.
+        ``failed`` is the file in which the command lists tests that failed.
         """
         self._command, self._failed, self._after = command, failed, after
         self._log: Path = ROOT / ".cache" / f"{name}.log"
@@ -50,10 +50,10 @@ class Background:
         self._running.join()
 
     def passed(self) -> bool:
-        """Wait for its end, print what it said, and return whether it was well.
+        """Wait for its end, print its output, and return whether it passed.
 
-        It may have no test of what was asked for. Call it when nothing runs beside: what failed
-        may run once more.
+        It also passed if it has none of the tests that were asked for. Call this when nothing else
+        runs: failed tests may run once more.
         """
         self.wait()
         print(self._log.read_text(encoding="utf-8", errors="replace"), flush=True)

@@ -18,7 +18,7 @@ CHECKS: Final = {
 
 
 def run_checks() -> int:
-    """Run all, telling a line of each and what it found; return 0 if nothing was found."""
+    """Run all checks; print a line for each, and what it found; return 0 if none found anything."""
     passed = [_passes(name, command) for name, command in CHECKS.items()]
     return 0 if all(passed) else 1
 

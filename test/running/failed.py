@@ -13,7 +13,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Listen in the process that hears of all tests: workers hear of their own."""
+    """Note failures in the main process: it hears of all tests, workers only of their own."""
     path = config.getoption("--failed-to")
     if path is not None and not hasattr(config, "workerinput"):
         path.write_text("", encoding="utf-8")
@@ -26,7 +26,7 @@ class _Listener:
         self._names: set[str] = set()
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Note a test that failed, each once: it may fail again while it is torn down."""
+        """Note a test that failed, only once: it may fail again in its teardown."""
         if report.failed and report.nodeid not in self._names:
             self._names.add(report.nodeid)
             with self._path.open("a", encoding="utf-8") as file:

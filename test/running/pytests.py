@@ -8,7 +8,7 @@ from typing import Final
 from running.suites import ROOT
 
 NO_TESTS: Final = 5
-"""The exit status of pytest when what was asked for has no test."""
+"""The exit status of pytest when no test matches what was asked for."""
 
 
 def pytest_command(*arguments: str) -> list[str]:

@@ -13,28 +13,28 @@ from running.pytests import NO_TESTS, pytest_command
 from running.suites import ROOT, TIMED, WAITING, Asked, Kind
 
 BY_FILE: Final = ("--dist", "loadfile", "--no-loadscope-reorder")
-"""Each file keeps to one worker, as its tests share a graph; the order is that of
+"""All tests of a file run in one worker, as they share a graph; in the order of
 test/conftest.py."""
 TIMED_AT_ONCE: Final = 2
-"""Robots whose promises in wall time are tested; a third would break some."""
+"""Workers for tests of promises in wall time; with a third robot some promises would break."""
 WAITING_AT_ONCE: Final = 2
-"""Beside those: what keeps promises in wall time as well, and takes a seventh of a core each."""
+"""Workers beside these for such tests that mostly wait: each takes a seventh of a core."""
 OTHERS_AT_ONCE: Final = 3
 
 
 @dataclass(frozen=True)
 class _Part:
-    """Tests that run."""
+    """A run of pytest that has begun."""
 
     process: subprocess.Popen[bytes]
     failed: Path
-    """Lists the names of those that failed."""
+    """The file that lists the tests that failed."""
     log: Path | None
-    """What it says, if that is not shown at once."""
+    """The file of its output, unless the output is shown at once."""
 
 
 class Robots:
-    """All parts, and what failed in them."""
+    """All parts of the tests that start robots, and the tests that failed in them."""
 
     def __init__(self, asked: Asked) -> None:
         self._asked = asked
@@ -42,7 +42,7 @@ class Robots:
         self._failed: list[str] = []
 
     def run_timed(self) -> None:
-        """Run what keeps promises in wall time; beside it are checks, and what mostly waits."""
+        """Run tests of promises in wall time, beside checks and tests that mostly wait."""
         waiting = self._begin(
             "waiting", WAITING_AT_ONCE, self._asked.of(WAITING), log=ROOT / ".cache" / "waiting.log"
         )
@@ -50,7 +50,7 @@ class Robots:
         self._end(waiting)
 
     def run_others(self) -> None:
-        """Run all others, which may wait a little longer for what they wait for."""
+        """Run all other tests, which tolerate a busy machine."""
         folders = (*self._asked.folders(Kind.GRAPHS), *self._asked.folders(Kind.PAGES))
         ran = [f"--ignore={path}" for path in self._asked.of((*TIMED, *WAITING))]
         self._end(self._begin("others", OTHERS_AT_ONCE, folders, ran))
@@ -84,7 +84,7 @@ class Robots:
         self._failed += listed(part.failed)
 
     def passed(self) -> bool:
-        """Whether all passed; a part may have no test of what was asked for."""
+        """Whether all passed; single parts may have none of the tests that were asked for."""
         wrong = set(self._statuses) - {0, NO_TESTS}
         if wrong == {FAILED}:
             return pass_alone(self._failed)

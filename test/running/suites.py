@@ -19,7 +19,7 @@ class Kind(Enum):
     COMPUTING = auto()
     """They compute all the time."""
     COVERAGE = auto()
-    """They compute, and must run every line of what they test."""
+    """They compute, and must run every line of the code that they test."""
     GRAPHS = auto()
     """They start robots, and wait for them most of the time."""
     PAGES = auto()
@@ -32,7 +32,7 @@ class Suite:
 
     kind: Kind
     by_name_only: bool = False
-    """It takes long, or needs an environment of its own: it runs when it is named."""
+    """Whether it runs only when it is named: it takes long, or needs an environment of its own."""
 
 
 SUITES: Final = {
@@ -61,18 +61,18 @@ TIMED: Final = (
     "system/test_conformance.py",
     "system/test_foreign_robot.py",
 )
-"""Folders and files that assert promises of tenths of a second, or of a few seconds, of wall time,
-play a bag faster than it was recorded, or compare where a robot at several times real time drives:
-nothing but what is idle computes beside them."""
+"""Folders and files that assert promises of a tenth to a few seconds of wall time, play a bag
+faster than it was recorded, or compare drives of a robot at several times real time: only commands
+of idle priority compute beside them."""
 WAITING: Final = (
     "ros/runtime",
     "ros/supervision",
     "system/owned",
     "system/test_create2_line.py",
 )
-"""Those of them that wait most of the time, for lines and deadlines: they run beside the others."""
+"""Further ones, which mostly wait for lines and deadlines: they run beside those of TIMED."""
 FIRST: Final = ("conformance", "unit/planning", "unit/world")
-"""What computes, and begins beside those that are timed: one core is idle then for a while."""
+"""Computing tests that begin beside those of TIMED: one core is idle then for a while."""
 BY_DEFAULT: Final = tuple(name for name, suite in SUITES.items() if not suite.by_name_only)
 
 
@@ -81,11 +81,11 @@ class Asked:
     """What one line of ``./roomba test`` asks for."""
 
     suites: tuple[str, ...]
-    """None of them: files are named among the arguments."""
+    """Names of suites; empty if the arguments name files."""
     arguments: tuple[str, ...] = field(default=())
-    """For pytest."""
+    """Arguments for pytest."""
     thorough: bool = False
-    """Also the tests marked so, and all examples that a test makes up."""
+    """Whether tests marked ``thorough`` run as well, and all generated examples."""
 
     def has(self, kind: Kind) -> bool:
         """Whether a suite of that kind is asked for."""
@@ -96,7 +96,7 @@ class Asked:
         return tuple(str(ROOT / "test" / name) for name in self.suites if SUITES[name].kind is kind)
 
     def of(self, paths: Sequence[str]) -> tuple[str, ...]:
-        """Return those of some folders and files, as seen from ``test``, that are asked for."""
+        """Return those of these folders and files, relative to ``test``, that are asked for."""
         chosen = (path for path in paths if path.partition("/")[0] in self.suites)
         return tuple(str(ROOT / "test" / path) for path in chosen)
 

@@ -1,4 +1,4 @@
-"""``./roomba test safety`` and ``mutants``: its tests run all of the safety layer and notice it."""
+"""``./roomba test safety`` and ``mutants``: whether tests run and check all of the safety layer."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Changes the safety layer in every way that mutmut knows; each change must fail a test.
 
-``./roomba test mutants`` runs it: some five minutes on two cores. What survives must stand in
-``survivors.yaml`` with the reason why no test can or need notice it, and nothing else may.
+``./roomba test mutants`` runs it: some five minutes on two cores. ``survivors.yaml`` must list
+exactly the changes that fail no test, each with the reason why no test can or need notice it.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def reasons() -> dict[Mutant, str]:
 
 
 def survivors() -> Iterator[Mutant]:
-    """Make all mutants, run the tests of each, and return those that none noticed."""
+    """Make all mutants, run the tests of each, and return those that no test noticed."""
     shutil.rmtree(FOLDER, ignore_errors=True)
     FOLDER.mkdir(parents=True)
     for name in _LINKED:
@@ -81,7 +81,7 @@ def _mutmut(*arguments: str) -> None:
 
 
 def _change(name: str) -> Mutant:
-    """Return what a mutant changed."""
+    """Return the change that a mutant made."""
     shown = subprocess.run(
         [sys.executable, "-m", "mutmut", "show", name],
         cwd=FOLDER,
@@ -101,7 +101,7 @@ def _change(name: str) -> Mutant:
 
 
 def find_mutants() -> int:
-    """Return the exit status: 0 if all that survived have a reason, and all reasons a survivor."""
+    """Return the exit status: 0 if each survivor has a reason, and each reason a survivor."""
     may, alive = reasons(), set(survivors())
     for mutant in sorted(alive - set(may)):
         print(f"no test notices: {mutant.module}\n  - {mutant.old}\n  + {mutant.new}")

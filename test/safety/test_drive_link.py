@@ -1,4 +1,4 @@
-"""The body's last link: its owner's fresh commands, and nothing while the emergency stop holds."""
+"""The last link before the body: only fresh commands of its owner, none in an emergency stop."""
 
 from __future__ import annotations
 

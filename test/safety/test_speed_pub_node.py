@@ -1,4 +1,4 @@
-"""The speed node without a graph: what it tells the drive, and when."""
+"""The speed node without a graph: its commands to the drive, and their times."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ AHEAD = Twist(0.3, 0.1)
 
 @dataclass
 class Rig:
-    """The node, and what it told."""
+    """The node, and what it published."""
 
     graph: Lockstep
     node: SpeedPubNode = field(default_factory=SpeedPubNode)
@@ -49,13 +49,13 @@ class Rig:
         return self
 
     def told(self, topic: str, message: Any, sender: str = "/test") -> list[Twist]:
-        """Return what the drive is told at once when a message of a node comes."""
+        """Return the commands that the drive gets at once when a node's message comes."""
         before = len(self.driven)
         self.graph.publish(topic, message, sender)
         return self.driven[before:]
 
     def ticked(self, seconds: float = TICK) -> list[Twist]:
-        """Return what the drive is told at a tick."""
+        """Return the commands that the drive gets at a tick."""
         before = len(self.driven)
         self.graph.tick(seconds)
         return self.driven[before:]
@@ -77,7 +77,7 @@ def rig(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Rig:
 
 @pytest.fixture
 def stop_file(tmp_path: Path) -> Path:
-    """Where the robot keeps its emergency stop."""
+    """The file in which the robot keeps its emergency stop."""
     return tmp_path / "roomba_robot" / "emergency_stop" / "robot.txt"
 
 

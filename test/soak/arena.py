@@ -9,7 +9,7 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class Arena:
-    """A folder of its own, s of wall time that it may take, random numbers, and how many starts."""
+    """A folder of its own, its time, s of wall time, random numbers, and a number of starts."""
 
     folder: Path
     seconds: float

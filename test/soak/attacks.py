@@ -27,24 +27,24 @@ from std_msgs.msg import Float32
 from websockets.asyncio.client import ClientConnection, connect
 
 FLOOD: Final = 10_000
-"""Messages a second that a flood is to have, as far as one sender gets, and in all."""
+"""Messages of a flood: per second, as far as one sender can, and in all."""
 ANSWERED: Final = 1.0
-"""s of wall time in which the emergency stop answers meanwhile."""
+"""s of wall time within which the emergency stop answers during a flood."""
 OBEYED: Final = 60.0
 """s of wall time in which an order is done, or given up."""
 _QUIET: Final = 1.0
-"""s of wall time without a command, after which nothing is under way."""
+"""s of wall time without a command, after which no order is under way any more."""
 CONNECTIONS: Final = 10_000
 VIEWERS: Final = 1_000
 SHOWN: Final = 5.0
-"""s of wall time until each of so many viewers has the robot's state anew."""
+"""s of wall time within which each viewer gets a new state of the robot."""
 _AT_ONCE: Final = 50
 """Connections that are opened before the first is closed again."""
 _ORDERS: Final = (
     *(f"/{name}/" for name in ("clean", "dock", "undock", "explore", "walk_to_point", "move_base")),
     *("/move_base_simple/", "/change_position", "/change_heading", "/change_speed", "/cmd_vel"),
 )
-"""How topics begin that give orders: a message of nothing may be one, to clean all or to stand."""
+"""Beginnings of topics for orders: an empty message may be an order, to clean all or to stand."""
 _SENSES: Final = (
     *(
         "/body",
@@ -58,11 +58,11 @@ _SENSES: Final = (
     ),
     *("/ir_omni", "/dirt_detect", "/bin_level"),
 )
-"""Topics of the body, which the simulator tells: what another node says there does not count."""
+"""Topics of the body: the robot heeds there only the simulator's messages."""
 _USUAL_SPEED: Final = 0.5
-"""m/s; a flood that wants the robot to stand is followed by this."""
+"""m/s; the speed that is set again after a flood that set it to 0."""
 _LEFT_ALONE: Final = ("/clock", "/rosout", "/rosout_agg", "/tf", "/tf_static", "/diagnostics")
-"""Topics of all programs: a flood there is one of the machine, not of the robot."""
+"""Topics of all ROS programs: a flood there would test ROS, not the robot."""
 
 
 def floods(arena: Arena) -> list[Row]:
@@ -81,7 +81,7 @@ def floods(arena: Arena) -> list[Row]:
 
 
 def heard_topics(graph: RosGraph) -> list[str]:
-    """Return the topics that nodes hear; of what the simulator tells only the body's senses."""
+    """Return the topics that nodes hear; of the simulator's only the body's senses."""
     told, heard, _ = graph.system_state()
     return sorted(
         topic
@@ -101,7 +101,7 @@ def flood(graph: RosGraph, cleaner: Cleaner, topic: str) -> Row:
     kind = get_message_class(graph.topic_types().get(topic, ""))
     if kind is None:
         return row
-    # The first time the connection to it takes a while.
+    # The first call takes longer, as it connects.
     cleaner.probe.next("/speed", Float32)
     publisher = rospy.Publisher(topic, kind, queue_size=10)
     if until(lambda: publisher.get_num_connections() > 0, 5.0) is None:
@@ -121,7 +121,7 @@ def flood(graph: RosGraph, cleaner: Cleaner, topic: str) -> Row:
     row.measured("thousand messages a second", FLOOD / took / 1000.0)
     if cleaner.probe.counts["/speed"] - before < 0.5 * 10.0 * took:
         row.broken.append("the robot's speed was told less than half as often as it is to be")
-    # Messages of nothing may have been orders: to pause, to stop, to go elsewhere.
+    # Empty messages may have been orders: to pause, to stop, to go elsewhere.
     if cleaner.may_be_told_otherwise:
         _wait_until_obeyed(cleaner)
     if cleaner.state.phase == "cleaning":
@@ -130,7 +130,7 @@ def flood(graph: RosGraph, cleaner: Cleaner, topic: str) -> Row:
 
 
 def _wait_until_obeyed(cleaner: Cleaner) -> None:
-    """Wait until what was ordered is done, or given up: the next clean would give way to it."""
+    """Wait until the orders are done, or given up: the next clean would give way to them."""
     probe = cleaner.probe
     probe.hear("/cmd_vel", Twist)
     until(lambda: unchanged(lambda: probe.counts["/cmd_vel"], _QUIET), OBEYED)
@@ -172,7 +172,7 @@ def connect_senselessly(
 
 
 def _places(graph: RosGraph) -> list[tuple[str, int]]:
-    """Return where nodes take connections: for topics and services, and for requests."""
+    """Return the ports at which nodes listen: for topics and services, and for XML-RPC."""
     master = rosgraph.Master("/soak_places", graph.uri)
     publishers, subscribers, services = graph.system_state()
     nodes = {
@@ -220,7 +220,7 @@ def look(graph: RosGraph, cleaner: Cleaner, number: int) -> Row:
     run = graph.programs[0]
     run.says("The page: ", START_DEADLINE)
     found = re.findall(r"The page: http://127\.0\.0\.1:(\d+)/", run.output)
-    # The newest: one that was killed is back, maybe at another port.
+    # The newest process: one that was killed is back, maybe at another port.
     asyncio.run(_look(f"ws://127.0.0.1:{found[-1]}/live", number, row))
     row.expect_within("stop answers", ANSWERED, _emergency_stop_answers)
     cleaner.goes_on(row)

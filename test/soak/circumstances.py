@@ -22,14 +22,14 @@ from soak.rows import Row, in_child, tell, until
 
 HOUR: Final = 3600.0
 TOLD: Final = 5.0
-"""s of wall time until a full disk is told, and until all is well when there is room again."""
+"""s of wall time until a full disk is reported, and until all is well after there is room again."""
 RETRIED: Final = 10.0
 _SPEED: Final = 3.0
 """Robot seconds per second."""
 _PERIOD: Final = 0.05
 """s between two messages of the clock."""
 _STANDS: Final = 8.0
-"""s of wall time for which the clock is gone."""
+"""s of wall time without messages of the clock."""
 _ROOM: Final = "64m"
 """The size of the disk."""
 
@@ -48,7 +48,7 @@ class SetClock:
             time.sleep(_PERIOD / _SPEED)
             if self.runs:
                 self.now += _PERIOD
-                # It may be the end of this node.
+                # This node may be ending.
                 with contextlib.suppress(rospy.ROSException):
                     self._publisher.publish(rospy.Time.from_sec(self.now))
 
@@ -114,7 +114,7 @@ def disk(arena: Arena) -> list[Row]:
 
 @contextlib.contextmanager
 def small_disk(folder: Path) -> Iterator[Path | None]:
-    """Have a small disk at a folder; None where mounting one is refused."""
+    """Mount a small disk at a folder; None where mounting is refused."""
     folder.mkdir()
     mount = ["mount", "-t", "tmpfs", "-o", f"size={_ROOM}", "tmpfs", str(folder)]
     if subprocess.run(mount, check=False, capture_output=True, timeout=20.0).returncode != 0:
@@ -135,7 +135,7 @@ def fill(cleaner: Cleaner, home: Path) -> Row:
     with filler.open("wb", buffering=0) as file:
 
         def is_full_and_told() -> bool:
-            # Room that a file leaves when it is replaced is taken, too.
+            # Fill the room as well that a replaced file leaves.
             with contextlib.suppress(OSError):
                 while file.write(bytes(4096)):
                     pass
@@ -153,7 +153,7 @@ def fill(cleaner: Cleaner, home: Path) -> Row:
 
 
 def expect_nothing_left(row: Row, graph: RosGraph, home: Path) -> None:
-    """Note files that were left unfinished, and tracebacks."""
+    """Note unfinished files and tracebacks as broken promises."""
     if until(lambda: not list(home.rglob("*.unfinished-*")), TOLD) is None:
         row.broken.append(f"left behind: {list(home.rglob('*.unfinished-*'))}")
     lines = graph.programs[0].output.count("Traceback")

@@ -17,17 +17,17 @@ from std_srvs.srv import Trigger
 from roomba_ros.runtime.action_client import ActionClient
 
 GOES_ON = 30.0
-"""s of wall time until the clean got farther."""
+"""s of wall time within which a clean must make progress."""
 ENDED = 600.0
 """s of wall time that a clean takes at most."""
 READY = 60.0
-"""s of wall time until a robot can be told to clean, and until it does."""
+"""s of wall time until a robot accepts a clean, and until it cleans."""
 _WAITS = ("error", "paused", "bin full")
 """Phases in which it waits for a person."""
 
 
 class Cleaner:
-    """Lets a robot clean; each clean ends once, and as it should."""
+    """Lets a robot clean, and notes cleans that do not end once, or not as they should."""
 
     def __init__(self, graph: RosGraph, probe: Probe | None = None) -> None:
         """Become a client of the robot, by a node that is there already or a new one."""
@@ -35,7 +35,7 @@ class Cleaner:
         self.state, self.trouble = VacuumState(), [""]
         self.row = Row("clean")
         self.may_be_told_otherwise = False
-        """Whether others gave orders: the clean under way need not end as it should."""
+        """Whether other clients gave orders: then the clean under way may end otherwise."""
         self._waited = ""
         rospy.Subscriber("/vacuum/state", VacuumState, self._on_state)
         rospy.Subscriber("/trouble", String, lambda told: self.trouble.append(told.data))
@@ -61,7 +61,7 @@ class Cleaner:
                 self.row.broken.append(f"clean {self.row.times} does not begin: {self.state.phase}")
 
     def clean(self) -> None:
-        """Let it be on its way over the floor: on its way home it has little to write."""
+        """Wait until it sweeps the floor: on its way home it writes too little to the disk."""
         if self.state.phase != "cleaning":
             self.finish()
         self.keep_cleaning()
@@ -77,7 +77,7 @@ class Cleaner:
             self._judge()
 
     def has_ended(self) -> bool:
-        """Whether the newest clean has."""
+        """Whether the newest clean has ended."""
         return bool(self._client.simple_state == SimpleGoalState.DONE)
 
     def _is_ready(self) -> bool:
@@ -102,7 +102,7 @@ class Cleaner:
             self.row.broken.append(f"clean {self.row.times}: status {status}, {why}")
 
     def goes_on(self, row: Row) -> None:
-        """Note in a row if the clean does not get farther; one that ends meanwhile did."""
+        """Note in a row if the clean makes no progress; one that ends meanwhile made some."""
         if self.state.phase != "cleaning":
             return
         before = self.state.covered

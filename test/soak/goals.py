@@ -51,7 +51,7 @@ def goals(arena: Arena) -> list[Row]:
         graph.launch(f"home:={tiny_home(arena.folder)}")
 
         def work() -> list[Row]:
-            # The clock of the robot is that of this node, too.
+            # This node uses the robot's clock, too.
             Probe(graph, "soak")
             return send_goals(arena.random, GOALS)
 
@@ -146,7 +146,7 @@ def _cancelled(sender: Sender) -> Row:
 
 
 def _judge(sender: Sender, row: Row) -> None:
-    """Note goals that did not end, ended twice, or are lost."""
+    """Note goals that did not end, ended twice, or were lost."""
     if left := sender.left():
         row.broken.append(f"{sender.name}: {left} goals have not ended")
     if again := sum(len(ends) > 1 for ends in sender.ends.values()):

@@ -20,17 +20,17 @@ MOST_GROWTH: Final = 1.0
 MOST_DESCRIPTORS: Final = 2
 MOST_THREADS: Final = 0
 _REST: Final = 5.0
-"""s; a clean that ended is put down, and what it took given back, within that time."""
+"""s; within this a clean that ended is stored, and the memory that it took is given back."""
 _LOOKS: Final = 10
 """In that time."""
 _SETTLED: Final = 0.3
-"""Of all samples the first ones, in which caches fill, do not count."""
+"""Share of all samples, the first ones, that does not count: caches still fill."""
 _SURE: Final = 0.95
-"""How sure the interval is in which the growth lies."""
+"""Confidence of the interval of the growth."""
 
 
 class Sample(NamedTuple):
-    """A process, s of wall time: MB of its memory that is no file, threads, descriptors."""
+    """A process at a time, s: MB of its anonymous memory, numbers of threads and descriptors."""
 
     at: float
     memory: float
@@ -59,9 +59,9 @@ def growth(arena: Arena) -> list[Row]:
 
 
 def at_rest(graph: RosGraph, names: list[str]) -> dict[str, Sample]:
-    """Look at processes for 5 s after a clean: the last sample of each, with its least memory.
+    """Sample processes for 5 s after a clean: the last sample of each, with its least memory.
 
-    What a process gives back when a clean ended it gives back at a moment of its own.
+    After a clean each process gives memory back at a moment of its own.
     """
     found: dict[str, Sample] = {}
     for _ in range(_LOOKS):
@@ -79,7 +79,7 @@ def sample(process: int) -> Sample:
     status = dict(
         line.split(":", 1) for line in (folder / "status").read_text("utf-8").splitlines()
     )
-    # Not what is its own alone: that grows as pages of the process that started it are written to.
+    # Not the private memory: that grows when pages shared with the parent process are written to.
     anonymous = int(status["RssAnon"].split()[0])
     return Sample(
         time.monotonic(),
@@ -90,11 +90,11 @@ def sample(process: int) -> Sample:
 
 
 def judged(name: str, taken: list[Sample]) -> Row:
-    """Return the row of a process: how it grew once it had settled, and whether too much.
+    """Return the row of a process: how its memory grew once it had settled, and whether too much.
 
-    The median of the slopes between all pairs of samples (Theil and Sen). One step, as when the
-    process takes another piece of memory from the system, does not count unless it comes about
-    halfway.
+    The growth is the median of the slopes between all pairs of samples (Theil and Sen). So a single
+    step, as when the process takes a piece of memory from the system, does not count unless it is
+    about halfway.
     """
     row = Row(f"growth of {name}", len(taken))
     settled = taken[int(_SETTLED * len(taken)) :]

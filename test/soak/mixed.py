@@ -32,13 +32,13 @@ from soak.starts import end
 CONNECTIONS: Final = 500
 VIEWERS: Final = 100
 FLOODED: Final = ("/cmd_vel", "/change_position", "/cmd_vel_mission", "/scan", "/odom")
-"""Topics on which a message of nothing is no order to do something else."""
+"""Topics on which an empty message is no order."""
 _KILLED_OF: Final = 0.5
 """Share of all faults that are processes killed or stopped."""
 
 
 def mixed(arena: Arena) -> list[Row]:
-    """Let all kinds of faults happen to one robot, for the time that is given; end it then."""
+    """Let faults of all kinds happen to one robot for the given time; then end it."""
     with small_disk(arena.folder / "ros_home") as disk, RosGraph(arena.folder) as graph:
         home = f"home:={tiny_home(arena.folder)}"
         run = graph.start_run(home, "clock:=false", "page:=true", "page_port:=0")
@@ -78,7 +78,7 @@ def _suffer(graph: RosGraph, disk: Path | None, arena: Arena) -> list[Row]:
 def _others(
     graph: RosGraph, cleaner: Cleaner, clock: SetClock, disk: Path | None, random: random.Random
 ) -> list[Callable[[], list[Row]]]:
-    """Return the faults that are no killed processes; each comes once before one comes again."""
+    """Return the faults that are no killed processes, each once before any comes again."""
     faults: list[Callable[[], list[Row]]] = [
         lambda: [set_clock(clock, cleaner, -10.0)],
         lambda: [set_clock(clock, cleaner, jump) for jump in (HOUR, -HOUR)],

@@ -15,19 +15,19 @@ from soak.cleaner import ENDED, Cleaner
 from soak.rows import Row, in_child, tell
 
 NOTICED: Final = 1.0
-"""s of wall time until a fault is told of, as docs/reliability.md promises."""
+"""s of wall time until a fault is reported, as docs/reliability.md promises."""
 BACK: Final = 5.0
 """s of wall time until a process that ended is back."""
 STOPPED: Final = 2.0
-"""s of wall time for which a stopped process is waited for before that."""
+"""s of wall time that the supervisor first waits for a stopped process."""
 CALM: Final = (2.0, 8.0)
 """s of wall time between two faults."""
 KILLABLE: Final = (*(name for name in RUN if name != "home_sim_node"), "dashboard_node")
-"""The body is required: all end with it."""
+"""Processes to kill; not the body, which is required: all others end with it."""
 
 
 def processes(arena: Arena) -> list[Row]:
-    """Kill and stop nodes and the master, for the time that is given."""
+    """Kill and stop nodes and the master, for the given time."""
     with RosGraph(arena.folder) as graph:
         graph.launch(f"home:={tiny_home(arena.folder)}", "page:=true", "page_port:=0")
 
@@ -59,11 +59,11 @@ class Disturber:
 
     @property
     def rows(self) -> list[Row]:
-        """What came of it."""
+        """The results, a row for each kind of fault."""
         return [self._rows[name] for name in sorted(self._rows)]
 
     def disturb(self) -> None:
-        """Let one fault happen; note when that was told, and when all was well again."""
+        """Let one fault happen; note when it was reported, and when all was well again."""
         if not self._left:
             self._left = [(name, signal.SIGKILL) for name in (*KILLABLE, "master")]
             self._left += [(name, signal.SIGSTOP) for name in KILLABLE]

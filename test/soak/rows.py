@@ -1,4 +1,4 @@
-"""What came of the faults of one kind, and the table of all."""
+"""The results of one kind of fault, and the table of all results."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fixtures.processes.forked import run_forked
 
 @dataclass
 class Row:
-    """One kind of fault: how often, what was measured (the worst by name), what was not kept."""
+    """One kind of fault: how often it came, the worst figures by name, and broken promises."""
 
     what: str
     times: int = 0
@@ -22,36 +22,36 @@ class Row:
     broken: list[str] = field(default_factory=list)
 
     def add(self, other: Row) -> None:
-        """Take what came of another fault of this kind."""
+        """Add the results of another fault of this kind."""
         self.times += other.times
         for name, value in other.worst.items():
             self.measured(name, value)
         self.broken += other.broken
 
     def measured(self, name: str, value: float) -> None:
-        """Note a figure, which is the worse the larger it is."""
+        """Note a figure, of which a larger one is worse."""
         self.worst[name] = max(value, self.worst.get(name, value))
 
     def expect(self, name: str, value: float, most: float) -> None:
-        """Note a figure, and that a promise was broken if it is more than promised."""
+        """Note a figure, and a broken promise if it is more than ``most``."""
         self.measured(name, value)
         if not value <= most:
             self.broken.append(f"{name}: {value:.2f}, promised {most:g}")
 
     def expect_within(self, name: str, seconds: float, holds: Callable[[], object]) -> bool:
-        """Wait until something is so; note after how many s of wall time, and return whether."""
+        """Wait until something holds; note the time, s of wall time, and return whether it came."""
         took = until(holds, 10.0 * seconds)
         self.expect(name, 10.0 * seconds if took is None else took, seconds)
         return took is not None
 
 
 def tell(what: str) -> None:
-    """Say what is done now: some parts take long."""
+    """Print what is done now: some parts take long."""
     print(f"{time.strftime('%H:%M:%S')} {what} …", file=sys.stderr, flush=True)
 
 
 def until(holds: Callable[[], object], seconds: float) -> float | None:
-    """Return after how many s of wall time something was so; None if it was not in time."""
+    """Return after how many s of wall time something holds; None if that is not in time."""
     begin = time.monotonic()
     while not holds():
         if time.monotonic() - begin > seconds:
@@ -61,7 +61,7 @@ def until(holds: Callable[[], object], seconds: float) -> float | None:
 
 
 def in_child(folder: Path, work: Callable[[], Iterable[Row]], seconds: float) -> list[Row]:
-    """Do work in a process that may be a node, in so many s of wall time; return its rows."""
+    """Do work in a child process, which may be a node, within s of wall time; return its rows."""
     told = folder / "rows.json"
 
     def child() -> None:
@@ -72,7 +72,7 @@ def in_child(folder: Path, work: Callable[[], Iterable[Row]], seconds: float) ->
 
 
 def table(rows: Iterable[Row]) -> str:
-    """Return what came of it all, a line for each kind."""
+    """Return all results, a line for each kind of fault."""
     lines = [f"{'fault':44} times  the worst, in s of wall time unless it says otherwise"]
     for row in rows:
         figures = ", ".join(f"{name} {value:.2f}" for name, value in row.worst.items())

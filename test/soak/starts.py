@@ -1,4 +1,4 @@
-"""Starts and stops, at random moments too: nothing is left, nothing has to be killed."""
+"""Starts and stops, at random moments too: no process is left, and none has to be killed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from soak.arena import Arena
 from soak.rows import Row, tell, until
 
 GONE: Final = 3.0
-"""s of wall time until nothing is left after Ctrl-C."""
+"""s of wall time until no process is left after Ctrl-C."""
 _START: Final = 6.0
 """s of wall time that a start takes on a machine that does nothing else; one that is stopped
 earlier is stopped in the middle of it."""
@@ -51,11 +51,11 @@ def _start_and_end(graph: RosGraph, row: Row, moment: float | None) -> None:
 
 
 def end(run: Program, row: Row, which: str) -> None:
-    """End a robot by Ctrl-C; note if that took long, left or killed something, or wrote badly."""
+    """End a robot by Ctrl-C; note if it took long, left or killed processes, or printed errors."""
     started = _members(run.process.pid)
     run.send_to_leader(signal.SIGINT)
     row.expect_within("gone", GONE, lambda: run.status is not None)
-    # One that reads the launch file ends with its parent, by a signal of the kernel: in a moment.
+    # A child that reads the launch file ends with its parent, by a signal of the kernel: soon.
     if until(lambda: not _there(started), GONE) is None:
         row.broken.append(f"{which}: processes {_there(started)} are left")
     for bad in ("Traceback", "has not ended yet"):
