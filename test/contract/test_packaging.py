@@ -1,4 +1,4 @@
-"""What the files say of Python packages, and of the version, agrees."""
+"""All files that list Python packages, or give the version, agree."""
 
 from __future__ import annotations
 

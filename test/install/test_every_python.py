@@ -1,6 +1,6 @@
 """The wheel in an empty environment of each Python that it is made for, called from elsewhere.
 
-One that is not installed here is skipped, and said to be.
+A Python that is not installed here is skipped, and the skip says so.
 """
 
 from __future__ import annotations

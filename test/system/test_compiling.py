@@ -1,4 +1,4 @@
-"""What the set-up compiles before a robot is used, beside it, and not again."""
+"""What the set-up compiles before the robot runs, what beside it, and that it compiles once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What Python calls and its parts are compiled with, and without, a runtime for references."""
+"""Functions that Python calls, and their parts, with and without a runtime for references."""
 
 from __future__ import annotations
 

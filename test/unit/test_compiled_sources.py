@@ -1,4 +1,4 @@
-"""What was compiled is kept by its sources: a part that changed is compiled anew, once."""
+"""Compiled code is kept by its sources: when a part changes, it is compiled anew, once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tests mirror the modules: each has a file of its own, or its test is told here with the reason.
+"""Tests mirror the modules: each has a file of tests, or an entry here with the reason.
 
 ``test/unit/a/b/test_c.py`` tests ``src/roomba/a/b/c.py``, ``test/ros/b/test_c.py``
 ``src/roomba_ros/b/c.py``, and ``test/unit/roomba_bench/b/test_c.py`` ``src/roomba_bench/b/c.py``.

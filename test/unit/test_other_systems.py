@@ -1,4 +1,4 @@
-"""What needs no ROS, on a Linux from which the calls are taken away that another system lacks.
+"""The parts without ROS, on a Linux without the calls that other systems lack.
 
 Nothing here shows that it works there: only that it asks for no module and no call of Linux.
 """

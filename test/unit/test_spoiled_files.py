@@ -1,4 +1,4 @@
-"""Whatever a file holds, its reader takes it or raises its own error, soon, and in bounded memory.
+"""Any file: its reader takes it or raises its own error, soon, and in bounded memory.
 
 ``ROOMBA_EXAMPLES=5000`` tries so many files of each kind, others each time.
 """

@@ -1,4 +1,4 @@
-"""Where the time of a clean went, in parts that add up."""
+"""How the time of a clean was spent, in parts that add up."""
 
 from __future__ import annotations
 

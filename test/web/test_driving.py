@@ -1,4 +1,4 @@
-"""The robot is stopped and driven by hand, by keys alone, not without the token, looked through."""
+"""Stopping, driving by hand and by keys alone, the camera; without the token nothing changes."""
 
 from __future__ import annotations
 

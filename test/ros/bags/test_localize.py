@@ -1,4 +1,4 @@
-"""``./roomba localize`` beside ROS: what rosbag wrote is read, and what was written is ROS's."""
+"""``./roomba localize`` beside ROS: it reads rosbag's bags, and ROS reads its own."""
 
 from __future__ import annotations
 

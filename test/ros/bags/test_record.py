@@ -1,4 +1,4 @@
-"""``./roomba record`` over a graph: all that is told, also after a kill, and mishaps."""
+"""``./roomba record`` over a graph: all messages are kept, also after a kill; and mishaps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``./roomba sim --bag``: what of a run is in its bag."""
+"""``./roomba sim --bag``: the contents of the bag of a run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is so is told now and then, and a change at once, however fast the clock."""
+"""A state is published now and then, and a change of it at once, however fast the clock is."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a body tells its brain is told on its topics, whichever body it is."""
+"""Every body publishes on its topics what it tells its brain."""
 
 from __future__ import annotations
 

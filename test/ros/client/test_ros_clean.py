@@ -1,4 +1,4 @@
-"""Cleaning as a client asks for it, of a mission node that is made of a few callbacks."""
+"""A client's requests to clean, against a made-up mission node of a few callbacks."""
 
 import math
 import os

@@ -1,4 +1,4 @@
-"""Walks and what the robot tells, as a client asks for it, of a robot made of a few callbacks."""
+"""A client's walks and its view of the robot, against a made-up robot of a few callbacks."""
 
 from __future__ import annotations
 

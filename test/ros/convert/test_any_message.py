@@ -1,4 +1,4 @@
-"""Whatever a message holds, it becomes a value or is refused by MessageError, soon.
+"""Any message becomes a value, or is refused by MessageError, within a short time.
 
 ``ROOMBA_EXAMPLES=5000`` tries so many of each kind, others each time.
 """

@@ -1,4 +1,4 @@
-"""The messages that tests send on every topic are as wrong as they are said to be."""
+"""The malformed messages that tests send on every topic really have the faults of their names."""
 
 import math
 from io import BytesIO

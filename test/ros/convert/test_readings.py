@@ -1,4 +1,4 @@
-"""What sensors and wishes say is a value, or refused with what was expected."""
+"""Messages of sensors and wishes become values, or are refused with what was expected."""
 
 import math
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What is really so in a simulated home goes over messages and back."""
+"""The truth of a simulated home becomes messages, and the same values again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the page is told of the body is what the nodes go by."""
+"""The page shows the same values of the body as the nodes use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A robot that people own on ROS: a made-up Neato at the end of its driver node's line."""
+"""A real robot on ROS: its driver node, with a made-up Neato at the other end of the line."""
 
 from __future__ import annotations
 

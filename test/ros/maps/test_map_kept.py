@@ -1,4 +1,4 @@
-"""A map that is being made outlives the node that makes it; what is broken is left, and said."""
+"""A growing map outlives the node that makes it; after a damaged file a new map begins."""
 
 import re
 import signal

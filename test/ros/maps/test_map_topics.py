@@ -1,4 +1,4 @@
-"""The robot's own maps: known again, changed when people agree, and none where one was given."""
+"""The robot's own maps: recognized, changed when a person agrees, unused where a map is given."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

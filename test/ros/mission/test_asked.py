@@ -1,4 +1,4 @@
-"""What was asked of a mission that is not there yet is refused, each in its own way."""
+"""Each kind of request is refused in its own way while there is no mission yet."""
 
 import queue
 from unittest.mock import MagicMock

@@ -1,4 +1,4 @@
-"""Carpets that were felt: told by the mission node, and remembered by it.
+"""Carpets that were felt: the mission node publishes and remembers them.
 
 The nodes are ticked in lockstep; no graph is needed.
 """

@@ -1,4 +1,4 @@
-"""Contexts are made of what is known then, the last that is wanted; no graph is needed."""
+"""Planning contexts use what is known then; only the last wanted one is made; without a graph."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was felt comes back with its map, and with no other; no graph is needed."""
+"""Felt carpets and low things come back with their map, and with no other; without a graph."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was felt and never seen: told by the mission node, taken as a zone, ignored, remembered.
+"""Low things, felt and never seen: published, accepted as a zone, ignored, remembered.
 
 The nodes are ticked in lockstep; no graph is needed.
 """

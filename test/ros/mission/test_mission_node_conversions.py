@@ -1,4 +1,4 @@
-"""What becomes of the mission's messages; no graph is needed for that."""
+"""How the mission node converts its messages; without a graph."""
 
 import io
 import math

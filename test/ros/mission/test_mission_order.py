@@ -1,4 +1,4 @@
-"""In which order the mission node tells things; no graph is needed for that."""
+"""The order in which the mission node publishes; without a graph."""
 
 from __future__ import annotations
 

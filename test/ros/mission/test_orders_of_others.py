@@ -1,4 +1,4 @@
-"""What other programs want of a robot that cleans holds it up no longer than they want it.
+"""Orders of other programs interrupt a clean only as long as these programs want them.
 
 The nodes are ticked in lockstep; no graph is needed.
 """

@@ -1,4 +1,4 @@
-"""Zones are kept, told and edited for the map that there is; no graph is needed for that."""
+"""Zones are kept, published and edited for the present map; without a graph."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The URDF has the numbers of the configuration, and its frames are those that the body tells."""
+"""The URDF has the configuration's numbers, and its frames are those that the body publishes."""
 
 from __future__ import annotations
 

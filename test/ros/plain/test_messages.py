@@ -1,4 +1,4 @@
-"""Messages as plain values and back: nothing is lost but what JSON has no word for."""
+"""Messages as plain values and back: only values that JSON cannot express are lost."""
 
 from __future__ import annotations
 

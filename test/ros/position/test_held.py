@@ -1,4 +1,4 @@
-"""While a map is finished in the background, nothing that is heard may change it."""
+"""While a map is finished in the background, no message may change it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A node with one of each thing that a program may use: what it said is looked at here."""
+"""A node with one of each thing that a program may use; it notes what the program sent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the bridge lets programs do, and what it does for slow and senseless ones."""
+"""What the bridge lets programs do, and how it treats slow and senseless ones."""
 
 from __future__ import annotations
 

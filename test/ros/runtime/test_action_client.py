@@ -1,4 +1,4 @@
-"""The client of actions, over a stock one that is answered while it sends."""
+"""The action client, over ROS's own client, which gets an answer while it still sends."""
 
 import threading
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The server of actions, told to cancel what it does not know."""
+"""The action server gets cancels for goals that it does not know."""
 
 import pytest
 import rospy

@@ -1,6 +1,6 @@
-"""What a connection says of itself: any bytes are a header, or refused by an error that is known.
+"""The header of a connection: any bytes are a header, or are refused by a known error.
 
-An error that is not ends the thread of the handshake, and leaves the connection open.
+An unknown error would end the thread of the handshake, and leave the connection open.
 """
 
 from __future__ import annotations

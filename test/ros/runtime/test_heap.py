@@ -1,4 +1,4 @@
-"""What is free in the heap is given back, though something at its end stays."""
+"""Free memory of the heap is given back, although memory at its end stays in use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The emergency stop is what the speed node tells, and no other."""
+"""Only the speed node's messages count for the emergency stop."""
 
 from collections.abc import Iterator
 

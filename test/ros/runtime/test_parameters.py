@@ -1,4 +1,4 @@
-"""The report's parameters are looked at as often as that makes a difference."""
+"""The report's parameters are read as often as it makes a difference."""
 
 from __future__ import annotations
 

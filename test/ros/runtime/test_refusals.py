@@ -1,4 +1,4 @@
-"""What is refused is counted, and told in one line a second at most."""
+"""Refused messages are counted, and logged in at most one line a second."""
 
 import itertools
 

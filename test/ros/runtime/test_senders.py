@@ -1,4 +1,4 @@
-"""Who may send: one node by its name, or whichever one does so alone."""
+"""Which nodes may send on a topic: a named one, or any one that is alone."""
 
 import time
 

@@ -1,4 +1,4 @@
-"""What a body tells is heard in one message while it is told so, and else by single topics."""
+"""A body is heard by its one message while that comes, and otherwise by single topics."""
 
 from __future__ import annotations
 

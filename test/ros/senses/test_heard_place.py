@@ -1,4 +1,4 @@
-"""The place as it is told, carried on by the wheels."""
+"""The pose as it was heard, carried on by the wheels."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a node senses that does not find the robot's place itself."""
+"""The senses of a node that does not localize the robot itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What any body tells is told of the simulated one, and beside it what it alone measures."""
+"""The simulated body publishes what any body does, and besides what it alone measures."""
 
 from __future__ import annotations
 

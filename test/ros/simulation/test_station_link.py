@@ -1,4 +1,4 @@
-"""The station works as long as it is told to, and tells of its bag; no graph is needed."""
+"""The station empties the bin as long as it is told to, and reports its bag; without a graph."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is really so is told as often as people look, however fast the robot's clock goes."""
+"""The truth is published by the robot's clock, but no oftener than people can follow."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is refused before any process of the robot starts."""
+"""Arguments and states that are refused before any process of the robot starts."""
 
 from __future__ import annotations
 

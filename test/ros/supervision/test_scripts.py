@@ -1,4 +1,4 @@
-"""A script that runs in a fork does as it would in a process of its own."""
+"""A script in a fork behaves as in a process of its own."""
 
 from __future__ import annotations
 

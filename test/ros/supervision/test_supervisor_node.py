@@ -1,4 +1,4 @@
-"""What the watcher writes becomes topics; and the log of all nodes is in one place."""
+"""The supervisor's output becomes topics; and the log of all nodes is in one place."""
 
 import json
 import os

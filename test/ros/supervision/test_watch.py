@@ -1,4 +1,4 @@
-"""When a process is started anew, ended, told of or given up."""
+"""When a process is started anew, ended, reported or given up."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A goal goes through its stages; what is told at each tick is exact, and no graph is needed."""
+"""A goal goes through its stages, with exact feedback at each tick; without a graph."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Faults done to a running robot: nodes that end, are killed, or are told nonsense."""
+"""Faults of a running robot: nodes that end, are killed, or get nonsense."""
 
 import math
 import os

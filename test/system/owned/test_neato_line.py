@@ -1,4 +1,4 @@
-"""How soon a Neato stands when its driver, or what drives it, is silent: in real time."""
+"""How soon a Neato stands when its driver, or the driver's commander, is silent: in real time."""
 
 from __future__ import annotations
 

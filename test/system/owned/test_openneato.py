@@ -1,4 +1,4 @@
-"""A robot behind OpenNeato's bridge, made up: brought to life by its address, and given back."""
+"""A made-up robot behind OpenNeato's bridge: started by the bridge's address, and released."""
 
 from __future__ import annotations
 

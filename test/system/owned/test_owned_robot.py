@@ -1,4 +1,4 @@
-"""A robot that people own, made up at the end of a line: brought to life, commanded, given back."""
+"""A made-up robot at the end of a serial line: started, commanded, and released."""
 
 from __future__ import annotations
 

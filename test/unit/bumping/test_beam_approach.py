@@ -1,4 +1,4 @@
-"""Onto a station whose beams are reckoned, by a body that does exactly what is wanted."""
+"""Driving onto a station whose beams are computed, with a body that follows exactly."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The way back over floor that was driven, beside what it may not lead through."""
+"""The way back over floor where the robot has been, and floor that this way must not use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is remembered of the floor by odometry."""
+"""The floor that the robot remembers by odometry."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bump and go without a home: what it wants when it touches something."""
+"""Bump and go without a home: its commands when it touches something."""
 
 from __future__ import annotations
 

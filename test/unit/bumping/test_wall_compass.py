@@ -1,4 +1,4 @@
-"""A heading by walls: of a way with wheels that differ, and in a simulated home."""
+"""Heading by walls: on a way with wheels that differ, and in a simulated home."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Asking a server that answers as it is told to."""
+"""A client of the page's API, against a server with prepared answers."""
 
 from __future__ import annotations
 

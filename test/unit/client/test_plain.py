@@ -1,4 +1,4 @@
-"""What a page shows as values for JSON."""
+"""The view of a page as values for JSON."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a run is under way, by each phase."""
+"""For each phase, whether a run is under way."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is reckoned for pages."""
+"""Values that are computed for pages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the calling shell has set does not get between a program and ROS."""
+"""Settings of the calling shell do not disturb a program of ROS."""
 
 from __future__ import annotations
 

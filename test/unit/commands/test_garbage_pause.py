@@ -1,4 +1,4 @@
-"""What imports make is not looked through for garbage, and later garbage is."""
+"""The collector skips objects that imports made, and collects later garbage."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where there is no ROS 1 what needs it says so, with what to do; nothing else asks for it."""
+"""Without ROS 1, commands that need it say so, with what to do; no other command asks for it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A command whose output is closed, or that Ctrl-C meets, ends in order: no traceback."""
+"""A command whose output is closed, or that gets Ctrl-C, ends without a traceback."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lidars as sold: each file is whole, says where its numbers are from, and can be chosen."""
+"""Lidars as sold: each file is complete, names the sources of its numbers, and can be chosen."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every shipped file of the configuration is complete, is the default, and says why."""
+"""Every shipped configuration file is complete, equals the defaults, and gives reasons."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The clock of a robot that cannot be reached stands."""
+"""The clock of a body stands while the robot cannot be reached."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A body by a driver that has faults: they are told, and the robot is taken over again."""
+"""A body whose driver has faults: they are reported, and the driver is started again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a robot is by its wheels, told now and then in whole millimetres."""
+"""The pose by wheels that are read now and then, in whole millimetres."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Archives of arrays: what is written is read, and what a header claims is not believed."""
+"""Archives of arrays: arrays come back as written, and sizes in a header are not trusted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lines of a journal are on the disk one by one; what is cut short costs itself alone."""
+"""Lines of a journal reach the disk one by one; a line that is cut short costs no other line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A kept file is sealed; a damaged one is set aside, told, and the one before is used."""
+"""A kept file is sealed; a damaged one is set aside and reported, and the earlier one is used."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Plain JSON: what was written, and no text that hangs or ends the program."""
+"""Plain JSON: it comes back as written, and no text hangs or ends the program."""
 
 import contextlib
 import json

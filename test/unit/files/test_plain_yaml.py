@@ -1,4 +1,4 @@
-"""Plain YAML: what PyYAML reads, and no file that hangs or ends the program."""
+"""Plain YAML: it is read as PyYAML reads it, and no file hangs or ends the program."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Episodes in turned homes: those of the home in its own axes, told in the turned frame."""
+"""Episodes in a turned home equal those of the unturned home, expressed in the turned frame."""
 
 import math
 from typing import Any

@@ -1,6 +1,6 @@
 """The compiled burst: when it runs, when it ends, and what it hands back.
 
-That it does what the ordinary classes do is the matter of test/conformance.
+Whether it does the same as the ordinary classes is tested in test/conformance.
 """
 
 from __future__ import annotations

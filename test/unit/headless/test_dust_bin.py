@@ -1,4 +1,4 @@
-"""Cleans with a dust bin that fills: what is told, and what is really so."""
+"""Cleans with a dust bin that fills: what the robot reports, and the truth."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Whole explorations of small homes: the map that comes of it, and what happens meanwhile.
 
-How good a map is is counted by the home as it is, never by what the robot believes.
+The quality of a map is measured against the true home, never against the robot's belief.
 """
 
 from __future__ import annotations

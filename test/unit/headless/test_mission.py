@@ -1,6 +1,6 @@
 """Whole cleans of small homes: how they end, and what may come up meanwhile.
 
-What is clean is counted by where the robot really was, never by what it believes.
+Clean floor is counted by the robot's true poses, never by its believed ones.
 """
 
 from __future__ import annotations

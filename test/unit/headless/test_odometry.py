@@ -1,4 +1,4 @@
-"""How far wheels and gyro alone are off the truth, of drives of which that is known."""
+"""How far wheels and gyro alone are off, on drives of which the truth is known."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What headless robots have in common."""
+"""What headless robots have in common: how long a clean may last."""
 
 import pytest
 from fixtures.robots.missions import HOME

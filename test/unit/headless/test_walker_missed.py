@@ -1,4 +1,4 @@
-"""Whole cleans that cannot reach all, or nothing, of what they are asked for: what they tell."""
+"""The results of whole cleans that can reach only a part, or nothing, of the wanted floor."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is seen is kept in a thread of its own: all of it, or what is not is told."""
+"""A thread of its own keeps what the recorder sees: all of it, or it reports what is lost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run whose program is killed is on the disk up to the last second: it goes on, or is told so."""
+"""A run whose program was killed is on disk to the last second: it goes on, or is interrupted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the household lives, and what its keepers make of any day in its files."""
+"""The folder of the household, and how its keepers deal with any day in its files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two programs with one household: the second one is told, and one that ended is not in the way."""
+"""Two programs with one household: the second is told so, unless the first has ended."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rooms are kept as they were seen, and an edit that was taken back is known as such."""
+"""Rooms are kept as they were seen, and an edit that was taken back is recognized."""
 
 from __future__ import annotations
 

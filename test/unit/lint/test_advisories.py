@@ -1,4 +1,4 @@
-"""What an audit found, as it is told."""
+"""How the findings of an audit are reported."""
 
 import json
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""A mission as plain values: where one goes on that was ended at any moment, and junk."""
+"""A mission as plain values: it resumes where it was ended at any moment; junk is refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whatever a checkpoint holds, a mission takes it up and can go on, or refuses it and is idle.
+"""Any checkpoint: the mission resumes from it and can go on, or refuses it and is idle.
 
 ``ROOMBA_EXAMPLES=5000`` tries so many, others each time.
 """

@@ -1,4 +1,4 @@
-"""Commands and what happens, without a world: what a mission is told, and what it answers."""
+"""Commands and events for a mission without a world, and its answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the scheduler remembers: nothing of it waits for what a clock that was ahead noted."""
+"""The scheduler's memory: times noted by a clock that was ahead delay nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was noted cell by cell, brought to another map of the same home."""
+"""Values of cells are carried over to another map of the same home."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lines within floor and doorways are floor; walls, and what is open to the outside, never are."""
+"""Thin lines within floor and doorways are floor; walls, and openings to the outside, never are."""
 
 from __future__ import annotations
 

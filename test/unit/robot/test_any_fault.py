@@ -1,4 +1,4 @@
-"""Whatever happens to the robot, what it promises stays true.
+"""Whichever faults the robot has, its promises hold.
 
 The examples are few and the same in every run of the suite. ``ROOMBA_EXAMPLES=2000`` tries so many
 others; ``./roomba soak --headless HOURS`` tries ten an hour.

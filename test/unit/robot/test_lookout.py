@@ -1,4 +1,4 @@
-"""Where the robot looks for what its map does not show."""
+"""Where the robot looks for things that its map does not show."""
 
 from __future__ import annotations
 

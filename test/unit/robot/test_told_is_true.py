@@ -1,4 +1,4 @@
-"""What a clean tells is so: how much is clean, what is not, and why; over homes of any size.
+"""The report of a clean is true: how much is clean, what is not, and why; in homes of any size.
 
 ``ROOMBA_EXAMPLES=500`` tries so many homes, others each time.
 """

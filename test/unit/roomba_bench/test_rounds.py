@@ -1,4 +1,4 @@
-"""The contest: turns, the best round, and those who cannot take part."""
+"""The contest: turns, the best round, and peers that cannot take part."""
 
 from __future__ import annotations
 

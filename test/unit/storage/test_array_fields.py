@@ -1,4 +1,4 @@
-"""Arrays of a file: what is right comes back, and all else is named."""
+"""Arrays of a file: right ones come back, and each wrong one is named in an error."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A disk with too little room is told by what is free."""
+"""A disk with too little room is recognized by its free space."""
 
 import errno
 import shutil

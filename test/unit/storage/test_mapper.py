@@ -1,4 +1,4 @@
-"""A map that is being made, kept in a file: bit for bit, whole or from before, or refused."""
+"""A growing map in a file: it comes back bit for bit, new or as before, or is refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whatever is typed, the menu asks again or does it; the end of input leaves it with status 0."""
+"""For any input the menu asks again or obeys; the end of input leaves it with status 0."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Following a walk: it always ends, and what it shows fits where it is shown."""
+"""Following a walk: it always ends, and its output suits the terminal or pipe."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Each fault does what it says, ends when it is taken back, and nothing else is taken."""
+"""Each fault does what it says, and ends when it is taken back; senseless values are refused."""
 
 from __future__ import annotations
 

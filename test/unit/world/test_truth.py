@@ -1,4 +1,4 @@
-"""What is really so in a home, with what was done to it."""
+"""The truth about a home, with the changes that were made to it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All of the page is seen: with long names, on the smallest phones, and on one that lies."""
+"""All of the page is visible: with long names, on the smallest phones, and in landscape."""
 
 from __future__ import annotations
 

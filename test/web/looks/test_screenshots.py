@@ -1,6 +1,6 @@
 """Pictures of each state of the page, in each width, light and dark, to be looked at.
 
-They are saved as ``.cache/screenshots/STATE-WIDTH-SCHEME.png``. Asserted is what holds of each:
+They are saved as ``.cache/screenshots/STATE-WIDTH-SCHEME.png``. For each the test asserts:
 nothing lies beyond the window's sides, and the button that stops the robot is within it.
 """
 

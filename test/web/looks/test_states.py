@@ -1,4 +1,4 @@
-"""States of the robot and of the link that are shown as they are."""
+"""The page shows states of the robot and of the link as they are."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A master that hangs is told of within a deadline, by each program that asks for it."""
+"""Each program that asks a master that hangs reports it within a deadline."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Programs that go on while the robot is started anew are in the graph of its new master."""
+"""Programs that outlive a restart of the robot join the graph of its new master."""
 
 from __future__ import annotations
 

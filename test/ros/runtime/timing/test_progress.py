@@ -1,4 +1,4 @@
-"""What a node that drives tells a simulation, by a publisher of the test's own."""
+"""How a driving node tells the simulation its progress, with a publisher of the test's own."""
 
 import pytest
 import rospy

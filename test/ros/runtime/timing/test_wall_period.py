@@ -1,4 +1,4 @@
-"""What is held back by the wall's clock, by a clock of the test's own."""
+"""Messages that are held back for a period of wall time, with a clock of the test's own."""
 
 from roomba_ros.runtime.timing.wall_period import WallPeriod
 

@@ -1,4 +1,4 @@
-"""Paired comparisons, beside scipy's own test and beside what is known of made-up numbers."""
+"""Paired comparisons, against scipy's own test, and on made-up numbers with a known result."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Frames of a growing map lie alike: a place of the home is at one place of each."""
+"""Frames of a growing map are aligned: a place of the home is at the same pixels in all."""
 
 from __future__ import annotations
 

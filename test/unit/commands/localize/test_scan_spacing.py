@@ -1,4 +1,4 @@
-"""A drive whose scans are rare is followed by them, and not by wheels and gyro alone."""
+"""A drive with rare scans is localized by its scans, not by wheels and gyro alone."""
 
 from __future__ import annotations
 

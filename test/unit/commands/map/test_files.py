@@ -1,4 +1,4 @@
-"""The files of a map: what has too many rooms for one is written without them."""
+"""The files of a map: a map with too many rooms is written without rooms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Errors of a map, on made-up ones: moved, turned, with walls twice, with floor too much."""
+"""The measured errors of made-up maps: moved, turned, with doubled walls, with too much floor."""
 
 from __future__ import annotations
 

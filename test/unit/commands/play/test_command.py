@@ -1,4 +1,4 @@
-"""``./roomba play`` of a robot on a line gives it back, however it is told to end."""
+"""``./roomba play`` of a robot on a serial line releases it, however the command ends."""
 
 from __future__ import annotations
 

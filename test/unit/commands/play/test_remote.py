@@ -1,4 +1,4 @@
-"""``./roomba play`` with a bridge that hands on no commands: the robot is told, and not driven."""
+"""``./roomba play`` with a bridge that passes no drive commands: the robot gets errands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stages by import path: what cannot be one is told at once, and what it gives is looked at."""
+"""Stages by import path: an unsuitable one is refused at once, and its results are checked."""
 
 from __future__ import annotations
 

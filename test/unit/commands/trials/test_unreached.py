@@ -1,4 +1,4 @@
-"""Floor to which no way leads: it is told when it is as much as a room, and where it is."""
+"""Floor to which no way leads: it is reported, with its place, if it is as large as a room."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said to a Create 2."""
+"""The commands that are sent to a Create 2."""
 
 from __future__ import annotations
 

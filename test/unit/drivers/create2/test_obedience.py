@@ -1,4 +1,4 @@
-"""Wheels that turn otherwise than they are told."""
+"""Wheels that do not turn as commanded are noticed."""
 
 from __future__ import annotations
 

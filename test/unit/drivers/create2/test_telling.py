@@ -1,4 +1,4 @@
-"""What packets say."""
+"""What the packets of a Create 2 mean."""
 
 from __future__ import annotations
 

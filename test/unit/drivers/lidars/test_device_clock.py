@@ -1,4 +1,4 @@
-"""A device's time, by what its messages take on the way."""
+"""A device's clock, estimated from how long its messages take."""
 
 from __future__ import annotations
 

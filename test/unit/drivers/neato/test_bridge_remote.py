@@ -1,4 +1,4 @@
-"""A Neato that can be told and not driven: what a bridge tells of it, and what it is told."""
+"""A Neato that takes errands but no drive commands: what its bridge reports, and sends to it."""
 
 from __future__ import annotations
 

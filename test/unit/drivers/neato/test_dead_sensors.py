@@ -1,4 +1,4 @@
-"""A Neato that goes on answering, but no longer tells what it must: it stands, and says so."""
+"""A Neato that still answers, but without the needed sensor values: it stands, and says so."""
 
 from __future__ import annotations
 

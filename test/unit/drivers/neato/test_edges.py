@@ -1,4 +1,4 @@
-"""A Neato that is driven at stairs, by one that wants it to go on: no wheel goes over."""
+"""A Neato that is driven at stairs by a caller that goes on: no wheel goes over the edge."""
 
 from __future__ import annotations
 

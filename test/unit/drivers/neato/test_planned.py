@@ -1,4 +1,4 @@
-"""Where the wheels should be, by what they were told: as the made-up robot's wheels come there."""
+"""Where the wheels should be by their commands, against the wheels of the made-up robot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a question makes of good answers, bad ones and none."""
+"""How a question to the robot deals with good answers, bad ones and none."""
 
 from __future__ import annotations
 

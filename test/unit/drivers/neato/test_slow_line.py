@@ -1,4 +1,4 @@
-"""What a driver tells of where it is, on a line on which a scan takes half a second."""
+"""The pose that a driver reports, on a line on which a scan takes half a second."""
 
 from __future__ import annotations
 

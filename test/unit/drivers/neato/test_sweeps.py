@@ -1,4 +1,4 @@
-"""When a sweep was measured that a robot tells without a time."""
+"""When a sweep was measured that the robot sends without a time."""
 
 from __future__ import annotations
 

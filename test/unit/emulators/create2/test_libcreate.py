@@ -1,4 +1,4 @@
-"""AutonomyLab/libcreate, by the bytes that it sends: they were heard while it drove this robot.
+"""AutonomyLab/libcreate, by the bytes that it sent while it drove this made-up robot.
 
 Heard of its version of April 2025, built as it is, which took 314 frames, none spoilt: connect,
 full mode, ``drive(-0.2, 0)``, ``driveRadius(0.1, 0.5)``, ``driveWheels(0.1, -0.1)``, motors,

@@ -1,4 +1,4 @@
-"""A program of others that drives Create 2s, as it is, drives the made-up one."""
+"""The unchanged library pycreate2 drives the made-up Create 2."""
 
 from __future__ import annotations
 

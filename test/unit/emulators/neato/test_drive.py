@@ -1,4 +1,4 @@
-"""The wheels of a made-up Neato: they drive what they are told and stand then."""
+"""The wheels of a made-up Neato: they drive the commanded distance, and then stand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What made-up Neatos tell of themselves has the form that real ones give it."""
+"""The answers of made-up Neatos about themselves have the form of real ones."""
 
 from __future__ import annotations
 

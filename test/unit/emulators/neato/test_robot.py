@@ -1,4 +1,4 @@
-"""A made-up Neato: what it answers, and what it does then."""
+"""A made-up Neato: its answers to commands, and its actions."""
 
 from __future__ import annotations
 

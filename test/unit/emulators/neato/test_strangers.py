@@ -1,4 +1,4 @@
-"""Programs of others, by the bytes that they send: each is answered in the form that it reads.
+"""Other people's programs, by the bytes that they send: each gets answers that it can read.
 
 ``neatoserial.py`` of jeroenterheerdt/neato-serial, and ``neato_driver.py`` of
 mikeferguson/neato_robot. Tried by hand: the first as it is, the other, of Python 2, with its text

@@ -1,4 +1,4 @@
-"""The emergency stop of a live robot, with a robot that notes what it is told."""
+"""The emergency stop of a live robot, with a robot that notes its commands."""
 
 from __future__ import annotations
 

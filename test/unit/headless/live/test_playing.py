@@ -1,4 +1,4 @@
-"""Playing with the home of a live robot, as the page does, and the truth that is told of it."""
+"""Playing with the home of a live robot, as the page does, and the truth that the page gets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A robot whose time passes by itself, and what is asked of it from other threads."""
+"""A robot whose time passes by itself, and requests to it from other threads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The floor that another round is made for: by what is in reach, and by made-up plans."""
+"""The floor for which another round is made: by what is in reach, and by made-up plans."""
 
 from __future__ import annotations
 

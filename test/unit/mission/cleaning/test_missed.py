@@ -1,4 +1,4 @@
-"""Floor that is not clean: the patches, and the reasons that are told."""
+"""Floor that is not clean: its patches, and the reasons that are reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One path after the other: out of zones, home, and what is remembered on the way."""
+"""One path after another: out of zones, home, and what the robot remembers on the way."""
 
 from __future__ import annotations
 

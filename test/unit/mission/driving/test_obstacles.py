@@ -1,4 +1,4 @@
-"""What was felt and seen besides the map: how long it is remembered, and what is in the way."""
+"""Obstacles felt or seen beside the map: how long they are remembered, which are in the way."""
 
 from __future__ import annotations
 

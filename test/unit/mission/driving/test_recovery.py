@@ -1,4 +1,4 @@
-"""Attempts to get free: each ends, each another way, and it is seen whether they helped."""
+"""Attempts to get free: each ends, each differs, and it is noticed whether they helped."""
 
 from __future__ import annotations
 

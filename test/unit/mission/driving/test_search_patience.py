@@ -1,4 +1,4 @@
-"""When an errand is given up whose robot does not know its place."""
+"""When an errand is given up because the robot does not know its pose."""
 
 from __future__ import annotations
 

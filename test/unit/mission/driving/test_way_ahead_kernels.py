@@ -1,4 +1,4 @@
-"""How far a path is clear, told as a slow walk along it tells it."""
+"""How far a path is clear, against a slow walk along it."""
 
 from __future__ import annotations
 

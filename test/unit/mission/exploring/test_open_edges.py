@@ -1,4 +1,4 @@
-"""What an exploration tells of where its map still ends."""
+"""What an exploration reports of places where its map still ends."""
 
 from __future__ import annotations
 

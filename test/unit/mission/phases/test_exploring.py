@@ -1,4 +1,4 @@
-"""The phase of exploring: what is touched beside a place to look from ends the way there."""
+"""The phase of exploring: a touch close to a viewpoint ends the way there."""
 
 from __future__ import annotations
 

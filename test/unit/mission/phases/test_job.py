@@ -1,4 +1,4 @@
-"""The job under way: its ledgers, and what is told at its end."""
+"""The job under way: its ledgers, and its report at the end."""
 
 from __future__ import annotations
 

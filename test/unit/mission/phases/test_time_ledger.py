@@ -1,4 +1,4 @@
-"""What the time of a clean goes into: tick by tick, and of a whole run."""
+"""How the time of a clean is spent: tick by tick, and over a whole run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Following a path, against places tried one by one along it."""
+"""Following a path, against a search over many places along it."""
 
 from __future__ import annotations
 

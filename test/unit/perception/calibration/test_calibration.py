@@ -1,4 +1,4 @@
-"""What was measured is told in the words of wheels, and goes on in another belief."""
+"""A calibration is expressed in numbers of the wheels, and is carried on in another belief."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The lidar is where it was measured to be, as the same value as long as that is the same."""
+"""The lidar has its measured mount, as the same object as long as the mount stays the same."""
 
 from __future__ import annotations
 

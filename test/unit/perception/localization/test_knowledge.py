@@ -1,4 +1,4 @@
-"""How well the place is known, and the reason that is said: each circumstance by itself."""
+"""How well the pose is known, and the reason that is given: each circumstance by itself."""
 
 from __future__ import annotations
 

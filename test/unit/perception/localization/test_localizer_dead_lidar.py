@@ -1,4 +1,4 @@
-"""A robot whose lidar says nothing: how it says so, and how unsure it is."""
+"""A robot whose lidar is silent: how it reports that, and how uncertain it is."""
 
 from __future__ import annotations
 

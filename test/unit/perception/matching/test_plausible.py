@@ -1,4 +1,4 @@
-"""Scans of no planar lidar in m and rad are known as such; single beams that failed are none."""
+"""Scans that no planar lidar in m and rad makes are recognized; single failed beams are not."""
 
 from __future__ import annotations
 

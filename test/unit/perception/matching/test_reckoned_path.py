@@ -1,4 +1,4 @@
-"""Where dead reckoning had the robot lately: any time is found between what was told."""
+"""The recent poses by dead reckoning, at any time between two readings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The compiled search for doorways, each step against what it promises."""
+"""The compiled search for doorways, each step against its docstring."""
 
 from __future__ import annotations
 

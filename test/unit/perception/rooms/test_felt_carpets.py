@@ -1,4 +1,4 @@
-"""Carpets by what the brush felt: votes of places, outlines, and what becomes of both."""
+"""Carpets that the brush felt: votes of places, outlines, and how both change."""
 
 from __future__ import annotations
 

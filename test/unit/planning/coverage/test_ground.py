@@ -1,4 +1,4 @@
-"""The part of the floor that can be got to, against the whole floor cell by cell."""
+"""The part of the floor that can be reached, against the whole floor cell by cell."""
 
 from __future__ import annotations
 

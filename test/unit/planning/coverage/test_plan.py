@@ -1,4 +1,4 @@
-"""What a plan tells of its way, against sums over its legs."""
+"""A plan's figures of its way, against sums over its legs."""
 
 from __future__ import annotations
 

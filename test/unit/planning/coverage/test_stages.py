@@ -1,4 +1,4 @@
-"""A stage of one's own takes the place of ours, and of that one alone."""
+"""A stage of the caller's replaces ours, and no other stage."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Planning on a map that is being made: away from walls, and through what is tight all the same."""
+"""Planning on a growing map: away from walls, and yet through narrow places."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The ring keeps the newest, within its time and its memory, and what is told only once."""
+"""The ring keeps the newest messages within its time and memory, and those sent only once."""
 
 from __future__ import annotations
 

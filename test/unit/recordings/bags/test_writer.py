@@ -1,4 +1,4 @@
-"""Bags that are written here are read by other programs' readers, and after a kill as well."""
+"""Other programs read the bags that are written here, also after a kill."""
 
 from __future__ import annotations
 

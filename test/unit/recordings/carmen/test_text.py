@@ -1,4 +1,4 @@
-"""The text of a CARMEN log: what is a line of it, what is left out, what is refused."""
+"""The text of a CARMEN log: which lines are read, which are ignored, which are refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What becomes of cleans in the table, and their pictures."""
+"""The rows of cleans in the table, and their pictures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What whole commands take: each call in turns, the best counts, and what fails is told."""
+"""The time of whole commands: calls take turns, the best counts, and failures are reported."""
 
 from __future__ import annotations
 

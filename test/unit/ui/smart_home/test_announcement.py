@@ -1,4 +1,4 @@
-"""What Home Assistant is told of the robot agrees with what the robot takes and tells."""
+"""The entities announced to Home Assistant agree with the robot's commands and messages."""
 
 from __future__ import annotations
 

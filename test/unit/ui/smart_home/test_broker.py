@@ -1,4 +1,4 @@
-"""The connection to a real broker: password, TLS, floods; and to what hangs, or is no broker."""
+"""The connection to a real broker: password, TLS, floods; and to servers that hang, or are none."""
 
 from __future__ import annotations
 

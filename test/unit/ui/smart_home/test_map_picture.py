@@ -1,4 +1,4 @@
-"""The map as a picture, and Valetudo's map in it, read back by what reads such files."""
+"""The map as a picture, and Valetudo's map in it, read back by our reader of such files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the broker is told of a robot, and how often, by looks that the test makes."""
+"""What the bridge publishes about a robot, and how often; the test makes the bridge look."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tiles of the page's server become the layer that it has."""
+"""Tiles from the page's server are put together to the server's layer."""
 
 import numpy as np
 import pytest

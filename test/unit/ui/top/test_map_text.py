@@ -1,4 +1,4 @@
-"""The map in characters shows what is where, at any size."""
+"""The map in characters shows each thing at its place, at any size."""
 
 import math
 

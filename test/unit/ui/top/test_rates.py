@@ -1,4 +1,4 @@
-"""Rates are what nodes say that they sent, counted between two times of asking."""
+"""Rates of messages: nodes tell how many they sent, compared between two requests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Any request of any route is answered soon, and what is obeyed is within its limits.
+"""Any request to any route is answered soon, and obeyed only within its limits.
 
 All routes are taken from the application. ``ROOMBA_EXAMPLES=5000`` tries so many requests of each,
 others each time.

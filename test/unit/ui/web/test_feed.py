@@ -1,4 +1,4 @@
-"""The trail of what the feed looks at: by the robot's clock, and by the jumps of a recording."""
+"""The trail of the robot that the feed observes: by its clock, and by the jumps of a recording."""
 
 from __future__ import annotations
 

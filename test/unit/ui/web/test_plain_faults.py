@@ -1,4 +1,4 @@
-"""What pydantic tells of a fault, as the project's own errors read."""
+"""Faults that pydantic finds, in the words of the project's own errors."""
 
 from __future__ import annotations
 

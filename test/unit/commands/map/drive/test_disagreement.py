@@ -1,4 +1,4 @@
-"""When the map and odometry tell of different ways."""
+"""When the map and odometry give different lengths of the way."""
 
 from __future__ import annotations
 

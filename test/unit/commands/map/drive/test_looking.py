@@ -1,4 +1,4 @@
-"""A lidar is looked at before its drive is followed: what was told wrong, or not at all."""
+"""A lidar is examined before its drive is mapped: wrong and missing values are found."""
 
 from __future__ import annotations
 

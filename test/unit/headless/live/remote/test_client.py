@@ -1,4 +1,4 @@
-"""A robot that cleans by its own brain, seen and told as a page does it."""
+"""A robot that cleans by its own brain, seen and commanded as a page does it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a clean by a robot's own brain ended is told by where it rests."""
+"""Where a robot with its own brain comes to rest shows how its clean ended."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Wishes are told one after another, each within a deadline, and stops before the end."""
+"""Wishes are sent one after another, each within a deadline; stops are sent before the end."""
 
 from __future__ import annotations
 

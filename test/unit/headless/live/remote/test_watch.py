@@ -1,4 +1,4 @@
-"""A robot is looked at until the end, and it is told when that does not go on."""
+"""A robot is observed until the end, and it is reported when the observation fails."""
 
 from __future__ import annotations
 

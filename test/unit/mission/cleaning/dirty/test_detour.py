@@ -1,4 +1,4 @@
-"""A way put into a path: against plain loops over its points, with made-up plans."""
+"""A detour inserted into a path: against plain loops over its points, with made-up plans."""
 
 from __future__ import annotations
 

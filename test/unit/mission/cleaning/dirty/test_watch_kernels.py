@@ -1,4 +1,4 @@
-"""Whether dirty floor may be close by, told as a slow look over all cells tells it."""
+"""Whether dirty floor may be close by, against a slow check of all cells."""
 
 from __future__ import annotations
 

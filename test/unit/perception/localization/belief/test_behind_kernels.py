@@ -1,4 +1,4 @@
-"""What a mirror shows, and what is seen through a wall of the map, does not drag the place away."""
+"""Beams into a mirror, or through a wall of the map, do not drag the pose away."""
 
 from __future__ import annotations
 

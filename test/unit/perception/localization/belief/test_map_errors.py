@@ -1,4 +1,4 @@
-"""On maps whose walls are somewhere in their cells the place is right, and as unsure as it is."""
+"""On maps whose walls lie anywhere in their cells, the pose and its covariance are right."""
 
 from __future__ import annotations
 

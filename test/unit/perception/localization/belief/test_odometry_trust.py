@@ -1,4 +1,4 @@
-"""Wheels that err far more than they are said to are trusted less, and the place is kept."""
+"""Wheels that err far more than configured are trusted less, and the pose is kept."""
 
 from __future__ import annotations
 

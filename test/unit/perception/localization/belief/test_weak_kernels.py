@@ -1,4 +1,4 @@
-"""Along walls that are bare a scan tells nothing, however they lie in their cells."""
+"""A scan tells nothing about the position along bare walls, however these lie in their cells."""
 
 from __future__ import annotations
 

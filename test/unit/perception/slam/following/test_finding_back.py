@@ -1,4 +1,4 @@
-"""Finding back where scans stop to fit because dead reckoning is wrong."""
+"""Finding the robot again where scans stop fitting because dead reckoning is wrong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The pace that a follower goes on with, and matches from farther away that it takes."""
+"""The pace at which a follower predicts, and the matches from farther away that it accepts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Planes in which a robot saw itself: of a mirror that it drives to, and of nothing that stands."""
+"""Planes in which a robot saw itself: of a mirror that it drives to, not of things that stand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The best pose of a wide window: the same that trying all of them finds."""
+"""The best pose of a wide window: the same as by trying all poses."""
 
 from __future__ import annotations
 

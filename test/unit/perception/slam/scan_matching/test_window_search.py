@@ -1,4 +1,4 @@
-"""The search finds what trying all poses of the window finds, and looks past what it is told."""
+"""The search finds the same as trying all poses of the window, also beside a pose to leave out."""
 
 from __future__ import annotations
 

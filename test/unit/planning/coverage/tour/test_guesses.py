@@ -1,4 +1,4 @@
-"""Connections of a tour that were guessed, measured; and what an order gains by it."""
+"""Guessed costs of a tour's connections are measured; and what the order gains by that."""
 
 from __future__ import annotations
 

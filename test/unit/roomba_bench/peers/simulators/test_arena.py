@@ -1,4 +1,4 @@
-"""What a simulating peer tells of scans, beside what ours tells of the same poses."""
+"""Scans of a simulating peer, against ours at the same poses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The way that viewers are shown: what the robot did not drive is no part of it."""
+"""The trail that viewers see: it has no stretch that the robot did not drive."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scans are kept with where odometry had the robot, and are put right by a sweep."""
+"""Scans are kept with their poses by odometry, and corrected by the lidar's sweep."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong with a gyro is seen by scans and odometry, and a good one is left alone."""
+"""Scans and odometry show a gyro's errors; a good gyro is left alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a lidar is mounted is seen by its scans against the odometry."""
+"""Scans against odometry show how a lidar is mounted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Odometry that no wheels tell is known by the scans beside it, and poor odometry is not."""
+"""Scans show odometry that is not from wheels; odometry that is only poor is not taken for it."""
 
 from __future__ import annotations
 

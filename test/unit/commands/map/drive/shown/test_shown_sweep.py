@@ -1,4 +1,4 @@
-"""How a lidar sweeps is seen by its scans of turns."""
+"""Scans in turns of the robot show how a lidar sweeps."""
 
 from __future__ import annotations
 
