@@ -20,7 +20,7 @@ from roomba.files.home_layer import MAP_NAME, Layer, files_of_home, read_layer
 from roomba.files.occupancy_map import load_map
 from roomba.files.strict_yaml import YamlFile
 from roomba.geometry import Pose
-from roomba.grid import OccupancyMap
+from roomba.grid import UNKNOWN, OccupancyMap
 from roomba.world.home.dirt import DirtField
 from roomba.world.home.home import DirtSource, Home, StationPlace
 from roomba.world.home.turned import with_steps
@@ -33,7 +33,7 @@ from roomba.world.layers.assembly import (
 )
 from roomba.world.layers.automatic_station import automatic_station
 from roomba.world.layers.definite_map import definite_map
-from roomba.world.layers.paper import is_on_paper, paper_end
+from roomba.world.layers.paper import is_on_paper, paper_around, paper_end
 from roomba.world.layers.parts import Parts, parts_of
 
 EVEN_DIRT = 0.5
@@ -81,6 +81,7 @@ def _assembled(
     if docked is None:
         docked, place = _found_station(floor, paper, file, body)
     _check_body_fits(floor, docked, file, body)
+    floor = _without_paper(floor, paper, docked, body)
     station = station_on(floor, docked, body.radius)
     floor = with_station(floor, station, docked, body.radius)
     _check_dirt_on_floor(floor, parts, file)
@@ -116,6 +117,16 @@ def _found_station(
     if is_on_paper(floor.map.frame, floor.taken, body.radius, docked, paper):
         return docked, StationPlace.ON_PAPER
     return docked, StationPlace.FOUND
+
+
+def _without_paper(
+    floor: FurnishedFloor, end: Mask, docked: Pose, body: BodyConfig
+) -> FurnishedFloor:
+    """Return the grids of a home without the paper around it, which is as unknown as all beyond."""
+    around = paper_around(floor.map, floor.taken, body.radius, docked, end)
+    values = np.where(around, np.int8(UNKNOWN), floor.map.values)
+    occupancy = OccupancyMap(floor.map.frame, values)
+    return replace(floor, map=occupancy, solid=floor.solid | around)
 
 
 def _check_body_fits(floor: FurnishedFloor, docked: Pose, file: YamlFile, body: BodyConfig) -> None:

@@ -64,6 +64,26 @@ def off_paper(floor: Mask, end: Mask, reach: float, resolution: float) -> Mask:
     return away if np.count_nonzero(away) >= max(least, 1.0) else largest
 
 
+def paper_around(map: OccupancyMap, solid: Mask, radius: float, pose: Pose, end: Mask) -> Mask:
+    """Return the floor that is paper around the home in which a docked robot is.
+
+    Bool over the map's grid; see :func:`is_on_paper`. It is nothing of the floor that hangs
+    together with the robot's, and nothing at all if that is on paper itself. What is ``solid`` lets
+    no body through.
+    """
+    here = map.frame.cell_of(pose.x, pose.y)
+    paper = np.zeros_like(end)
+    if end.any():
+        paper = _paper_where_body_fits(map.frame, solid, radius, end)
+    if paper[here] or not paper.any():
+        return np.zeros_like(end)
+    floors = numbered_regions(map.values == FREE)
+    is_paper = np.zeros(int(floors.max()) + 1, np.bool_)
+    is_paper[floors[paper]] = True
+    is_paper[[0, floors[here]]] = False
+    return np.asarray(is_paper[floors])
+
+
 def is_on_paper(frame: GridFrame, solid: Mask, radius: float, pose: Pose, end: Mask) -> bool:
     """Whether a body of ``radius``, m, stands on floor that reaches much of the paper's ``end``.
 
@@ -71,10 +91,14 @@ def is_on_paper(frame: GridFrame, solid: Mask, radius: float, pose: Pose, end: M
     """
     if not end.any():
         return False
-    floor = where_body_fits(frame, solid, radius)
     row, column = frame.cell_of(pose.x, pose.y)
-    reach = radius + 2.0 * frame.resolution
-    return bool(_papers(floor, end, reach, frame.resolution)[row, column])
+    return bool(_paper_where_body_fits(frame, solid, radius, end)[row, column])
+
+
+def _paper_where_body_fits(frame: GridFrame, solid: Mask, radius: float, end: Mask) -> Mask:
+    """Return where the middle of a body of ``radius``, m, may be on paper."""
+    floor = where_body_fits(frame, solid, radius)
+    return _papers(floor, end, radius + 2.0 * frame.resolution, frame.resolution)
 
 
 def _papers(floor: Mask, end: Mask, reach: float, resolution: float) -> Mask:

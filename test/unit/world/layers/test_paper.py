@@ -11,7 +11,7 @@ from roomba.files.occupancy_map import save_map
 from roomba.geometry import Pose
 from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.world.home.home import Home, StationPlace
-from roomba.world.layers.layer import load_home
+from roomba.world.layers.layer import EVEN_DIRT, load_home
 from roomba.world.layers.paper import off_paper
 
 
@@ -39,6 +39,19 @@ def test_the_station_is_in_the_home_and_not_on_the_paper(tmp_path: Path) -> None
     home = home_of(plan(), tmp_path)
     assert is_inside(home)
     assert home.station_place is StationPlace.FOUND
+
+
+@pytest.mark.parametrize("station", [None, Pose(4.0, 4.0, 0.0)])
+def test_the_paper_around_a_home_is_no_floor(tmp_path: Path, station: Pose | None) -> None:
+    home = home_of(plan(), tmp_path, station)
+    for x, y in ((1.0, 1.0), (7.9, 4.0), (2.0, 7.9)):
+        cell = home.map.frame.cell_of(x, y)
+        assert home.map.values[cell] == UNKNOWN
+        assert home.solid[cell]
+    # The station is solid, or it leans on the wall.
+    assert home.map.free_area == pytest.approx(9.0, abs=0.05)
+    dirt = home.dirt_sources[0]
+    assert dirt.amount == pytest.approx(EVEN_DIRT * home.map.free_area, rel=0.01)
 
 
 def test_what_is_too_small_for_a_home_is_none(tmp_path: Path) -> None:
@@ -85,6 +98,17 @@ def test_a_home_with_a_gap_at_the_end_of_the_paper_is_no_paper(
 def test_a_person_may_put_it_on_the_paper(tmp_path: Path) -> None:
     home = home_of(plan(), tmp_path, Pose(1.0, 1.0, 0.0))
     assert home.station_place is StationPlace.TOLD
+    assert home.map.values[home.map.frame.cell_of(7.0, 7.0)] == FREE
+    assert home.map.values[home.map.frame.cell_of(4.0, 4.0)] == FREE
+
+
+def test_a_robot_on_paper_keeps_all_paper(tmp_path: Path) -> None:
+    parted = plan(home=1.0)
+    parted.values[:, 60] = OCCUPIED
+    home = home_of(parted, tmp_path)
+    assert home.station_place is StationPlace.ON_PAPER
+    for x in (1.0, 7.0):
+        assert home.map.values[home.map.frame.cell_of(x, 7.0)] == FREE
 
 
 def test_of_small_plans_a_share_is_enough() -> None:
