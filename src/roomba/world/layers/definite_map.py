@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.grid import FREE, MOST_CELLS, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.raster.regions import dilated, large_regions, numbered_regions
 
 SPECK: Final = 0.01
@@ -26,10 +26,30 @@ FENCE: Final = 0.1
 """m; thickness of a wall where a map ends: what a lidar sees a little too far lies in it."""
 MARGIN: Final = 1.0
 """m; so wide an unknown border is kept around what is known: it is as solid as all outside."""
+_COARSE: Final = 0.2
+"""m; of cells larger than this a robot does not know well enough where their walls are."""
+_SPLIT: Final = 0.1
+"""m; such cells are split into cells of this size at most."""
 _HARDLY: Final = 10
 """%; a cell that is less likely solid, or to a smaller part, is as good as unknown."""
 _AROUND: Final = np.ones((3, 3), np.bool_)
 """A cell and those over its sides and corners."""
+
+
+def with_small_cells(map: OccupancyMap) -> OccupancyMap:
+    """Return a map of the same floor whose cells are no larger than a robot can do with.
+
+    Cells above 0.2 m are split into smaller ones of the same value, as small as MOST_CELLS allows;
+    other maps stay what they are.
+    """
+    frame = map.frame
+    if frame.resolution <= _COARSE + 1e-9:
+        return map
+    most = math.isqrt(MOST_CELLS // map.values.size)
+    parts = max(1, min(math.ceil(frame.resolution / _SPLIT - 1e-9), most))
+    values = np.repeat(np.repeat(map.values, parts, axis=0), parts, axis=1)
+    size = frame.resolution / parts
+    return OccupancyMap(GridFrame(size, frame.origin_x, frame.origin_y, *values.shape), values)
 
 
 def definite_map(map: OccupancyMap) -> OccupancyMap:

@@ -32,7 +32,7 @@ from roomba.world.layers.assembly import (
     with_station,
 )
 from roomba.world.layers.automatic_station import automatic_station
-from roomba.world.layers.definite_map import definite_map
+from roomba.world.layers.definite_map import definite_map, with_small_cells
 from roomba.world.layers.paper import is_on_paper, paper_around, paper_end
 from roomba.world.layers.parts import Parts, parts_of
 
@@ -55,7 +55,7 @@ def load_home(
     :class:`HomeError`: ``file:line: reason``.
     """
     map_path, layer_path = files_of_home(name_or_path, homes_directory)
-    drawn = load_map(map_path)
+    drawn = with_small_cells(load_map(map_path))
     occupancy = definite_map(drawn)
     if layer_path is None:
         layer, file = Layer(), YamlFile(map_path, {}, None)

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from roomba.commands.trials.runs import run_trial
 from roomba.commands.trials.trial import Trial
 from roomba.files.occupancy_map import save_map
-from roomba.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
+from roomba.grid import FREE, MOST_CELLS, OCCUPIED, UNKNOWN, GridFrame, OccupancyMap
 from roomba.perception.matching.surface_field import SurfaceField
-from roomba.world.layers.definite_map import FENCE, MARGIN, SPECK, definite_map
+from roomba.world.layers.definite_map import FENCE, MARGIN, SPECK, definite_map, with_small_cells
 from roomba.world.layers.layer import load_home
 
 SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
@@ -180,6 +180,31 @@ def test_small_unknown_spots_are_floor_where_only_floor_is_beside_them(inside: V
         # The others are small as well.
         wanted[wanted == UNKNOWN] = OCCUPIED
     assert np.array_equal(definite_map(map_of(values)).values, wanted)
+
+
+@pytest.mark.parametrize(("cell", "parts"), [(0.05, 1), (0.2, 1), (0.25, 3), (0.5, 5), (1.0, 10)])
+def test_cells_in_which_walls_are_anywhere_are_split(cell: float, parts: int) -> None:
+    drawn = map_of(room(), cell)
+    split = with_small_cells(drawn)
+    assert (split is drawn) == (parts == 1)
+    assert split.frame.extent == pytest.approx(drawn.frame.extent)
+    assert split.frame.resolution <= max(cell if cell <= 0.2 else 0.0, 0.1)
+    assert np.array_equal(split.values, np.kron(drawn.values, np.ones((parts, parts), np.int8)))
+
+
+def test_so_many_cells_are_split_no_further_than_there_is_room_for() -> None:
+    drawn = map_of(np.zeros((2_000, 3_000), np.int8), 0.5)
+    assert with_small_cells(drawn).values.size <= MOST_CELLS
+    whole = map_of(np.zeros((4_000, 5_000), np.int8), 0.5)
+    assert with_small_cells(whole).frame == whole.frame
+
+
+def test_a_room_of_coarse_cells_is_cleaned_without_a_touch(tmp_path: Path) -> None:
+    values = np.full((8, 9), OCCUPIED, np.int8)
+    values[1:-1, 1:-1] = FREE
+    save_map(map_of(values, 0.5), tmp_path / "map.yaml")
+    found = run_trial(Trial(home=str(tmp_path), seed=1)).figures
+    assert (found.outcome, found.docked, found.hits) == ("COMPLETED", True, 0)
 
 
 @pytest.mark.parametrize("rim", [5, 300])
