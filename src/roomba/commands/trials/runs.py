@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -107,9 +108,17 @@ class TrialSetup:
         if trial.battery < 1.0:
             self.robot.simulator.set_charge(trial.battery)
             self.robot.look()
-        self.coverable = coverable_floor(
-            self.home, self.robot.context, trial.request, self.things, self.config, mission, docking
+        self._coverable = partial(
+            coverable_floor,
+            self.home,
+            self.robot.context,
+            trial.request,
+            self.things,
+            self.config,
+            mission,
+            docking,
         )
+        self.coverable = self._coverable()
 
     def run(self, observers: Iterable[RunObserver] = ()) -> Run:
         """Clean; raises CleanRefusedError and CommandRefusedError."""
@@ -120,6 +129,8 @@ class TrialSetup:
         began = time.perf_counter()
         record = robot.clean(self.trial.request)
         wall = time.perf_counter() - began
+        if self.home.moving:
+            self.coverable = self._coverable(ended=robot.seen.time)
         covered = record.truth.swept & self.coverable
         cell = record.truth.cell_area
         result, rows = record.result, robot.passed

@@ -148,6 +148,27 @@ def test_what_is_solid_in_truth_is_not_coverable(room: Path) -> None:
     assert not kept.coverable[row, column]
 
 
+@pytest.mark.parametrize("moves_at", [5.0, 3000.0])
+def test_floor_below_what_stood_there_to_the_end_is_not_coverable(
+    room: Path, tmp_path: Path, moves_at: float
+) -> None:
+    """A box of 0.3 m that is on the map, and moves aside while it cleans, or not before the end."""
+    save_map(load_map(room), tmp_path / "map.yaml")
+    (tmp_path / "home.yaml").write_text(
+        "station: {x: 0.3, y: 0.8, facing: west}\n"
+        "furniture:\n"
+        "  - {name: box, kind: bookshelf, x: 1.2, y: 0.45, facing: north,\n"
+        "     size: {width: 0.3, depth: 0.3}}\n"
+        "moving:\n"
+        f"  - {{furniture: box, to: [{{at: {moves_at}, x: 2.1, y: 0.45, takes: 1.0}}]}}\n"
+    )
+    run = run_trial(Trial(home=str(tmp_path), seed=5))
+    cell = run.truth.frame.cell_of(1.2, 0.45)
+    assert run.coverable[cell] == (moves_at < run.figures.duration_s)
+    if moves_at > run.figures.duration_s:
+        assert run.figures.fraction > 0.98
+
+
 def test_a_part_of_the_floor_is_wanted(room: Path) -> None:
     spot = CleanRequest(CleanMode.ZONES, zones=((1.0, 0.1, 1.4, 1.7),))
     setup = TrialSetup(Trial(home=str(room), station=Pose(0.3, 0.8, math.pi), request=spot))
