@@ -8,6 +8,8 @@ plain; times are s of the robot's clock.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -64,6 +66,7 @@ class Mapper:
         self._lidar: LidarModel | None = None
         self._relocation = MapRelocation(config)
         self._is_elsewhere = False
+        self._missed_since = math.inf
 
     @classmethod
     def taken_up(
@@ -126,7 +129,7 @@ class Mapper:
             self._relocate(stamp, points)
             return
         if self._is_elsewhere or self._finding_back.is_without_hold(follower):
-            self._begin_piece(Carried.TOLD if self._is_elsewhere else self._seen_carried())
+            self._begin_piece(Carried.TOLD if self._is_elsewhere else self._seen_carried(stamp))
         follower.follow(stamp)
         self.finish_scan(stamp, ranges)
 
@@ -134,10 +137,12 @@ class Mapper:
         """Do what is left after :meth:`see`, or a kernel, followed the newest scan."""
         follower = self._follower
         if self.version and self._finding_back.is_due:
-            seen = self._seen_carried()
+            seen = self._seen_carried(stamp)
             has_leapt = self._finding_back.search(follower, self._map.clouds())
             if has_leapt:
                 self._begin_piece(seen)
+        if follower.is_sure and stamp > self._missed_since:
+            self._missed_since = math.inf
         follower.compare_turns(stamp)
         is_swept = self._lidar is not None and self._lidar.time_increment
         still = follower.following.still if is_swept else ranges
@@ -204,6 +209,13 @@ class Mapper:
         """
         self._relocation.set_down()
         self._is_elsewhere = self.version > 0
+
+    def miss(self, since: float) -> None:
+        """Tell that neither scans nor odometry came for long after ``since``, s.
+
+        If the next scan does not fit where odometry has leapt to, that counts as carried.
+        """
+        self._missed_since = since
 
     def told(self, pose: Pose) -> None:
         """Go on from a reported pose of the robot, map frame, right to within a few cm."""
@@ -325,8 +337,9 @@ class Mapper:
         if found is not None:
             self.told(Pose(*found.tolist()))
 
-    def _seen_carried(self) -> Carried | None:
-        return Carried.SEEN if self._finding_back.shows_carried else None
+    def _seen_carried(self, stamp: float) -> Carried | None:
+        is_missed = stamp > self._missed_since
+        return Carried.SEEN if is_missed or self._finding_back.shows_carried else None
 
     def _begin_piece(self, carried: Carried | None) -> None:
         """Begin a submap of which no scan tells where it lies; scans are matched to it alone.

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from roomba.commands.map.blind_map import BlindMap
 from roomba.commands.map.drive.odometry_gaps import ALWAYS, GapsInOrder, OdometryGap
+from roomba.commands.map.drive.pauses import PauseSeeker
 from roomba.commands.map.drive.trajectory import Trajectory
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig
@@ -103,6 +104,7 @@ class MapReplay:
         self._is_lifted = False
         self._turning = NewestTurning()
         self._waiting = WaitingScan()
+        self._pauses = PauseSeeker()
 
     @property
     def by_odometry(self) -> NDArray[np.float64]:
@@ -125,8 +127,9 @@ class MapReplay:
         apart, laid = self.mapper.ways_apart, self.mapper.parts_laid
         if laid:
             told.append(
-                "the robot seems to have been carried: what it saw from then on was found on the "
-                f"rest of the map, and is drawn there (parts of the map: {laid})"
+                "the robot seems to have been carried, or driven while nothing was recorded: what "
+                "it saw from then on was found on the rest of the map, and is drawn there (parts "
+                f"of the map: {laid})"
             )
         if apart:
             told.append(
@@ -173,6 +176,9 @@ class MapReplay:
             here = self._by_scans.at(stamp, self.mapper.pace)
             self._by_scans, self._frame = None, here.compose(pose.inverse())
             self.mapper.end_guessing(*self._wheel_noise)
+        paused = self._pauses.hear(stamp)
+        if paused is not None:
+            self.mapper.miss(paused)
         self._move(stamp, self._frame.compose(pose))
 
     def _move_by_scans(self, stamp: float) -> None:
@@ -210,6 +216,7 @@ class MapReplay:
 
     def _hear_scan(self, stamp: float, scan: LidarScan) -> None:
         """Keep a scan until odometry has reached its last beam, or the next scan comes."""
+        self._pauses.see(stamp)
         if self._gaps.has(stamp):
             self._move_by_scans(stamp)
         if not math.isfinite(self._stamp):

@@ -11,12 +11,14 @@ import pytest
 from fixtures.drives.made_logs import BEAMS, BEGAN, Item, changed, drive, held, pose_at, write_bag
 
 from roomba.commands.map.drive.mapped import MappedDrive, mapped_drive
+from roomba.geometry import Pose
 from roomba.perception.slam.mapper import Mapper
 from roomba.perception.slam.submaps.heading_drift import HeadingDrift
 from roomba.recordings.drives.choice import Wanted
 from roomba.recordings.readings import Lifted
 
 SECONDS = 40.0
+SLIP = Pose(4.0, -3.0, 2.0)
 BEGIN = pose_at(0.0).inverse()
 
 
@@ -25,10 +27,11 @@ def mapped(path: Path, items: list[Item]) -> MappedDrive:
     return mapped_drive([write_bag(path / "made.bag", items)], wanted, lambda share, words: None)
 
 
-def off(made: MappedDrive) -> float:
-    """Return the largest distance from the true way, m."""
-    true = [BEGIN.compose(pose_at(stamp - BEGAN)) for stamp in made.trajectory[:, 0].tolist()]
-    ways = made.trajectory[:, 1:3] - [(pose.x, pose.y) for pose in true]
+def off(made: MappedDrive, after: float = 0.0) -> float:
+    """Return the largest distance from the true way after so many s, m."""
+    rows = made.trajectory[made.trajectory[:, 0] >= BEGAN + after]
+    true = [BEGIN.compose(pose_at(stamp - BEGAN)) for stamp in rows[:, 0].tolist()]
+    ways = rows[:, 1:3] - [(pose.x, pose.y) for pose in true]
     return float(np.hypot(*ways.T).max())
 
 
@@ -105,3 +108,19 @@ def test_a_map_that_may_be_bent_is_told(
     monkeypatch.setattr(Mapper, "heading_drift", property(lambda _: drift))
     notes = mapped(tmp_path, drive(10.0)).notes
     assert any("± 9 degrees" in note and "after 42 m" in note for note in notes) == is_told
+
+
+def test_after_a_pause_what_was_seen_before_is_found_where_odometry_is_wrong(
+    tmp_path: Path,
+) -> None:
+    """It drives on while nothing is recorded, and slips."""
+
+    def slipped(_: int, item: Item) -> Item:
+        assert isinstance(item.value, Pose)
+        return item if item.stamp < BEGAN + 20.0 else replace(item, value=SLIP.compose(item.value))
+
+    items = [item for item in drive(SECONDS) if not 15.0 < item.stamp - BEGAN < 30.0]
+    made = mapped(tmp_path, changed(items, "/odom", slipped))
+    assert made.replay.mapper.ways_apart == []
+    assert off(made, 32.0) < 0.05
+    assert any("or driven while nothing was recorded" in note for note in made.notes)

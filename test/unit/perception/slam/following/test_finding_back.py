@@ -137,6 +137,38 @@ def test_what_stops_to_fit_from_one_scan_to_the_next_was_carried() -> None:
     assert mapper._map.graph._carried_to == {len(mapper._map.graph.submaps) - 1: False}
 
 
+@pytest.mark.parametrize("is_missed", [True, False])
+def test_what_does_not_fit_after_a_pause_counts_as_carried(is_missed: bool) -> None:
+    """Odometry has leapt by 3 m meanwhile, and everything looks different."""
+    here, mapper = Pose(4.0, 1.2, 0.0), mapper_at(Pose(4.0, 1.2, 0.0))
+    for tick in range(40):
+        at, now = Pose(0.03 * tick), 0.1 * tick
+        ranges = EYE.scan(here.compose(at))[BEAMS] if tick < 10 else np.full(len(ANGLES), 0.9)
+        if tick >= 10:
+            at, now = Pose(0.03 * tick + 3.0), now + 60.0
+        if tick == 10 and is_missed:
+            mapper.miss(0.1 * tick)
+        mapper.move(now, at, 0.0)
+        mapper.see(now, ranges.astype(np.float32), LIDAR)
+    graph = mapper._map.graph
+    assert graph._carried_to == ({len(graph.submaps) - 1: False} if is_missed else {})
+    assert len(mapper.ways_apart) == 1
+
+
+@pytest.mark.parametrize("is_bridged", [True, False])
+def test_a_pause_after_which_scans_fit_says_nothing_of_later_ones(is_bridged: bool) -> None:
+    here, mapper = Pose(4.0, 1.2, 0.0), mapper_at(Pose(4.0, 1.2, 0.0))
+    for step in range(16):
+        ranges = np.full(len(ANGLES), 0.7 + 0.12 * step) if step > 3 else EYE.scan(here)[BEAMS]
+        if step == (2 if is_bridged else 4):
+            mapper.miss(FAR_APART * step - 1.0)
+        mapper.move(FAR_APART * step, here)
+        mapper.see(FAR_APART * step, ranges.astype(np.float32), LIDAR)
+        here = here.compose(Pose(0.2) if step < 3 else Pose(4.0, 0.0, 0.1))
+    assert len(mapper.ways_apart) == 1
+    assert bool(mapper._map.graph._carried_to) is not is_bridged
+
+
 CORNER = np.array(
     [(x, 2.0) for x in np.arange(-1.5, 2.0, 0.1)] + [(2.0, y) for y in np.arange(-1.5, 2.0, 0.1)]
 )
