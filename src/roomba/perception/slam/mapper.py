@@ -137,7 +137,7 @@ class Mapper:
         """Do what is left after :meth:`see`, or a kernel, followed the newest scan."""
         follower = self._follower
         if self.version and self._finding_back.is_due:
-            seen = self._seen_carried(stamp)
+            seen = Carried.MISSED if stamp > self._missed_since else self._seen_carried(stamp)
             has_leapt = self._finding_back.search(follower, self._map.clouds())
             if has_leapt:
                 self._begin_piece(seen)

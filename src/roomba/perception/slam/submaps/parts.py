@@ -37,6 +37,7 @@ class Carried(Enum):
 
     TOLD = "its wheels hung in the air"
     SEEN = "scans stopped to fit from one to the next"
+    MISSED = "neither scans nor odometry came for long, and then one scan fitted elsewhere"
 
 
 class FoundPart(NamedTuple):

@@ -61,8 +61,8 @@ class SubmapGraph:
         self.links: list[Link] = []
         self._waiting: list[Link] = []
         self._carried_to: dict[int, bool] = {}
-        """Number of each submap that began after the robot was carried -> whether the lifted wheels
-        told that. Not saved: lost at a restart."""
+        """Number of each submap that began after the robot was carried -> whether that is sure, as
+        the lifted wheels tell it. Not saved: lost at a restart."""
         self.laid = 0
         """Number of parts that :meth:`join_parts` found and laid."""
 
@@ -124,7 +124,7 @@ class SubmapGraph:
         """
         count = len(self.submaps)
         if carried is not None:
-            self._carried_to[count] = carried is Carried.TOLD
+            self._carried_to[count] = carried is not Carried.SEEN
         piece = self._config.pieces
         away = piece.deviation + piece.share * unsure_way
         turn = piece.heading_deviation + piece.share * unsure_turn

@@ -151,7 +151,7 @@ def test_what_does_not_fit_after_a_pause_counts_as_carried(is_missed: bool) -> N
         mapper.move(now, at, 0.0)
         mapper.see(now, ranges.astype(np.float32), LIDAR)
     graph = mapper._map.graph
-    assert graph._carried_to == ({len(graph.submaps) - 1: False} if is_missed else {})
+    assert set(graph._carried_to) == ({len(graph.submaps) - 1} if is_missed else set())
     assert len(mapper.ways_apart) == 1
 
 
@@ -216,3 +216,15 @@ def test_a_place_that_is_farther_than_wheels_slip_begins_a_piece(to: Pose, leaps
         mapper.see(0.1 * tick, EYE.scan(there)[BEAMS], LIDAR)
     assert (len(mapper.ways_apart) == 1) is leaps
     assert mapper.pose.distance_to(there.x, there.y) < 0.1
+
+
+def test_a_place_that_one_scan_showed_after_a_pause_is_not_relied_on() -> None:
+    """Neither does odometry say that the robot is there, nor do other scans."""
+    mapper, here = mapper_at(Pose(4.0, 1.2, 0.0)), Pose(4.0, 1.2, 0.0)
+    for tick in range(8):
+        mapper.move(0.1 * tick, Pose(0.02 * tick, 0.0, 0.0), 0.0)
+        mapper.see(0.1 * tick, EYE.scan(here.compose(Pose(0.02 * tick)))[BEAMS], LIDAR)
+    mapper.miss(0.7)
+    mapper.move(60.0, Pose(0.14, 0.0, 0.0), 0.0)
+    mapper.see(60.0, EYE.scan(here.compose(Pose(0.64, 0.3, 0.2)))[BEAMS], LIDAR)
+    assert mapper._map.graph._carried_to == {1: True}
