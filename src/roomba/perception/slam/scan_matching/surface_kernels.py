@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roomba.arrays import Floats
-from roomba.compilation import allocating_entry, entry, inner_part
+from roomba.compilation import allocating_entry, entry, inner_part, part
 from roomba.perception.matching.beams import LidarBeams, is_all_around
 
 X: Final = 0
@@ -30,6 +30,11 @@ _SPAN_IN_DEVIATIONS: Final = 10.0
 """The same, in standard deviations of a range: a noisy lidar needs more of a surface."""
 _MOST_BESIDE: Final = 10
 _LEAST_BESIDE: Final = 2
+_SURELY: Final = 3.0
+"""Standard deviations of a range; a normal is fitted over at least so much of the surface to each
+side, even by more than ``_MOST_BESIDE`` beams, as close by: over less, noise decides it."""
+_WIDEST: Final = 0.8
+"""rad; those more beams are so far to each side at most."""
 _LEAST_POINTS: Final = 3
 _SUMS: Final = 6
 _STRAIGHT: Final = 0.009
@@ -43,7 +48,7 @@ _GRAZING: Final = 0.12
 @allocating_entry
 def room_for_sums(beams: int) -> Floats:
     """Return the work array of :func:`surface_points`."""
-    return np.empty((beams + 2 * _MOST_BESIDE + 1, _SUMS))
+    return np.empty((beams + 2 * _most_beside(beams) + 1, _SUMS))
 
 
 @entry
@@ -56,10 +61,10 @@ def surface_points(
     deviation of a range, m. ``sums`` is a work array from :func:`room_for_sums`.
     """
     beams, directions, mount = ranges.size, lidar.directions, lidar.mount
-    half_span = max(_HALF_SPAN, _SPAN_IN_DEVIATIONS * deviation)
     straight = max(_STRAIGHT, _STRAIGHT_IN_DEVIATIONS * deviation)
     turn_cosine, turn_sine = math.cos(mount[2]), math.sin(mount[2])
     step = _angle_between(directions, beams)
+    most = _most_beside(beams)
     _add_up(ranges, lidar, step, sums)
     count = 0
     for beam in range(beams):
@@ -68,13 +73,12 @@ def surface_points(
             continue
         along_x = turn_cosine * directions[beam, 0] - turn_sine * directions[beam, 1]
         along_y = turn_sine * directions[beam, 0] + turn_cosine * directions[beam, 1]
-        beside = math.ceil(half_span / max(length * step, 1e-6))
-        beside = min(max(beside, _LEAST_BESIDE), _MOST_BESIDE)
+        beside = min(_beams_beside(length, step, deviation), most)
         normal_x, normal_y = 0.0, 0.0
         for side in range(3):
             first = beam if side == 2 else beam - beside
             last = beam if side == 1 else beam + beside
-            is_plane, x, y = _normal(sums, first, last, straight)
+            is_plane, x, y = _normal(sums, most + first, most + last, straight)
             if is_plane:
                 normal_x = turn_cosine * x - turn_sine * y
                 normal_y = turn_sine * x + turn_cosine * y
@@ -91,6 +95,26 @@ def surface_points(
     return count
 
 
+@part
+def _most_beside(beams: int) -> int:
+    """Return how many beams to each side of one there are sums for."""
+    return max(beams // 2, _LEAST_BESIDE)
+
+
+@inner_part
+def _beams_beside(length: float, step: float, deviation: float) -> int:
+    """Return how many beams to each side of one tell how the surface faces that it met.
+
+    ``length`` is its range, m, ``step`` the angle between beams, rad, ``deviation`` that of a
+    range, m.
+    """
+    apart = max(length * step, 1e-6)
+    half_span = max(_HALF_SPAN, _SPAN_IN_DEVIATIONS * deviation)
+    usual = min(math.ceil(half_span / apart), _MOST_BESIDE)
+    by_noise = min(math.ceil(_SURELY * deviation / apart), int(_WIDEST / max(step, 1e-6)))
+    return max(usual, by_noise, _LEAST_BESIDE)
+
+
 @inner_part
 def _angle_between(directions: Floats, beams: int) -> float:
     """Return the angle between two neighbouring beams, rad; 1.0 for a single one."""
@@ -102,17 +126,18 @@ def _angle_between(directions: Floats, beams: int) -> float:
 
 @inner_part
 def _add_up(ranges: NDArray[np.float32], lidar: LidarBeams, step: float, sums: Floats) -> None:
-    """Fill ``sums`` [beams + 2 * _MOST_BESIDE + 1, _SUMS] with running sums over the beams.
+    """Fill ``sums``, a work array of :func:`room_for_sums`, with running sums over the beams.
 
-    The sums begin ``_MOST_BESIDE`` beams before beam 0. A row is for the beams before one: how many
-    ended, and the sums of the ends' x, y, squares and product, lidar's frame. A scan that goes all
-    around continues at its other end; beyond the ends of any other scan there are no beams.
+    The sums begin :func:`_most_beside` beams before beam 0. A row is for the beams before one: how
+    many ended, and the sums of the ends' x, y, squares and product, lidar's frame. A scan that goes
+    all around continues at its other end; beyond the ends of any other scan there are no beams.
     """
     beams, directions = ranges.size, lidar.directions
+    most = _most_beside(beams)
     is_around = is_all_around(beams, step)
     sums[0] = 0.0
     for row in range(sums.shape[0] - 1):
-        place = row - _MOST_BESIDE
+        place = row - most
         beam = place % beams
         length = ranges[beam]
         for column in range(_SUMS):
@@ -137,7 +162,7 @@ def _normal(sums: Floats, first: int, last: int, straight: float) -> tuple[bool,
 
     If the root mean square distance from a line is more than ``straight``, m, there is no plane.
     """
-    before, after = sums[first + _MOST_BESIDE], sums[last + _MOST_BESIDE + 1]
+    before, after = sums[first], sums[last + 1]
     count = after[0] - before[0]
     if count < _LEAST_POINTS:
         return False, 0.0, 0.0

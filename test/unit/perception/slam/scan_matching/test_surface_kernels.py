@@ -52,6 +52,19 @@ def test_noise_turns_walls_a_little() -> None:
     assert np.mean(np.concatenate(turned) < math.radians(12.0)) > 0.95
 
 
+@pytest.mark.parametrize("distance", [0.25, 0.4, 0.7])
+def test_much_noise_does_not_decide_how_a_wall_close_by_faces(distance: float) -> None:
+    """Else a bare corridor seems to tell the way along it."""
+    random, off = np.random.default_rng(1), []
+    for _ in range(20):
+        ranges = wall(distance, 0.7) + random.normal(0.0, 0.05, LIDAR.beams).astype(np.float32)
+        points = points_of(ranges, noise=0.05)
+        near = points[np.hypot(points[:, X], points[:, Y]) < 1.5 * distance]
+        off.append(np.abs(near[:, NORMAL_X] * math.sin(0.7) - near[:, NORMAL_Y] * math.cos(0.7)))
+    # The sine of that angle is by how much of its weight a point tells the way along the wall.
+    assert np.mean(np.concatenate(off) ** 2) < 0.13**2
+
+
 @given(st.floats(-0.2, 0.2), st.floats(-0.2, 0.2), st.floats(-math.pi, math.pi))
 def test_the_mount_moves_and_turns_points(x: float, y: float, theta: float) -> None:
     ranges = wall(1.0, 0.4)
