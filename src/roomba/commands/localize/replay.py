@@ -7,6 +7,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Final
 
+from roomba.commands.map.drive.replay import guessed
 from roomba.commands.map.drive.whole_odometry import WholeOdometry
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
@@ -70,6 +71,7 @@ class Replay:
         self._map, self._config, self._odometry = occupancy, config, odometry
         self._begin, self._deviation = start, _GIVEN_DEVIATION
         self._localizer: Localizer | None = None
+        self._is_guessing = False
         self._turning = NewestTurning()
         self._waiting = WaitingScan()
         self._left_out: Counter[str] = Counter()
@@ -102,11 +104,22 @@ class Replay:
         if self._localizer is None:
             self._localizer = self._begun(stamp, pose)
         self._stamp = stamp
+        self._trust(self._localizer)
         self._localizer.move(stamp, pose, self._turning.at(stamp))
         step = self._reckoned.inverse().compose(self._localizer.reckoned)
         self._reckoned = self._localizer.reckoned
         self._way += math.hypot(step.x, step.y)
         self._see(self._localizer, self._waiting.ready(stamp))
+
+    def _trust(self, localizer: Localizer) -> None:
+        """Trust steps of scans less than wheels: along a bare corridor they are guesses."""
+        if self._odometry.is_guessed == self._is_guessing:
+            return
+        self._is_guessing, config = self._odometry.is_guessed, self._config.localization
+        if self._is_guessing:
+            localizer.reckoning.begin_guessing(guessed(config))
+        else:
+            localizer.reckoning.end_guessing(config)
 
     def _begun(self, stamp: float, odometry: Pose) -> Localizer:
         config = self._config

@@ -32,20 +32,23 @@ class DeadReckoning:
         self._belief = self.belief[0]
         begin_calibration(self._belief["calibration"], config, gyro)
         self._measured = self._belief["calibration"].copy()
+        self._trusted: NDArray[np.float64] = self._belief["odometry_scale"].copy()
         self._reckoned: NDArray[np.float64] = self._belief["reckoned"]
         self.numbers = numbers_of(config, gyro)
         self.path = ReckonedPath.empty()
 
     def begin_guessing(self, config: LocalizationConfig) -> None:
-        """Go on with guessed odometry, to which the measured errors of the wheels do not apply."""
+        """Go on with guessed odometry, to which what was learned of the wheels does not apply."""
         row = self._belief["calibration"]
-        self._measured = row.copy()
+        self._measured, self._trusted = row.copy(), self._belief["odometry_scale"].copy()
         forget_wheels(row, config)
+        self._belief["odometry_scale"] = 1.0
         self.numbers[:] = numbers_of(config, self._gyro)
 
     def end_guessing(self, config: LocalizationConfig) -> None:
         """Go on with the wheels, as they were known before."""
         self._belief["calibration"] = self._measured
+        self._belief["odometry_scale"] = self._trusted
         self._belief["calibration"]["is_open"] = False
         self.numbers[:] = numbers_of(config, self._gyro)
 

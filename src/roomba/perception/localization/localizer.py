@@ -41,8 +41,9 @@ _FOUND_SPREAD: Final = np.diag([0.05**2, 0.05**2, 0.03**2])
 class Localizer:
     """Keeps the estimate; tell it what the sensors say in the order of time.
 
-    ``view`` is the newest scan; ``placed`` is that scan at the pose on the map where it was taken,
-    None if that is not known. While the localizer :attr:`is_calm`, kernels may do its work on
+    ``reckoning`` is its dead reckoning. ``view`` is the newest scan; ``placed`` is that scan at the
+    pose on the map where it was taken, None if that is not known. While the localizer
+    :attr:`is_calm`, kernels may do its work on
     ``belief``, ``path`` and ``numbers`` (see :mod:`.belief.correct_kernels`), and on ``sights``
     (see :mod:`.recent_sight_kernels`), until :meth:`resumed` is called.
     """
@@ -68,8 +69,8 @@ class Localizer:
         self._config, self._body_radius = config, body_radius
         self._followed = PlaceFollower(occupancy, config, gyro, stride)
         self.belief, self.numbers = self._followed.belief, self._followed.numbers
-        self._row, self._reckoning = self._followed.row, self._followed.reckoning
-        self.path = self._reckoning.path
+        self._row, self.reckoning = self._followed.row, self._followed.reckoning
+        self.path = self.reckoning.path
         self._doubt = Doubt(config, body_radius)
         self._confirmation = Confirmation(config, self._doubt)
         self._search: GlobalSearch | None = None
@@ -87,7 +88,7 @@ class Localizer:
         if not (odometry.is_finite and math.isfinite(turning or 0.0)):
             raise ValueError(f"expected finite numbers, got {odometry} and {turning} rad/s")
         self._follow_clock(stamp, self._stamps)
-        self._reckoning.move(stamp, odometry, turning)
+        self.reckoning.move(stamp, odometry, turning)
 
     def lift(self, is_lifted: bool) -> None:
         """Tell whether the wheels hang in the air: the robot is being carried."""
@@ -102,7 +103,7 @@ class Localizer:
         still = lidar.at_once(taken, ranges, self.path)
         self.view = view = lidar.view(still)
         self.placed = None
-        reckoned = self._reckoning.at(taken)
+        reckoned = self.reckoning.at(taken)
         self._row["beams"] = len(view)
         self._is_blind = len(view) == 0
         if self._is_blind or self._is_lifted or reckoned is None or self._map is None:
@@ -113,7 +114,7 @@ class Localizer:
             self._follow(view, taken, reckoned, tells_places_apart)
             self._doubt.note(taken, reckoned, view)
         elif tells_places_apart:
-            newest, believed = self._reckoning.pose, self.pose
+            newest, believed = self.reckoning.pose, self.pose
             found = self._search.see(self._now, view, reckoned, newest, believed)
             if found is not None:
                 self._go_on_at(found)
@@ -161,7 +162,7 @@ class Localizer:
         self._is_blind = len(view) == 0
         if self._is_blind:
             return
-        reckoned = self._reckoning.at(stamp)
+        reckoned = self.reckoning.at(stamp)
         if reckoned is None:
             return
         if len(view) >= self._config.least_beams and self._tracker.is_doubtful:
@@ -273,17 +274,17 @@ class Localizer:
     @property
     def reckoned(self) -> Pose:
         """Where the robot is in a frame of its own, in which it never jumps but slowly drifts."""
-        return self._reckoning.pose
+        return self.reckoning.pose
 
     @property
     def map_to_odometry(self) -> Pose:
         """Where the frame of the wheels' odometry lies in the map."""
-        return self.pose.compose(self._reckoning.odometry.inverse())
+        return self.pose.compose(self.reckoning.odometry.inverse())
 
     @property
     def hypotheses(self) -> list[Pose]:
         """Where the robot may be, likeliest first: while it is searched for there may be many."""
-        places = self._search.hypotheses(self._reckoning.pose) if self._search is not None else []
+        places = self._search.hypotheses(self.reckoning.pose) if self._search is not None else []
         return places or [self.pose]
 
     def _follow_clock(self, time: float, clock: ClockJumps) -> None:
@@ -368,7 +369,7 @@ class Localizer:
 
     def _is_found_near(self, view: ScanView, reckoned: Pose) -> bool:
         """Go on at a place near by that a scan fits as well as usual, if there is one."""
-        since = reckoned.inverse().compose(self._reckoning.pose)
+        since = reckoned.inverse().compose(self.reckoning.pose)
         here = self.pose.compose(since.inverse())
         usual = float(self._row["usual_agree"]), float(self._row["usual_through"])
         found = better_near(view, self.field, here, usual, self._config)

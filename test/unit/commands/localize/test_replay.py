@@ -9,6 +9,7 @@ import pytest
 from fixtures.robots.located import CONFIG, FURNISHED, LIDAR, Eye
 
 from roomba.commands.localize.replay import Replay, Row
+from roomba.commands.map.drive.odometry_gaps import ALWAYS
 from roomba.commands.map.drive.whole_odometry import WholeOdometry
 from roomba.configuration.mapping import MappingConfig
 from roomba.geometry import Pose
@@ -64,6 +65,22 @@ def test_turns_are_those_of_the_gyro() -> None:
         headings.append(row.estimate.pose.theta - START.theta)
     assert abs(headings[0]) < 1e-6
     assert 0.3 < headings[1] < 1.01
+
+
+def test_what_was_driven_without_odometry_and_without_scans_that_tell_is_a_guess() -> None:
+    """As along a bare corridor: a map that is made meanwhile goes on at the robot's pace."""
+    odometry = WholeOdometry(CONFIG, MappingConfig(), (ALWAYS,))
+    robot, eye, row = Replay(FURNISHED.map, CONFIG, odometry, START), Eye(FURNISHED), None
+    nothing = np.full(LIDAR.beams, np.inf, np.float32)
+    for tick in range(30):
+        here = START.compose(Pose(0.06 * min(tick, 15)))
+        row = hear(robot, 0.2 * tick, LidarScan(nothing if tick > 15 else eye.scan(here), LIDAR))
+        if tick == 15:
+            assert row is not None
+            assert row.estimate.position_deviation < 0.03
+    assert row is not None
+    assert row.way == pytest.approx(0.06 * 29, abs=0.1)
+    assert row.estimate.position_deviation > 0.1
 
 
 def test_rows_come_as_often_as_the_live_node_tells_its_pose() -> None:

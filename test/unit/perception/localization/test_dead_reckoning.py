@@ -358,3 +358,14 @@ def test_what_was_measured_of_the_wheels_does_not_count_for_what_is_guessed() ->
     reckoned.end_guessing(CONFIG.localization)
     reckoned.move(0.3, Pose(0.3), None)
     assert reckoned.pose.x == pytest.approx(0.11 + 0.1 + 0.11)
+
+
+def test_how_far_wheels_are_trusted_does_not_count_for_what_is_guessed() -> None:
+    reckoned = reckoning()
+    scale = reckoned.belief[0]["odometry_scale"]
+    scale[:] = 5.0
+    reckoned.begin_guessing(CONFIG.localization)
+    assert (scale == 1.0).all()
+    scale[:] = 3.0
+    reckoned.end_guessing(CONFIG.localization)
+    assert (scale == 5.0).all()

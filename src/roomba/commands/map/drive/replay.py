@@ -15,6 +15,7 @@ from roomba.commands.map.blind_map import BlindMap
 from roomba.commands.map.drive.odometry_gaps import ALWAYS, GapsInOrder, OdometryGap
 from roomba.commands.map.drive.pauses import PauseSeeker
 from roomba.commands.map.drive.trajectory import Trajectory
+from roomba.configuration.localization import LocalizationConfig
 from roomba.configuration.mapping import MappingConfig
 from roomba.configuration.robot import RobotConfig
 from roomba.geometry import Pose
@@ -48,6 +49,11 @@ _LATEST: Final = 1.0
 """s; a scan that is newer than all odometry by more is left out: its pose is unknown."""
 
 
+def guessed(config: LocalizationConfig) -> LocalizationConfig:
+    """Return numbers for motion that is only guessed, by scans, in place of those for wheels."""
+    return config.model_copy(update=_GUESSED)
+
+
 class PacedOdometry:
     """Replaces odometry in its gaps: the robot goes on at the pace that scans showed so far."""
 
@@ -79,7 +85,7 @@ class MapReplay:
         self.has_odometry = ALWAYS not in gaps
         self._wheel_noise = config.localization, mapping.following
         self._guessed_noise = (
-            config.localization.model_copy(update=_GUESSED),
+            guessed(config.localization),
             mapping.following.model_copy(update=_MAY_START),
         )
         self.mapper = Mapper(mapping, config.localization, config.gyro, start)

@@ -20,7 +20,7 @@ class WholeOdometry:
     """Recorded odometry; in its ``gaps`` a map that is made meanwhile gives the robot's steps.
 
     ``frame`` is where the frame of the recorded odometry lies in the frame of this one. They are
-    the same until the first gap.
+    the same until the first gap. ``is_guessed`` tells whether the newest step is of that map.
     """
 
     def __init__(
@@ -28,7 +28,7 @@ class WholeOdometry:
     ) -> None:
         """Without gaps no map is made."""
         self.frame = Pose()
-        self._is_guessed = False
+        self.is_guessed = False
         self._pose = self._recorded = Pose()
         self._gaps = GapsInOrder(gaps)
         self._replay = MapReplay(config, mapping, Pose(), gaps) if gaps else None
@@ -42,7 +42,7 @@ class WholeOdometry:
         is_told = isinstance(value, Odometry) and not has_gap
         is_guessed = isinstance(value, LidarScan) and has_gap
         # The step from a guessed pose to the next pose, guessed or recorded, is the map's.
-        goes_on = is_guessed or (is_told and self._is_guessed)
+        goes_on = is_guessed or (is_told and self.is_guessed)
         before = _Place(replay.mapper) if goes_on else None
         replay.hear(reading.stamp, value)
         if not (is_told or is_guessed):
@@ -54,7 +54,7 @@ class WholeOdometry:
         else:
             self._go_on(before, replay.mapper)
             self.frame = self._pose.compose(self._recorded.inverse())
-        self._is_guessed = is_guessed
+        self.is_guessed = is_guessed
         return self._pose
 
     def _go_on(self, before: _Place, mapper: Mapper) -> None:
