@@ -112,7 +112,7 @@ finite = number(math.isfinite, "finite numbers (m, rad)")
 
 def folder(text: str) -> Path:
     """Return the folder that an option names: the type of one that is read."""
-    if not Path(text).is_dir():
+    if not os.path.isdir(text):  # False, too, for a name that is too long
         raise argparse.ArgumentTypeError(f"expected a folder that is there, got {text!r}")
     return Path(text)
 

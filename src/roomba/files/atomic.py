@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import secrets
+import stat
 import time
 import zipfile
 import zlib
@@ -67,15 +69,22 @@ def write_whole(path: Path, content: bytes) -> None:
 
 
 def write_output(path: Path, content: bytes) -> None:
-    """Write what a user wants at a path, as :func:`write_whole` does.
+    """Write what a user wants at a path, as :func:`write_whole` does, in a folder that is there.
 
+    A file that is replaced keeps its permissions.
     A device, a pipe, and what a link such as ``/dev/stdout`` leads to, are written into: another
     program reads there, and a file in their place would be of no use to it. Raises OSError.
     """
     if path.is_symlink() or (path.exists() and not path.is_file()):
         path.write_bytes(content)
-    else:
-        write_whole(path, content)
+        return
+    folder = path.absolute().parent
+    if not folder.is_dir():  # a folder whose name is mistyped is not made
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(folder))
+    mode = path.stat().st_mode if path.exists() else None
+    write_whole(path, content)
+    if mode is not None:
+        path.chmod(stat.S_IMODE(mode))
 
 
 def unfinished_name(name: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
-from concurrent.futures import Executor
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -44,9 +44,9 @@ class _Advertised:
 class Publishers:
     """All topics that programs publish, each while one of them does."""
 
-    def __init__(self, waiting: Executor) -> None:
-        """Publish nothing yet; ``waiting`` has threads that may wait for the master."""
-        self._waiting = waiting
+    def __init__(self, ask: Callable[..., Awaitable[Any]]) -> None:
+        """Publish nothing yet; ``ask`` makes a call that may wait for the master in a thread."""
+        self._ask = ask
         self._advertised: dict[str, _Advertised] = {}
         self._lock = asyncio.Lock()
 
@@ -79,13 +79,12 @@ class Publishers:
             threading.Thread(target=advertised.publisher.unregister, daemon=True).start()
 
     async def _new(self, name: str, kind: str, is_latched: bool) -> _Advertised:
-        loop = asyncio.get_running_loop()
-        there = await loop.run_in_executor(self._waiting, type_of_topic, name)
+        there = await self._ask(type_of_topic, name)
         if kind and there and there != kind:
             raise MessageError(f"{name}: expected its type {there}, got {kind}")
         found = class_of(kind or there or _unknown(name))
-        expected = await loop.run_in_executor(self._waiting, subscribers_of, name)
-        arrivals = _Arrivals(loop)
+        expected = await self._ask(subscribers_of, name)
+        arrivals = _Arrivals(asyncio.get_running_loop())
         publisher = rospy.Publisher(
             name, found, arrivals, latch=is_latched, queue_size=_QUEUE, tcp_nodelay=True
         )

@@ -23,7 +23,7 @@ class Shared:
         # The bridge's own threads: calls that hang take no thread away from the page.
         self._waiting = ThreadPoolExecutor(MOST_CALLS, thread_name_prefix="rosbridge")
         self.topics = Topics()
-        self.publishers = Publishers(self._waiting)
+        self.publishers = Publishers(self.wait)
 
     async def wait(self, ask: Callable[..., Value], *arguments: object) -> Value:
         """Return the answer of a call that may block; RobotUnavailableError without a master."""

@@ -45,9 +45,9 @@ def _place_of(master: str) -> tuple[str, int]:
 
 def _is_own(family: socket.AddressFamily, address: str) -> bool:
     """Whether an address is one of this machine: a socket can be bound only to those."""
-    with socket.socket(family, socket.SOCK_DGRAM) as bound:
-        try:
+    try:
+        with socket.socket(family, socket.SOCK_DGRAM) as bound:
             bound.bind((address, 0))
-        except OSError:
-            return False
+    except OSError:  # also of a kernel without that family
+        return False
     return True

@@ -25,7 +25,13 @@ from roomba.files.shipped import CONFIGURATION, HOMES
 from roomba_ros.maps.map_wish import FOLDER, require_map
 from roomba_ros.runtime.graph.alone import living
 from roomba_ros.runtime.graph.joining import require_own_address
-from roomba_ros.runtime.graph.master import MasterState, master_state, port_of, require_answering
+from roomba_ros.runtime.graph.master import (
+    UNANSWERED,
+    MasterState,
+    master_state,
+    port_of,
+    require_answering,
+)
 from roomba_ros.runtime.parameters import folder_for
 from roomba_ros.runtime.senders import SUPERVISOR
 from roomba_ros.supervision.claim import claim_robot
@@ -112,7 +118,7 @@ def _has_told_master(parameters: dict[str, Any], run_id: str, supervisor: Superv
     if not supervisor.is_ending:
         try:
             set_parameters(parameters, run_id)
-        except OSError:
+        except UNANSWERED:
             return False
     return True
 

@@ -23,3 +23,12 @@ def test_a_robot_is_of_one_run_until_that_ends() -> None:
         claim_robot(HERE, "/second/").close()
         claim_robot(ELSEWHERE, "/").close()
     claim_robot(HERE, "/").close()
+
+
+def test_a_kernel_without_an_address_family_has_no_such_address(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    there = (socket.AF_INET, socket.SOCK_STREAM, 6, "", ("192.0.2.1", 19311))
+    foreign = (99, socket.SOCK_STREAM, 6, "", ("2001:db8::1", 19311, 0, 0))
+    monkeypatch.setattr(socket, "getaddrinfo", lambda *_, **__: [foreign, there])
+    claim_robot("http://elsewhere:19311", "/").close()

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from http.client import ResponseNotReady
 from pathlib import Path
 
 import pytest
-from fixtures.graph import free_port
+from fixtures.graph import RosGraph, free_port
 
 from roomba.storage.map_store import MapStoreError
 from roomba_ros.maps.map_wish import require_map
+from roomba_ros.supervision import run
 from roomba_ros.supervision.claim import claim_robot
 from roomba_ros.supervision.run import USAGE, main
 
@@ -64,6 +66,24 @@ def test_a_run_that_begins_beside_another_one_is_refused(
     with claim_robot(master, "/first/"):
         assert main([]) == USAGE
     assert "got another run on this machine" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("fault", [TimeoutError(), ResponseNotReady()])
+def test_a_master_that_answers_no_more_ends_the_start(
+    graph: RosGraph,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    fault: Exception,
+) -> None:
+    def hang(*_: object) -> None:
+        raise fault
+
+    for name, value in {**graph.environment, "ROS_LOG_DIR": str(tmp_path)}.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(run, "set_parameters", hang)
+    assert main(["map:=given"]) == 1
+    assert "the master does not answer" in capsys.readouterr().err
 
 
 def test_a_map_that_is_not_saved_is_refused_with_those_that_are(tmp_path: Path) -> None:

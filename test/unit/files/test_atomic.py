@@ -215,3 +215,14 @@ def test_a_folder_that_is_a_file_is_the_disks_refusal(tmp_path: Path) -> None:
     (tmp_path / "folder").write_text("", encoding="utf-8")
     with pytest.raises(OSError, match="folder"):
         write_whole(tmp_path / "folder" / "map.json", b"")
+
+
+def test_an_output_keeps_its_permissions_and_makes_no_folder(tmp_path: Path) -> None:
+    path = tmp_path / "map.json"
+    path.touch()
+    path.chmod(0o644)
+    write_output(path, b"new")
+    assert (path.read_bytes(), path.stat().st_mode & 0o777) == (b"new", 0o644)
+    with pytest.raises(FileNotFoundError, match="mistyped"):
+        write_output(tmp_path / "mistyped" / "map.json", b"new")
+    assert list(tmp_path.iterdir()) == [path]

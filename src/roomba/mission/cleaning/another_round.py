@@ -34,8 +34,8 @@ def may_be_opened(
 ) -> bool:
     """Whether a person may open the way to a ``floor`` that is out of reach.
 
-    That is so if at least one of its patches of ``least`` m2 or more is not just hidden by what
-    stands on it.
+    That is so if at least one of its patches of ``least`` m2 or more is not just hidden by things
+    that stand on it or before it.
     """
     patches = patches_of(floor, context.frame, least)
     return not all(is_hidden(patch, context, obstacles) for patch in patches)

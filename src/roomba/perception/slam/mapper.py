@@ -213,7 +213,7 @@ class Mapper:
     def miss(self, since: float) -> None:
         """Tell that neither scans nor odometry came for long after ``since``, s.
 
-        If the next scan does not fit where odometry has leapt to, that counts as carried.
+        Scans that do not fit from then on, until the first one that does, count as carried.
         """
         self._missed_since = since
 

@@ -81,7 +81,7 @@ def _assembled(
     if docked is None:
         docked, place = _found_station(floor, paper, file, body)
     _check_body_fits(floor, docked, file, body)
-    floor = _without_paper(floor, paper, docked, body)
+    floor = _without_paper(floor, paper, docked, parts, body)
     station = station_on(floor, docked, body.radius)
     floor = with_station(floor, station, docked, body.radius)
     _check_dirt_on_floor(floor, parts, file)
@@ -120,10 +120,17 @@ def _found_station(
 
 
 def _without_paper(
-    floor: FurnishedFloor, end: Mask, docked: Pose, body: BodyConfig
+    floor: FurnishedFloor, end: Mask, docked: Pose, parts: Parts, body: BodyConfig
 ) -> FurnishedFloor:
-    """Return the grids of a home without the paper around it, which is as unknown as all beyond."""
+    """Return the grids of a home without the paper around it, which is as unknown as all beyond.
+
+    Where the layer has dirt there it is no paper but floor, as of a terrace.
+    """
     around = paper_around(floor.map, floor.taken, body.radius, docked, end)
+    frame = floor.map.frame
+    dirty = ((source.x, source.y) for source in parts.dirt_sources or ())
+    if any(around[frame.cell_of(*place)] for place in dirty if frame.contains(*place)):
+        return floor
     values = np.where(around, np.int8(UNKNOWN), floor.map.values)
     occupancy = OccupancyMap(floor.map.frame, values)
     return replace(floor, map=occupancy, solid=floor.solid | around)

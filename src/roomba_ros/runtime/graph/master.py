@@ -21,6 +21,10 @@ _USUAL_PORT: Final = 11311
 """The port of a master whose URI has none."""
 
 
+UNANSWERED: Final = (OSError, HTTPException, XmlRpcError, rosgraph.MasterException)
+"""Errors of a call of the master that it does not answer, or that another program does."""
+
+
 class MasterState(Enum):
     """The result of asking the ROS master."""
 
@@ -52,7 +56,7 @@ def master_state() -> MasterState:
         master().getPid()
     except TimeoutError:
         return MasterState.HANGS
-    except (OSError, HTTPException, XmlRpcError, rosgraph.MasterException):
+    except UNANSWERED:
         return MasterState.ABSENT
     return MasterState.ANSWERS
 

@@ -9,15 +9,12 @@ from __future__ import annotations
 import contextlib
 import threading
 import time
-from http.client import HTTPException
 from typing import Any, Final
-from xmlrpc.client import Error as XmlRpcError
 
-import rosgraph
 import rospy
 from rospy.impl import paramserver, registration
 
-from roomba_ros.runtime.graph.master import master
+from roomba_ros.runtime.graph.master import UNANSWERED, master
 
 _LOOK: Final = 1.0
 """s of wall time between two looks whether the master knows this node."""
@@ -34,7 +31,7 @@ def _stay() -> None:
     while not rospy.is_shutdown():
         time.sleep(_LOOK)
         # A master that is gone, or hangs, is asked again.
-        with contextlib.suppress(OSError, HTTPException, XmlRpcError, rosgraph.MasterException):
+        with contextlib.suppress(*UNANSWERED):
             if not _is_known():
                 _register_anew()
 

@@ -110,9 +110,10 @@ def test_a_folder_of_runs_that_is_not_there_is_refused_and_not_made(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     mistyped = tmp_path / "hsitory"
-    with pytest.raises(SystemExit, match="2"):
-        main(["--history", str(mistyped)])
-    assert f"expected a folder that is there, got '{mistyped}'" in capsys.readouterr().err
+    for name in (str(mistyped), "a" * 300):
+        with pytest.raises(SystemExit, match="2"):
+            main(["--history", name])
+        assert f"expected a folder that is there, got '{name}'" in capsys.readouterr().err
     assert not mistyped.exists()
 
 

@@ -20,6 +20,7 @@ from roomba.commands.sim.command import main
 from roomba.commands.sim.json_file import TIMES, run_as_json
 from roomba.commands.trials.runs import Run, TrialSetup, robot_config_of, run_trial
 from roomba.commands.trials.trial import Trial
+from roomba.commands.trials.truth import standing_until
 from roomba.commands.trials.zones import zones_of
 from roomba.configuration.mission import LowThingsConfig
 from roomba.errors import ConfigError
@@ -35,6 +36,7 @@ from roomba.storage.map_bound import map_digest
 from roomba.storage.zones import save_zones
 from roomba.vocabulary import CleanMode
 from roomba.world.catalogue.things import LOW_KINDS
+from roomba.world.layers.layer import load_home
 
 KEYS = {
     "outcome", "message", "duration_s", "wall_s", "planning_s", "distance_m", "turning_rad",
@@ -167,6 +169,23 @@ def test_floor_below_what_stood_there_to_the_end_is_not_coverable(
     assert run.coverable[cell] == (moves_at < run.figures.duration_s)
     if moves_at > run.figures.duration_s:
         assert run.figures.fraction > 0.98
+
+
+def test_the_robot_passes_below_what_is_higher_than_its_body(room: Path, tmp_path: Path) -> None:
+    save_map(load_map(room), tmp_path / "map.yaml")
+    (tmp_path / "home.yaml").write_text(
+        "station: {x: 0.3, y: 0.8, facing: west}\n"
+        "furniture:\n"
+        "  - {name: box, kind: bookshelf, x: 1.2, y: 0.45, facing: north,\n"
+        "     size: {width: 0.3, depth: 0.3}}\n"
+        "moving:\n"
+        "  - {furniture: box, to: [{at: 3000.0, x: 2.1, y: 0.45, takes: 1.0}]}\n"
+    )
+    home = load_home(str(tmp_path), tmp_path)
+    cell = home.map.frame.cell_of(1.2, 0.45)
+    assert standing_until(home, 100.0, 0.1)[cell]
+    assert not standing_until(home, 100.0, 0.0)[cell]
+    assert not standing_until(home, 3001.0, 0.1)[cell]
 
 
 def test_a_part_of_the_floor_is_wanted(room: Path) -> None:

@@ -54,6 +54,14 @@ def test_the_paper_around_a_home_is_no_floor(tmp_path: Path, station: Pose | Non
     assert dirt.amount == pytest.approx(EVEN_DIRT * home.map.free_area, rel=0.01)
 
 
+def test_where_the_layer_has_dirt_it_is_no_paper(tmp_path: Path) -> None:
+    """Such as a terrace around the house."""
+    crumbs = "dirt_sources: [{name: crumbs, x: 1.0, y: 1.0, radius: 0.2, amount: 1.0}]\n"
+    (tmp_path / "home.yaml").write_text(crumbs)
+    home = home_of(plan(), tmp_path, Pose(4.0, 4.0, 0.0))
+    assert home.map.values[home.map.frame.cell_of(1.0, 1.0)] == FREE
+
+
 def test_what_is_too_small_for_a_home_is_none(tmp_path: Path) -> None:
     home = home_of(plan(home=1.0), tmp_path)
     assert not is_inside(home, 1.0)

@@ -19,20 +19,32 @@ class PauseSeeker:
     def __init__(self) -> None:
         """Begin before the first message."""
         self._newest = self._told = -math.inf
+        self._silence = self._since = 0.0
         self._steps: list[float] = []
 
     def see(self, stamp: float) -> None:
         """Take the time of a scan, s."""
-        self._newest = max(self._newest, stamp)
+        self._note_silence(stamp)
 
     def hear(self, stamp: float) -> float | None:
-        """Take the time of a message of odometry, s; return when the pause began that it ends."""
-        step, since = stamp - self._told, max(self._newest, self._told)
-        self._told = stamp
+        """Take the time of a message of odometry, s.
+
+        Returns when a pause began that ended since the message of odometry before, or None.
+        """
+        self._note_silence(stamp)
+        silence, self._silence = self._silence, 0.0
+        step, self._told = stamp - self._told, stamp
         if not math.isfinite(step):
             return None
         self._steps.append(step)
-        # What is usual takes a while to reckon, and is seldom asked for.
-        if stamp - since < _LEAST or stamp - since < _LONGER * float(np.median(self._steps)):
+        # The median takes a while to compute, and is seldom needed.
+        if silence < _LEAST or silence < _LONGER * float(np.median(self._steps)):
             return None
-        return since
+        return self._since
+
+    def _note_silence(self, stamp: float) -> None:
+        """Remember the longest silence since the newest message of odometry, and its begin."""
+        silence = stamp - self._newest
+        if self._silence < silence < math.inf:
+            self._silence, self._since = silence, self._newest
+        self._newest = max(self._newest, stamp)

@@ -34,7 +34,10 @@ class MapRelocation:
         return not (self.is_lifted or self.is_lost)
 
     def lift(self, is_lifted: bool) -> None:
-        """Tell whether the wheels hang in the air; once set down, the robot is lost."""
+        """Tell whether the wheels hang in the air; once set down, the robot is lost.
+
+        A place that was found before is forgotten.
+        """
         if self.is_lifted and not is_lifted:
             self.is_lost = True
             self._searched_at = self._found = None

@@ -61,8 +61,8 @@ class SubmapGraph:
         self.links: list[Link] = []
         self._waiting: list[Link] = []
         self._carried_to: dict[int, bool] = {}
-        """Number of each submap that began after the robot was carried -> whether that is sure, as
-        the lifted wheels tell it. Not saved: lost at a restart."""
+        """Number of each submap that began after the robot was carried -> whether it is to be
+        found anywhere in any case, and not only where walls are seen through. Not saved."""
         self.laid = 0
         """Number of parts that :meth:`join_parts` found and laid."""
 

@@ -24,9 +24,10 @@ def steady(first: float, last: float, step: float) -> list[float]:
     return [first + step * number for number in range(round((last - first) / step) + 1)]
 
 
-def test_a_pause_is_where_neither_scans_nor_odometry_came() -> None:
+@pytest.mark.parametrize("first_scan", [189.9, 190.05], ids=["a scan first", "odometry first"])
+def test_a_pause_is_where_neither_scans_nor_odometry_came(first_scan: float) -> None:
     odometry = steady(100.0, 130.0, 0.1) + steady(190.0, 200.0, 0.1)
-    scans = steady(100.05, 130.05, 0.2) + steady(190.05, 200.0, 0.2)
+    scans = steady(100.05, 130.05, 0.2) + steady(first_scan, 200.0, 0.2)
     assert pauses(odometry, scans) == pytest.approx([130.05])
 
 
