@@ -134,14 +134,12 @@ class Rejoin:
     def _squeezed(
         self, senses: Senses, tracker: PathTracker, obstacles: Sequence[RoundObstacle]
     ) -> Floats | None:
-        """Plan on the fine grid to the next free place behind the thing, or to a free end."""
+        """Plan on the fine grid to the next free place behind the thing, or to the path's end."""
         samples, stations = _samples(tracker)
         free = self._free(samples, obstacles)
         index = _first(_runs(free, _FREE_RUN), _behind(free))
         last = len(samples) - 1
         for number in {last if index is None else index: 0, last: 0}:
-            if not free[number]:
-                continue
             target = (float(samples[number, 0]), float(samples[number, 1]))
             try:
                 points = self._context.squeeze((senses.pose.x, senses.pose.y), target, obstacles)

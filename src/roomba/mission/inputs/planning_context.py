@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -196,10 +197,16 @@ class PlanningContext:
     ) -> NDArray[np.float64]:
         """Return a way, float64 [n, 2], m, through gaps that are too narrow for :attr:`paths`.
 
-        Raises NoPathError when there is none.
+        It ends so near to ``there`` that at its end the robot has arrived, even if that is the
+        staging place. Raises NoPathError when there is none, as where the body does not fit there.
         """
         nothing = np.zeros(self.frame.shape, np.bool_)
-        return self.coverage.plan(here, there, nothing, obstacles).points
+        points = self.coverage.plan(here, there, nothing, obstacles).points
+        # The other half of the tolerance is for how near to its end the robot drives.
+        if math.dist(points[-1], there) > self.staging_tolerance / 2:
+            last = (float(points[-1, 0]), float(points[-1, 1]))
+            raise NoPathError(there, NoPathReason.GOAL_IN_OBSTACLE, last)
+        return points
 
     def narrow_floor(self, here: Point, obstacles: Sequence[RoundObstacle]) -> NarrowFloor:
         """Return where the robot's middle can get to through all gaps that a clean passes."""

@@ -153,6 +153,16 @@ def test_the_last_point_counts_even_if_only_that_is_free() -> None:
         assert points[-1] == pytest.approx(PATH[-1])
 
 
+@pytest.mark.parametrize("beside", [0.0, 0.1])
+def test_onto_a_thing_on_the_end_of_a_path_no_way_leads(beside: float) -> None:
+    path = np.array([(2.6, 1.5), (2.6, 2.0)])
+    tracker = PathTracker(path, CONFIG.tracking, CONFIG.body, CONFIG.timing.tick)
+    rejoin = Rejoin(CONTEXT, BODY, DRIVING)
+    senses, thing = Senses(0.0, Pose(2.6, 1.4, np.pi / 2)), (2.6 + beside, 2.0, 0.06)
+    assert rejoin.way(senses, tracker, Standing(thing), Trail()) == (None, 0.0)
+    assert "the body does not fit there" in rejoin.trouble
+
+
 STAGING = (CONTEXT.staging.x, CONTEXT.staging.y)
 
 
@@ -166,6 +176,12 @@ def test_the_way_home_ends_before_the_station() -> None:
     points = home(Pose(2.6, 0.5, 0.0))
     assert points[0] == pytest.approx((2.6, 0.5))
     assert points[-1] == pytest.approx(STAGING)
+
+
+@pytest.mark.parametrize("beside", [0.0, 0.1])
+def test_with_a_thing_before_the_station_there_is_no_way_home(beside: float) -> None:
+    with pytest.raises(NoPathError):
+        home(Pose(2.6, 0.5, 0.0), (STAGING[0], STAGING[1] + beside, 0.06))
 
 
 def test_out_of_a_cage_it_goes_home_as_it_came_in() -> None:

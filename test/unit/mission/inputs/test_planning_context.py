@@ -20,7 +20,7 @@ from roomba.headless.plan_watch import PlanWatch
 from roomba.mission.inputs.planning_context import PlanningContext
 from roomba.perception.rooms.zones import Zone, ZoneKind, Zones
 from roomba.planning.coverage.planner import UNWATCHED
-from roomba.planning.path.planner import NoPathError
+from roomba.planning.path.planner import NoPathError, NoPathReason
 from roomba.world.home.home import Home
 
 ROBOT = RobotConfig()
@@ -133,6 +133,19 @@ def test_it_squeezes_through_where_paths_keep_away() -> None:
     assert points[-1] == pytest.approx((1.5, 1.25))
     with pytest.raises(NoPathError):
         home.squeeze((0.85, 1.25), (1.5, 1.25), [*things, (1.2, 1.25, 0.05)])
+
+
+def test_it_squeezes_to_where_the_body_fits_alone() -> None:
+    home, here, there = context(), (0.85, 0.5), (2.0, 0.5)
+    with pytest.raises(NoPathError) as refused:
+        home.squeeze(here, there, [(*there, 0.06)])
+    assert refused.value.reason is NoPathReason.GOAL_IN_OBSTACLE
+    assert refused.value.nearest is not None
+    least = home.reach + 0.06
+    assert least - 0.02 <= math.dist(refused.value.nearest, there) <= least + 0.05
+    # A little too near to a thing does not count.
+    points = home.squeeze(here, there, [(there[0], there[1] + least - 0.02, 0.06)])
+    assert math.dist(points[-1], there) < home.staging_tolerance
 
 
 def test_rooms_are_known_by_name_and_by_place() -> None:
