@@ -36,6 +36,8 @@ _EVEN: Final = (0.5, 1.5)
 _WORSE: Final = 2
 """If stamps are shifted to where arrivals say and more than so many times as many steps are uneven
 then, it was the arrivals that were wrong."""
+_BEYOND: Final = 4
+"""Times the usual deviation of stamps from where arrivals say; no delay explains a larger one."""
 _INFORMATIVE: Final = 0.5
 """Arrivals tell something if there are so many different ones, as a share of the stamps."""
 
@@ -108,9 +110,11 @@ def mended(stamps: Floats, arrivals: Floats, delay: float, counts: StampCounts) 
     if arrivals_tell(stamps[valid], arrivals):
         shifted = times.copy()
         jumped = _unjumped(shifted, expected)
-        if _uneven_steps(shifted) <= _WORSE * _uneven_steps(times):
-            times = shifted
-            counts.jumped += jumped
+        certain = np.where(_stand_apart(times, expected), shifted, times)
+        if _uneven_steps(shifted) > _WORSE * _uneven_steps(certain):
+            shifted, jumped = certain, int(np.count_nonzero(certain != times))
+        times = shifted
+        counts.jumped += jumped
     before = np.maximum.accumulate(times)
     counts.out_of_order += int(np.count_nonzero(times < before))
     return times
@@ -203,6 +207,22 @@ def _unjumped(times: Floats, expected: Floats) -> int:
         else:
             shifted += _mend_each(times[first:end], expected[first:end], ordered, hole)
     return shifted
+
+
+def _stand_apart(times: Floats, expected: Floats) -> Mask:
+    """Return which of ``times``, [n], s, are far from all those near the ``expected`` ones.
+
+    A clock had jumped there, however unevenly messages come: stamps of late ones lie among others.
+    """
+    if len(times) < 2:
+        return np.zeros(len(times), np.bool_)
+    order, off = np.argsort(times), np.abs(times - expected)
+    steps = np.diff(times[order])
+    gap = max(JUMP, _HOLE[1] * float(np.quantile(steps, _LONG_STEP)))
+    groups = np.zeros(len(times), np.int64)
+    groups[order[1:]] = np.cumsum(steps > gap)
+    near = np.bincount(groups, off <= max(JUMP, _BEYOND * float(np.median(off))))
+    return np.asarray(near[groups] == 0.0)
 
 
 def _uneven_steps(times: Floats) -> int:

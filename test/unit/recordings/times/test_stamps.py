@@ -104,6 +104,43 @@ def test_evenly_sent_messages_keep_their_stamps_however_late_they_come(
     assert counts.jumped == 0
 
 
+@given(
+    st.integers(0, 1000),
+    st.integers(0, 399),
+    st.integers(1, 40),
+    st.sampled_from((-500.0, -60.0, 60.0, 1000.0)),
+    st.sampled_from((0.02, 0.1, 0.3)),
+)
+@settings(max_examples=examples(60), deadline=None)
+def test_a_jump_comes_back_however_unevenly_messages_come(
+    seed: int, first: int, length: int, by: float, most: float
+) -> None:
+    stamps = BEGAN + PERIOD * np.arange(400)
+    wrong = stamps.copy()
+    wrong[first : first + length] += by
+    late = 0.01 + np.random.default_rng(seed).uniform(0.0, most, 400)
+    times, counts = mend(wrong, np.maximum.accumulate(stamps + late))
+    assert np.abs(times - stamps).max() < 0.05 + most
+    assert counts.jumped == np.count_nonzero(wrong != stamps)
+
+
+@given(st.integers(0, 1000), st.integers(1, 350), st.integers(1, 40))
+@settings(max_examples=examples(20), deadline=None)
+def test_a_jump_amid_messages_that_overtake_each_other_comes_back_alone(
+    seed: int, first: int, length: int
+) -> None:
+    stamps = BEGAN + PERIOD * np.arange(400)
+    late = np.random.default_rng(seed).uniform(0.0, 3.0, 400)
+    order = np.argsort(stamps + late)
+    wrong = stamps.copy()
+    wrong[first : first + length] += 1000.0
+    times, counts = mend(wrong[order], (stamps + late)[order])
+    good = (wrong == stamps)[order]
+    assert np.array_equal(times[good], stamps[order][good])
+    assert np.abs(times - stamps[order]).max() < 3.0
+    assert counts.jumped == length
+
+
 @given(st.integers(0, 1000), st.integers(20, 150), st.sampled_from((-5.0, 1.0, 30.0)))
 @settings(max_examples=examples(20), deadline=None)
 def test_a_jump_of_unevenly_sent_messages_comes_back(seed: int, first: int, by: float) -> None:
