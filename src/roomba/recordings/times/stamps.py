@@ -108,12 +108,7 @@ def mended(stamps: Floats, arrivals: Floats, delay: float, counts: StampCounts) 
     counts.without += int(np.count_nonzero(~valid))
     times[~valid] = expected[~valid]
     if arrivals_tell(stamps[valid], arrivals):
-        shifted = times.copy()
-        jumped = _unjumped(shifted, expected)
-        certain = np.where(_stand_apart(times, expected), shifted, times)
-        if _uneven_steps(shifted) > _WORSE * _uneven_steps(certain):
-            shifted, jumped = certain, int(np.count_nonzero(certain != times))
-        times = shifted
+        times, jumped = _without_jumps(times, expected)
         counts.jumped += jumped
     before = np.maximum.accumulate(times)
     counts.out_of_order += int(np.count_nonzero(times < before))
@@ -145,9 +140,13 @@ def _usual_delay(stamps: Floats, arrivals: Floats) -> float:
 
     Of some that were held up and come all together the last one had to wait least.
     """
-    usual = float(np.median(np.diff(np.sort(stamps)))) if len(stamps) > 1 else 0.0
-    is_last = np.append(np.diff(arrivals) > _AT_ONCE * usual, True)
+    is_last = np.append(np.diff(arrivals) > _AT_ONCE * _usual_step(stamps), True)
     return float(np.median(arrivals[is_last] - stamps[is_last]))
+
+
+def _usual_step(times: Floats) -> float:
+    """Return the median step between ``times``, s, in their order; 0 of a single one."""
+    return float(np.median(np.diff(np.sort(times)))) if len(times) > 1 else 0.0
 
 
 def is_of_another_clock(delay: float, reference: float) -> bool:
@@ -173,6 +172,21 @@ def _is_coarse(stamps: Floats, arrivals: Floats) -> bool:
         return False
     # What is recorded twice comes at nearly the same time.
     return float(np.median(arrived[is_equal])) > 0.5 * float(np.mean(arrived))
+
+
+def _without_jumps(times: Floats, expected: Floats) -> tuple[Floats, int]:
+    """Return ``times``, [n], s, with what had jumped shifted, and how many messages that was.
+
+    It is by the ``expected`` ones, unless all but what stands apart would become too uneven.
+    """
+    shifted = times.copy()
+    jumped = _unjumped(shifted, expected)
+    certain = np.where(_stand_apart(times, expected), shifted, times)
+    # Those that had jumped among others make steps shorter than they were.
+    usual = max(_usual_step(certain), _usual_step(shifted))
+    if _uneven_steps(shifted, usual) > _WORSE * _uneven_steps(certain, usual):
+        return certain, int(np.count_nonzero(certain != times))
+    return shifted, jumped
 
 
 def _unjumped(times: Floats, expected: Floats) -> int:
@@ -225,12 +239,10 @@ def _stand_apart(times: Floats, expected: Floats) -> Mask:
     return np.asarray(near[groups] == 0.0)
 
 
-def _uneven_steps(times: Floats) -> int:
-    """Return how many steps between ``times``, s, in their order are unusually short or long."""
-    if len(times) < 2:
-        return 0
+def _uneven_steps(times: Floats, usual: float) -> int:
+    """Return how many steps between ``times``, s, in order are much unlike a ``usual`` one."""
     steps = np.diff(np.sort(times))
-    least, most = np.multiply(_EVEN, np.median(steps))
+    least, most = np.multiply(_EVEN, usual)
     return int(np.count_nonzero((steps < least) | (steps > most)))
 
 

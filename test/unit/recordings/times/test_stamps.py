@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fixtures.thoroughness import examples
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -142,6 +142,7 @@ def test_a_jump_amid_messages_that_overtake_each_other_comes_back_alone(
 
 
 @given(st.integers(0, 1000), st.integers(20, 150), st.sampled_from((-5.0, 1.0, 30.0)))
+@example(53, 73, -5.0)
 @settings(max_examples=examples(20), deadline=None)
 def test_a_jump_of_unevenly_sent_messages_comes_back(seed: int, first: int, by: float) -> None:
     generator = np.random.default_rng(seed)
