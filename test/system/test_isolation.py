@@ -110,7 +110,8 @@ def test_a_page_that_was_killed_is_back_at_its_port(isolated: RosGraph) -> None:
     port = page_port(run)
     os.kill(isolated.process("dashboard_node"), signal.SIGKILL)
     promised(lambda: state_code(port) == 200, BACK, "the page answers at the same port")
-    assert run.output.count("The page: ") == 2
+    # Its line may be read a moment after the page answers.
+    wait_until(lambda: run.output.count("The page: ") == 2, 5.0, "the page is told again")
 
 
 @needs_namespaces
