@@ -150,13 +150,13 @@ def test_what_is_solid_in_truth_is_not_coverable(room: Path) -> None:
     assert not kept.coverable[row, column]
 
 
-@pytest.mark.parametrize("moves_at", [5.0, 3000.0])
-def test_floor_below_what_stood_there_to_the_end_is_not_coverable(
-    room: Path, tmp_path: Path, moves_at: float
-) -> None:
-    """A box of 0.3 m that is on the map, and moves aside while it cleans, or not before the end."""
-    save_map(load_map(room), tmp_path / "map.yaml")
-    (tmp_path / "home.yaml").write_text(
+BOX_AT = 1.2, 0.45
+
+
+def with_moving_box(room: Path, folder: Path, moves_at: float) -> str:
+    """Write the room with a box of 0.3 m, on its map, that moves aside at a time, s."""
+    save_map(load_map(room), folder / "map.yaml")
+    (folder / "home.yaml").write_text(
         "station: {x: 0.3, y: 0.8, facing: west}\n"
         "furniture:\n"
         "  - {name: box, kind: bookshelf, x: 1.2, y: 0.45, facing: north,\n"
@@ -164,25 +164,23 @@ def test_floor_below_what_stood_there_to_the_end_is_not_coverable(
         "moving:\n"
         f"  - {{furniture: box, to: [{{at: {moves_at}, x: 2.1, y: 0.45, takes: 1.0}}]}}\n"
     )
-    run = run_trial(Trial(home=str(tmp_path), seed=5))
-    cell = run.truth.frame.cell_of(1.2, 0.45)
-    assert run.coverable[cell] == (moves_at < run.figures.duration_s)
+    return str(folder)
+
+
+@pytest.mark.parametrize("moves_at", [5.0, 3000.0])
+def test_floor_below_what_stood_there_to_the_end_is_not_coverable(
+    room: Path, tmp_path: Path, moves_at: float
+) -> None:
+    """The box moves while the robot cleans, or not before the end."""
+    run = run_trial(Trial(home=with_moving_box(room, tmp_path, moves_at), seed=5))
+    assert run.coverable[run.truth.frame.cell_of(*BOX_AT)] == (moves_at < run.figures.duration_s)
     if moves_at > run.figures.duration_s:
         assert run.figures.fraction > 0.98
 
 
 def test_the_robot_passes_below_what_is_higher_than_its_body(room: Path, tmp_path: Path) -> None:
-    save_map(load_map(room), tmp_path / "map.yaml")
-    (tmp_path / "home.yaml").write_text(
-        "station: {x: 0.3, y: 0.8, facing: west}\n"
-        "furniture:\n"
-        "  - {name: box, kind: bookshelf, x: 1.2, y: 0.45, facing: north,\n"
-        "     size: {width: 0.3, depth: 0.3}}\n"
-        "moving:\n"
-        "  - {furniture: box, to: [{at: 3000.0, x: 2.1, y: 0.45, takes: 1.0}]}\n"
-    )
-    home = load_home(str(tmp_path), tmp_path)
-    cell = home.map.frame.cell_of(1.2, 0.45)
+    home = load_home(with_moving_box(room, tmp_path, 3000.0), tmp_path)
+    cell = home.map.frame.cell_of(*BOX_AT)
     assert standing_until(home, 100.0, 0.1)[cell]
     assert not standing_until(home, 100.0, 0.0)[cell]
     assert not standing_until(home, 3001.0, 0.1)[cell]
