@@ -19,6 +19,11 @@ FARTHEST = 1e5
 """m; no place of a home is farther than this from the origin of its frame."""
 
 
+def heading_of(x: float, y: float, z: float, w: float) -> float:
+    """Return the heading, rad, of a quaternion of any length, without its tilt; 0 of zeros."""
+    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
 def wrap_angle(angle: float) -> float:
     """Return the same direction in (-pi, pi], rad; NaN of what is not finite."""
     if abs(angle) > TWO_PI:

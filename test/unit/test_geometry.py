@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roomba.geometry import Pose, Twist, old_in_new, wrap_angle
+from roomba.geometry import Pose, Twist, heading_of, old_in_new, wrap_angle
 
 angles = st.floats(-50.0, 50.0)
 metres = st.floats(-100.0, 100.0)
@@ -18,6 +18,16 @@ def test_wrapped_angle_is_the_same_direction_within_half_a_turn(angle: float) ->
     assert -math.pi < wrapped <= math.pi
     assert math.cos(wrapped) == pytest.approx(math.cos(angle), abs=1e-9)
     assert math.sin(wrapped) == pytest.approx(math.sin(angle), abs=1e-9)
+
+
+@given(angles, st.floats(0.1, 10.0))
+def test_the_heading_of_a_quaternion_does_not_depend_on_its_length(
+    angle: float, length: float
+) -> None:
+    z, w = length * math.sin(angle / 2.0), length * math.cos(angle / 2.0)
+    turned = wrap_angle(heading_of(0.0, 0.0, z, w) - angle)
+    assert turned == pytest.approx(0.0, abs=1e-9)
+    assert heading_of(0.0, 0.0, 0.0, 0.0) == 0.0
 
 
 def test_half_a_turn_is_wrapped_to_plus_pi() -> None:

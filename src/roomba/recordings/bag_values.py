@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from roomba.geometry import Pose
+from roomba.geometry import Pose, heading_of
 from roomba.perception.matching.mounts import FrameTransform, frame_name
 from roomba.perception.matching.plausible import is_measured, scan_fault
 from roomba.perception.matching.scan_view import LidarModel
@@ -207,8 +207,7 @@ def _turning(message: Any, lidars: LidarBook) -> Value | Refused:
 def _pose(message: Any) -> Pose:
     """Return the planar part of a pose; its quaternion need not be of unit length."""
     place, turn = message.position, message.orientation
-    x, y, z, w = turn.x, turn.y, turn.z, turn.w
-    theta = math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
+    theta = heading_of(turn.x, turn.y, turn.z, turn.w)
     return Pose(float(place.x), float(place.y), theta)
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
-from roomba.geometry import Pose, Twist
+from roomba.geometry import Pose, Twist, heading_of
 from roomba.grid import COARSEST_CELL, FINEST_CELL, MOST_CELLS, GridFrame, OccupancyMap
 from roomba_ros.convert.errors import MessageError, require_finite
 
@@ -41,8 +41,7 @@ def quaternion_of(theta: float) -> Quaternion:
 
 def theta_of(rotation: Quaternion) -> float:
     """Return the heading, rad, of a rotation of any length; what tilts it is left out."""
-    x, y, z, w = rotation.x, rotation.y, rotation.z, rotation.w
-    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
+    return heading_of(rotation.x, rotation.y, rotation.z, rotation.w)
 
 
 def pose_of_message(pose: PoseMessage) -> Pose:

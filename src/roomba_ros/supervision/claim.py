@@ -7,6 +7,8 @@ import hashlib
 import socket
 from urllib.parse import urlsplit
 
+from rosgraph.network import is_local_address
+
 from roomba.errors import RoombaError
 from roomba_ros.runtime.graph.master import port_of
 
@@ -35,19 +37,9 @@ def claim_robot(master: str, namespace: str) -> socket.socket:
 
 def _place_of(master: str) -> tuple[str, int]:
     """Return the master's address and port, as its URI can be spelled in several ways."""
-    port = port_of(master)
-    found = socket.getaddrinfo(urlsplit(master).hostname, port, type=socket.SOCK_STREAM)
+    host, port = urlsplit(master).hostname, port_of(master)
+    found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
     # The machine's name has other addresses than localhost has.
-    if any(_is_own(family, str(place[0])) for family, *_, place in found):
+    if is_local_address(host):
         return "this machine", port
     return min(str(place[0]) for *_, place in found), port
-
-
-def _is_own(family: socket.AddressFamily, address: str) -> bool:
-    """Whether an address is one of this machine: a socket can be bound only to those."""
-    try:
-        with socket.socket(family, socket.SOCK_DGRAM) as bound:
-            bound.bind((address, 0))
-    except OSError:  # also of a kernel without that family
-        return False
-    return True

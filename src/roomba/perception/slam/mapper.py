@@ -129,7 +129,8 @@ class Mapper:
             self._relocate(stamp, points)
             return
         if self._is_elsewhere or self._finding_back.is_without_hold(follower):
-            self._begin_piece(Carried.TOLD if self._is_elsewhere else self._seen_carried(stamp))
+            seen = self._seen_carried(stamp, Carried.SEEN)
+            self._begin_piece(Carried.TOLD if self._is_elsewhere else seen)
         follower.follow(stamp)
         self.finish_scan(stamp, ranges)
 
@@ -137,7 +138,7 @@ class Mapper:
         """Do what is left after :meth:`see`, or a kernel, followed the newest scan."""
         follower = self._follower
         if self.version and self._finding_back.is_due:
-            seen = Carried.MISSED if stamp > self._missed_since else self._seen_carried(stamp)
+            seen = self._seen_carried(stamp, Carried.MISSED)
             has_leapt = self._finding_back.search(follower, self._map.clouds())
             if has_leapt:
                 self._begin_piece(seen)
@@ -337,9 +338,11 @@ class Mapper:
         if found is not None:
             self.told(Pose(*found.tolist()))
 
-    def _seen_carried(self, stamp: float) -> Carried | None:
-        is_missed = stamp > self._missed_since
-        return Carried.SEEN if is_missed or self._finding_back.shows_carried else None
+    def _seen_carried(self, stamp: float, missed: Carried) -> Carried | None:
+        """Return how a scan shows that the robot was carried; ``missed`` after a long silence."""
+        if stamp > self._missed_since:
+            return missed
+        return Carried.SEEN if self._finding_back.shows_carried else None
 
     def _begin_piece(self, carried: Carried | None) -> None:
         """Begin a submap of which no scan tells where it lies; scans are matched to it alone.
